@@ -1,0 +1,93 @@
+"""Event-driven hard disks in two dimensions: a scene in, an event log out that replays bit for bit.
+
+The story, and where each part of it lives::
+
+    scene      what exists: disks, walls, a domain            eventsim.scene
+    formulas   the physics: when two disks meet, what then    eventsim.formulas
+    engines    how time passes: from event to event           eventsim.engines
+    record     what happened: the event log and its replay    eventsim.record
+    simulate   the way in for Python users                    eventsim.simulate
+    cli        the way in from a terminal                     eventsim.cli
+
+>>> import eventsim as es
+>>> run = es.simulate(es.gallery("two-disks"), log=True)
+>>> run.log.save("two-disks.csv")
+
+The names below are loaded when they are first used, so ``import eventsim`` itself costs next to nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+__version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from eventsim.engines import ENGINES as ENGINES
+    from eventsim.engines.base import Run as Run
+    from eventsim.errors import CollapseError as CollapseError
+    from eventsim.errors import EventsimError as EventsimError
+    from eventsim.errors import LogError as LogError
+    from eventsim.errors import SceneError as SceneError
+    from eventsim.record.events import State as State
+    from eventsim.record.log import EventLog as EventLog
+    from eventsim.record.log import load_log as load_log
+    from eventsim.scene import Arc as Arc
+    from eventsim.scene import Box as Box
+    from eventsim.scene import Channel as Channel
+    from eventsim.scene import Circle as Circle
+    from eventsim.scene import Disks as Disks
+    from eventsim.scene import Open as Open
+    from eventsim.scene import Periodic as Periodic
+    from eventsim.scene import Polygon as Polygon
+    from eventsim.scene import Polyline as Polyline
+    from eventsim.scene import Restitution as Restitution
+    from eventsim.scene import Scene as Scene
+    from eventsim.scene import Segment as Segment
+    from eventsim.scene.files import load_scene as load_scene
+    from eventsim.scene.gallery import gallery as gallery
+    from eventsim.simulate import Simulation as Simulation
+    from eventsim.simulate import simulate as simulate
+
+_HOMES = {
+    "Scene": "scene",
+    "Disks": "scene",
+    "Box": "scene",
+    "Periodic": "scene",
+    "Channel": "scene",
+    "Open": "scene",
+    "Segment": "scene",
+    "Polygon": "scene",
+    "Polyline": "scene",
+    "Arc": "scene",
+    "Circle": "scene",
+    "Restitution": "scene",
+    "load_scene": "scene.files",
+    "gallery": "scene.gallery",
+    "simulate": "simulate",
+    "Simulation": "simulate",
+    "Run": "engines.base",
+    "State": "record.events",
+    "EventLog": "record.log",
+    "load_log": "record.log",
+    "ENGINES": "engines",
+    "EventsimError": "errors",
+    "SceneError": "errors",
+    "LogError": "errors",
+    "CollapseError": "errors",
+}
+
+__all__ = [*_HOMES, "__version__"]
+
+
+def __getattr__(name: str) -> object:
+    """Load a public name from its home on first use (PEP 562)."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'eventsim' has no attribute {name!r}")
+    value: object = getattr(import_module(f"eventsim.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """List the public names, loaded or not."""
+    return sorted({*globals(), *__all__})
