@@ -1,0 +1,30 @@
+"""What can go wrong in eventsim, as exceptions whose text is meant for the user."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+class EventsimError(Exception):
+    """Something a user can mend or must know; the text is a clear sentence."""
+
+
+class SceneError(EventsimError):
+    """A scene, or the file that describes it, breaks rules; `problems` lists every one of them."""
+
+    problems: tuple[str, ...]
+
+    def __init__(self, problems: str | Iterable[str]) -> None:
+        self.problems = (problems,) if isinstance(problems, str) else tuple(problems)
+        super().__init__(self.problems)
+
+    def __str__(self) -> str:
+        return "\n".join(self.problems)
+
+
+class LogError(EventsimError):
+    """An event log cannot be read, written or replayed."""
+
+
+class CollapseError(EventsimError):
+    """The contacts of a scene accumulate at an instant, so that time cannot go on."""

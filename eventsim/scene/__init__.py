@@ -1,0 +1,26 @@
+"""WHAT EXISTS: disks, walls and a domain make a scene, in code or from a file; nothing here ever changes."""
+
+from eventsim.scene.disks import Disks
+from eventsim.scene.domain import Box, Channel, Domain, Open, Periodic
+from eventsim.scene.restitution import Restitution
+from eventsim.scene.scene import Scene
+from eventsim.scene.walls import Arc, Circle, Polygon, Polyline, Segment, Wall, feature_names, wall_names
+
+__all__ = [
+    "Arc",
+    "Box",
+    "Channel",
+    "Circle",
+    "Disks",
+    "Domain",
+    "Open",
+    "Periodic",
+    "Polygon",
+    "Polyline",
+    "Restitution",
+    "Scene",
+    "Segment",
+    "Wall",
+    "feature_names",
+    "wall_names",
+]

@@ -1,0 +1,112 @@
+"""The disks of a scene at its start: where they are, how they move, how large and heavy they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eventsim.errors import SceneError
+
+Floats: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False)
+class Disks:
+    """N disks as read-only float64 arrays.
+
+    Attributes:
+        position: centres, shape (N, 2), length.
+        velocity: shape (N, 2), length / time.
+        radius: shape (N,), length; 0 is a point.
+        mass: shape (N,); inf cannot be deflected (a post or a moving obstacle), 0 deflects nobody (a tracer).
+    """
+
+    position: Floats
+    velocity: Floats
+    radius: Floats
+    mass: Floats
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike | None = None,
+        radius: ArrayLike | None = None,
+        mass: ArrayLike = 1.0,
+    ) -> None:
+        """Disks at `position` (N, 2); velocity (N, 2) or None for rest; radius and mass (N,) or one for all.
+
+        A radius must be given: points are asked for by radius=0.
+
+        Raises:
+            SceneError: if the shapes do not fit together or an entry is not a number.
+        """
+        if radius is None:
+            raise SceneError("disks.radius is missing: give one for all disks or one for each (0 is a point)")
+        problems: list[str] = []
+        centres = _floats(position, "position", problems)
+        if centres.size == 0:
+            centres = centres.reshape(0, 2)
+        if centres.ndim != 2 or centres.shape[1] != 2:
+            problems.append(f"disks.position has the shape {centres.shape}: must be (N, 2)")
+        if problems:
+            raise SceneError(problems)
+        count = len(centres)
+        at_rest = np.zeros((count, 2))
+        given = {"velocity": at_rest if velocity is None else velocity, "radius": radius, "mass": mass}
+        wanted = {"velocity": (count, 2), "radius": (count,), "mass": (count,)}
+        arrays = {"position": centres}
+        for key, value in given.items():
+            array = _floats(value, key, problems)
+            if array.size == 0 and count == 0:
+                array = array.reshape(wanted[key])
+            if array.ndim == 0 and key != "velocity":
+                array = np.full(count, array)
+            if array.shape != wanted[key]:
+                shape = f"{wanted[key]}" if key == "velocity" else f"{wanted[key]} or a single number"
+                problems.append(f"disks.{key} has the shape {array.shape}: must be {shape}")
+            arrays[key] = array
+        if problems:
+            raise SceneError(problems)
+        for key, array in arrays.items():
+            array.setflags(write=False)
+            object.__setattr__(self, key, array)
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Disks):
+            return NotImplemented
+        mine, theirs = self._arrays(), other._arrays()
+        return all(np.array_equal(a, b) for a, b in zip(mine, theirs, strict=True))
+
+    def __hash__(self) -> int:
+        # Adding 0.0 turns -0.0 into 0.0: equal disks have equal hashes.
+        return hash(tuple((array + 0.0).tobytes() for array in self._arrays()))
+
+    def _arrays(self) -> tuple[Floats, Floats, Floats, Floats]:
+        return self.position, self.velocity, self.radius, self.mass
+
+
+def join(parts: list[Disks]) -> Disks:
+    """All the disks of `parts`, in order, as one."""
+    if not parts:
+        return Disks(np.empty((0, 2)), radius=0.0)
+    return Disks(
+        np.concatenate([part.position for part in parts]),
+        np.concatenate([part.velocity for part in parts]),
+        np.concatenate([part.radius for part in parts]),
+        np.concatenate([part.mass for part in parts]),
+    )
+
+
+def _floats(value: ArrayLike, key: str, problems: list[str]) -> Floats:
+    """A fresh float64 copy of the value: whoever gave it may go on changing theirs."""
+    try:
+        return np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        problems.append(f"disks.{key}: every entry must be a number, and the rows must have equal lengths")
+        return np.empty(0)

@@ -1,0 +1,59 @@
+"""The region in which the disks live, and what happens at its boundary."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, TypeAlias
+
+from eventsim.scene.numbers import Point, point
+
+
+@dataclass(frozen=True, slots=True)
+class _Rectangle:
+    """A rectangle of `size` (width, height), length, with its lower-left corner at `origin`."""
+
+    size: Point
+    origin: Point = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "size", point(self.size, "domain.size"))
+        object.__setattr__(self, "origin", point(self.origin, "domain.origin"))
+
+
+@dataclass(frozen=True, slots=True)
+class Box(_Rectangle):
+    """Four hard walls, named left, right, bottom and top."""
+
+    kind: ClassVar[str] = "box"
+    periodic: ClassVar[tuple[bool, bool]] = (False, False)
+
+
+@dataclass(frozen=True, slots=True)
+class Periodic(_Rectangle):
+    """A torus: what leaves on one side comes in on the other."""
+
+    kind: ClassVar[str] = "periodic"
+    periodic: ClassVar[tuple[bool, bool]] = (True, True)
+
+
+@dataclass(frozen=True, slots=True)
+class Channel(_Rectangle):
+    """Periodic in x; hard walls named bottom and top."""
+
+    kind: ClassVar[str] = "channel"
+    periodic: ClassVar[tuple[bool, bool]] = (True, False)
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """The whole plane: no boundary, no size."""
+
+    kind: ClassVar[str] = "open"
+    periodic: ClassVar[tuple[bool, bool]] = (False, False)
+    size: ClassVar[None] = None
+    origin: ClassVar[Point] = (0.0, 0.0)
+
+
+Domain: TypeAlias = Box | Periodic | Channel | Open
+DOMAINS: dict[str, type[Domain]] = {kind.kind: kind for kind in (Box, Periodic, Channel, Open)}
+BOUNDARY_NAMES = ("left", "right", "bottom", "top")

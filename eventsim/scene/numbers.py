@@ -1,0 +1,43 @@
+"""How numbers and points given by a user become floats."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from numbers import Real
+from typing import TypeAlias
+
+from eventsim.errors import SceneError
+
+Point: TypeAlias = tuple[float, float]
+
+
+def number(value: object, key: str) -> float:
+    """The value as a float.
+
+    Raises:
+        SceneError: if the value is not a real number; `key` says which one it is.
+    """
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise SceneError(f"{key} = {value!r}: must be a number")
+    try:
+        return float(value)
+    except OverflowError:
+        raise SceneError(f"{key}: the number is too large for a float") from None
+
+
+def optional_number(value: object, key: str) -> float | None:
+    """The value as a float, or None where there is none."""
+    return None if value is None else number(value, key)
+
+
+def point(value: object, key: str) -> Point:
+    """The value as a pair of floats (x, y); any sequence of two numbers will do.
+
+    Raises:
+        SceneError: if the value is not a sequence of two real numbers.
+    """
+    pair = tuple(value) if isinstance(value, Iterable) else ()
+    if len(pair) != 2:
+        raise SceneError(f"{key} = {value!r}: must be two numbers, x and y")
+    x, y = pair
+    return number(x, f"{key}[0]"), number(y, f"{key}[1]")

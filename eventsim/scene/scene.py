@@ -1,0 +1,80 @@
+"""A scene: everything that is given before time passes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from eventsim.errors import SceneError
+from eventsim.scene.disks import Disks
+from eventsim.scene.domain import Domain
+from eventsim.scene.numbers import Point, number, optional_number, point
+from eventsim.scene.restitution import Restitution, as_restitution
+from eventsim.scene.validate import find_problems
+from eventsim.scene.walls import Wall
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class Scene:
+    """Disks in a domain with walls, and the rules of their motion; valid once it exists.
+
+    Attributes:
+        disks: the N disks at the start.
+        domain: Box, Periodic, Channel or Open.
+        walls: walls inside the domain.
+        gravity: acceleration (x, y), length / time^2; None without.
+        restitution: None where every contact is elastic.
+        contact_duration: time; a contact within it after a disk's previous one is elastic; None without.
+        until: stop time on the scene's clock, or None.
+        events: number of events to stop after, or None.
+        start_time: what the clock shows at the start.
+        name: what the scene is called, or None.
+    """
+
+    disks: Disks
+    domain: Domain
+    walls: tuple[Wall, ...]
+    gravity: Point | None
+    restitution: Restitution | None
+    contact_duration: float | None
+    until: float | None
+    events: int | None
+    start_time: float
+    name: str | None
+
+    def __init__(
+        self,
+        disks: Disks,
+        domain: Domain,
+        walls: Sequence[Wall] = (),
+        gravity: Sequence[float] | None = None,
+        restitution: Restitution | Mapping[str, float] | float | None = None,
+        contact_duration: float | None = None,
+        until: float | None = None,
+        events: int | None = None,
+        start_time: float = 0.0,
+        name: str | None = None,
+    ) -> None:
+        """The scene with these parts; a restitution may be one number, a mapping or a Restitution.
+
+        Raises:
+            SceneError: with every rule that is broken, each naming the disks or the key, value and rule.
+        """
+        pull = None if gravity is None else point(gravity, "gravity")
+        fields = {
+            "disks": disks,
+            "domain": domain,
+            "walls": tuple(walls),
+            "gravity": None if pull == (0.0, 0.0) else pull,
+            "restitution": as_restitution(restitution),
+            "contact_duration": optional_number(contact_duration, "contact_duration"),
+            "until": optional_number(until, "until"),
+            "events": events,
+            "start_time": number(start_time, "start_time"),
+            "name": name,
+        }
+        for key, value in fields.items():
+            object.__setattr__(self, key, value)
+        problems = find_problems(self)
+        if problems:
+            raise SceneError(problems)
