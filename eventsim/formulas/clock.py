@@ -1,0 +1,47 @@
+"""A clock that keeps its digits: whole epochs and a remainder, and when the clock turns over."""
+
+import math
+from fractions import Fraction
+
+FIRST_WINDOW = 5
+"""The first window is 2**5 epochs long."""
+
+FEW, MANY = 8, 32
+"""Rows per disk and window below which the next window is doubled, above which it is halved."""
+
+
+def next_window(exponent: int, rows: int, n: int, cap: int) -> int:
+    """The exponent of the next window, from the number of rows logged in the one that ends; n is the number of disks.
+
+    It makes turnovers a few per cent of the work whatever the scene does, and depends on the log alone.
+    """
+    if rows < FEW * n:
+        return min(exponent + 1, cap)
+    if rows > MANY * n:
+        return max(exponent - 1, 0)
+    return exponent
+
+
+def window_length(exponent: int, epoch_length: float) -> float:
+    """The length of a window; exact, a power of two."""
+    return math.ldexp(epoch_length, exponent)
+
+
+def remainder_since(epoch: int, epoch_length: float, time: float, start_time: float = 0.0) -> float:
+    """The scene's clock time `time` as a remainder in the given epoch, rounded once; inf stays inf."""
+    if math.isinf(time):
+        return time
+    exact = Fraction(time) - Fraction(start_time) - epoch * Fraction(epoch_length)
+    return _rounded(exact)
+
+
+def clock_time(epoch: int, remainder: float, epoch_length: float, start_time: float = 0.0) -> float:
+    """The time on the scene's clock, rounded once."""
+    return _rounded(Fraction(start_time) + epoch * Fraction(epoch_length) + Fraction(remainder))
+
+
+def _rounded(exact: Fraction) -> float:
+    try:
+        return float(exact)
+    except OverflowError:
+        return math.inf if exact > 0 else -math.inf

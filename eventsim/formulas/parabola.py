@@ -1,0 +1,137 @@
+"""When a parabola meets a circle: gravity against posts, segment ends, arcs, containers and immovable disks.
+
+The squared distance of a falling centre from a fixed point is a quartic of time.  Its derivative is a cubic, whose own
+derivative is a quadratic: so the roots of the quadratic bracket those of the cubic, and these bracket those of the
+quartic, every one on a monotone piece, where bisection cannot miss.  No root formula of degree 4, hence no cancellation.
+"""
+
+from eventsim.formulas.real import NEVER, Real, sqrt
+
+BISECTIONS = 200
+"""More halvings than any bracket here survives in float64."""
+
+DOUBLINGS = 2000
+"""Enough to leave any float64 behind."""
+
+
+def circle_gap(
+    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, t: Real
+) -> Real:
+    """h = side (|d + v t + a t^2/2|^2 - radius^2) at delay t; side is +1 outside the circle, -1 inside."""
+    px = dx + t * (du + (0.5 * ax) * t)
+    py = dy + t * (dw + (0.5 * ay) * t)
+    return side * ((px * px + py * py) - radius * radius)
+
+
+def circle_rate(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side: float, t: Real) -> Real:
+    """Half the rate of change of the gap h at delay t: side (d(t) . v(t))."""
+    px = dx + t * (du + (0.5 * ax) * t)
+    py = dy + t * (dw + (0.5 * ay) * t)
+    return side * (px * (du + ax * t) + py * (dw + ay * t))
+
+
+def circle_delays(
+    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float
+) -> tuple[Real, Real]:
+    """The first two delays >= 0 at which the gap h to a circle is <= 0 and falling; NEVER where there is none.
+
+    (dx, dy), (du, dw), (ax, ay): position, velocity and acceleration (not zero) relative to the centre.  A quartic has at
+    most two falling pieces; the second is for arcs, which may be open where the first one crosses them.
+    """
+    q2 = 1.5 * (ax * ax + ay * ay)
+    q1 = 3.0 * (du * ax + dw * ay)
+    q0 = (du * du + dw * dw) + (dx * ax + dy * ay)
+    first, second = _positive_roots(q2, q1, q0)
+    start = 0.0
+    start_rate = circle_rate(dx, dy, du, dw, ax, ay, side, start)
+    fall = 0.0
+    found = NEVER
+    far = _far(dx, dy, du, dw, ax, ay, radius, side, second)
+    for end in (first, second, far):
+        if not end > start:
+            continue
+        end_rate = circle_rate(dx, dy, du, dw, ax, ay, side, end)
+        if (start_rate < 0.0) != (end_rate < 0.0):
+            turn = _turn(dx, dy, du, dw, ax, ay, side, start, end)
+            if start_rate < 0.0:
+                delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, turn)
+                if delay < NEVER:
+                    if found < NEVER:
+                        return found, delay
+                    found = delay
+            else:
+                fall = turn
+        start = end
+        start_rate = end_rate
+    if start_rate < 0.0:
+        delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, far)
+        if found < NEVER:
+            return found, delay
+        found = delay
+    return found, NEVER
+
+
+def _positive_roots(q2: Real, q1: Real, q0: Real) -> tuple[Real, Real]:
+    """The roots of q2 t^2 + q1 t + q0 in ascending order, those that are not positive as 0."""
+    discriminant = q1 * q1 - (4.0 * q2) * q0
+    if not discriminant > 0.0:
+        return 0.0, 0.0
+    root = sqrt(discriminant)
+    outer = -0.5 * (q1 + root) if q1 > 0.0 else -0.5 * (q1 - root)
+    one = outer / q2
+    other = q0 / outer if outer != 0.0 else 0.0
+    low = one if one < other else other
+    high = other if one < other else one
+    return (low if low > 0.0 else 0.0), (high if high > 0.0 else 0.0)
+
+
+def _far(
+    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, last: Real
+) -> Real:
+    """A delay after which the gap only opens (outside) or stays closed (inside)."""
+    speed = sqrt(du * du + dw * dw)
+    acceleration = sqrt(ax * ax + ay * ay)
+    distance = sqrt(dx * dx + dy * dy) + radius
+    t = last + speed / acceleration + sqrt(distance / acceleration)
+    for _ in range(DOUBLINGS):
+        rate = side * circle_rate(dx, dy, du, dw, ax, ay, side, t)
+        gap = side * circle_gap(dx, dy, du, dw, ax, ay, radius, side, t)
+        if rate > 0.0 and gap > 0.0:
+            break
+        t = 2.0 * t
+    return t
+
+
+def _turn(
+    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side: float, low: Real, high: Real
+) -> Real:
+    """Where the rate changes its sign between low and high."""
+    falling = circle_rate(dx, dy, du, dw, ax, ay, side, low) < 0.0
+    for _ in range(BISECTIONS):
+        middle = low + 0.5 * (high - low)
+        if not (low < middle < high):
+            break
+        if (circle_rate(dx, dy, du, dw, ax, ay, side, middle) < 0.0) == falling:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _closing(
+    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, low: Real, high: Real
+) -> Real:
+    """Where a gap that falls from low to high closes: low if it is closed there already, NEVER if it stays open."""
+    if not circle_gap(dx, dy, du, dw, ax, ay, radius, side, low) > 0.0:
+        return low
+    if circle_gap(dx, dy, du, dw, ax, ay, radius, side, high) > 0.0:
+        return NEVER
+    for _ in range(BISECTIONS):
+        middle = low + 0.5 * (high - low)
+        if not (low < middle < high):
+            break
+        if circle_gap(dx, dy, du, dw, ax, ay, radius, side, middle) > 0.0:
+            low = middle
+        else:
+            high = middle
+    return high

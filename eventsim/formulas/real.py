@@ -1,0 +1,20 @@
+"""The number type: what the formulas calculate with, and the one function of it that Python's operators lack."""
+
+import math
+from typing import Any, TypeAlias
+
+Real: TypeAlias = Any
+"""A float; or, in the certified engine, a ball that supports the same operators and has a method `sqrt`."""
+
+Acceleration: TypeAlias = Any
+"""A Real, or None where the scene has no gravity (a branch that compilers prune)."""
+
+NEVER = math.inf
+"""The delay of a contact that does not come."""
+
+
+def sqrt(x: Real) -> Real:
+    """The square root; a number type other than float brings its own."""
+    if isinstance(x, float):
+        return math.sqrt(x)
+    return x.sqrt()

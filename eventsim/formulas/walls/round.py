@@ -1,0 +1,181 @@
+"""Round walls: a post (a point), a container (a circle from inside), an arc (hard on both sides; its ends are posts)."""
+
+from typing import NamedTuple
+
+from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
+
+
+class Post(NamedTuple):
+    """A hard point at (x, y)."""
+
+    x: float
+    y: float
+
+
+class Container(NamedTuple):
+    """A circle around (x, y); disks live inside."""
+
+    x: float
+    y: float
+    radius: float
+
+
+class Arc(NamedTuple):
+    """The part of a circle that lies beyond its chord: from (x0, y0) along (ex, ey), on the side where the cross product has
+    the given sign."""
+
+    x: float
+    y: float
+    radius: float
+    x0: float
+    y0: float
+    ex: float
+    ey: float
+    sign: float
+
+
+def arc(x0: float, y0: float, xm: float, ym: float, x1: float, y1: float) -> Arc:
+    """The arc from (x0, y0) through (xm, ym) to (x1, y1): the circle through three points, not on one line."""
+    ax, ay = xm - x0, ym - y0
+    bx, by = x1 - x0, y1 - y0
+    cross = ax * by - ay * bx
+    a2, b2 = ax * ax + ay * ay, bx * bx + by * by
+    ux, uy = (by * a2 - ay * b2) / (2.0 * cross), (ax * b2 - bx * a2) / (2.0 * cross)
+    sign = 1.0 if bx * ay - by * ax > 0.0 else -1.0
+    return Arc(x0 + ux, y0 + uy, float(sqrt(ux * ux + uy * uy)), x0, y0, bx, by, sign)
+
+
+def post_delay(
+    shape: Post,
+    x: Real,
+    y: Real,
+    vx: Real,
+    vy: Real,
+    gx: Acceleration,
+    gy: Acceleration,
+    radius: Real,
+    met: int,
+) -> tuple[Real, int]:
+    """(delay, 1) of the next contact with a post."""
+    if gx is None:
+        if met != 0:
+            return NEVER, 1
+        return pair_delay(x - shape.x, y - shape.y, vx, vy, radius), 1
+    return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, radius, 1.0)[0], 1
+
+
+def container_delay(
+    shape: Container,
+    x: Real,
+    y: Real,
+    vx: Real,
+    vy: Real,
+    gx: Acceleration,
+    gy: Acceleration,
+    radius: Real,
+    met: int,
+) -> tuple[Real, int]:
+    """(delay, -1) of the next contact with the container from inside."""
+    if gx is None:
+        return inner_delay(x - shape.x, y - shape.y, vx, vy, shape.radius - radius), -1
+    return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, shape.radius - radius, -1.0)[0], -1
+
+
+def inner_delay(dx: Real, dy: Real, du: Real, dw: Real, radius: Real) -> Real:
+    """The delay until a straight flight reaches a circle of the given radius from inside; NEVER at rest.
+
+    c = radius^2 - d^2, b = d.v; outward (b > 0): c / (b + sqrt D), now if c <= 0; inward: (sqrt D - b) / a.
+    """
+    b = dx * du + dy * dw
+    a = du * du + dw * dw
+    if not a > 0.0:
+        return NEVER
+    radius2 = radius * radius
+    c = radius2 - (dx * dx + dy * dy)
+    cross = dx * dw - dy * du
+    discriminant = a * radius2 - cross * cross
+    root = sqrt(discriminant) if discriminant > 0.0 else 0.0
+    if b > 0.0:
+        if not c > 0.0:
+            return 0.0
+        return c / (b + root)
+    return (root - b) / a
+
+
+def on_arc(shape: Arc, x: Real, y: Real) -> bool:
+    """Whether the ray from the centre of the circle through (x, y) meets the arc: its foot lies beyond the chord."""
+    dx, dy = x - shape.x, y - shape.y
+    distance = sqrt(dx * dx + dy * dy)
+    if not distance > 0.0:
+        return False
+    scale = shape.radius / distance
+    fx, fy = (shape.x + dx * scale) - shape.x0, (shape.y + dy * scale) - shape.y0
+    return bool(not shape.sign * (shape.ex * fy - shape.ey * fx) < 0.0)
+
+
+def arc_side(shape: Arc, x: Real, y: Real, vx: Real, vy: Real) -> int:
+    """+1 outside the circle of the arc, -1 inside; a point exactly on it is on the side that it moves to."""
+    dx, dy = x - shape.x, y - shape.y
+    excess = (dx * dx + dy * dy) - shape.radius * shape.radius
+    if excess > 0.0:
+        return 1
+    if excess < 0.0:
+        return -1
+    return 1 if dx * vx + dy * vy > 0.0 else -1
+
+
+def arc_delay(
+    shape: Arc,
+    x: Real,
+    y: Real,
+    vx: Real,
+    vy: Real,
+    gx: Acceleration,
+    gy: Acceleration,
+    radius: Real,
+    met: int,
+) -> tuple[Real, int]:
+    """(delay, side) of the next contact with the arc: with its outside at radius R + r, with its inside at R - r.
+
+    A disk that is outside may pass through the open part and meet the inside, and the other way round.
+    """
+    dx, dy = x - shape.x, y - shape.y
+    side = met if met != 0 else arc_side(shape, x, y, vx, vy)
+    outer, inner = shape.radius + radius, shape.radius - radius
+    best, best_side = NEVER, side
+    if gx is None:
+        if side > 0 and met == 0:
+            delay = pair_delay(dx, dy, vx, vy, outer)
+            if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
+                best, best_side = delay, 1
+        if inner > 0.0 and (side < 0 or best == NEVER):
+            delay = _inner_from(dx, dy, vx, vy, inner, side)
+            if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
+                best, best_side = delay, -1
+        return best, best_side
+    for face_side in (1, -1):
+        reach = outer if face_side > 0 else inner
+        if not reach > 0.0 and not (reach == 0.0 and face_side > 0):
+            continue
+        first, second = circle_delays(dx, dy, vx, vy, gx, gy, reach, float(face_side))
+        for delay in (first, second):
+            # a disk that overlaps the circle's line from the other side is not on this side yet
+            if delay == 0.0 and face_side != side:
+                continue
+            if delay < best and on_arc(
+                shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
+            ):
+                best, best_side = delay, face_side
+    return best, best_side
+
+
+def _inner_from(dx: Real, dy: Real, du: Real, dw: Real, inner: Real, side: int) -> Real:
+    """Contact with the inside of a circle, for a disk that is inside or will be: a flight from outside must pass through it."""
+    if side < 0:
+        return inner_delay(dx, dy, du, dw, inner)
+    entered = pair_delay(dx, dy, du, dw, inner)
+    if not entered < NEVER:
+        return NEVER
+    return inner_delay(dx, dy, du, dw, inner)
