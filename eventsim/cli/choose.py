@@ -1,0 +1,58 @@
+"""From what was typed to a scene: a file or the name of a built-in scene, with its settings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventsim.cli.suggest import did_you_mean
+from eventsim.errors import SceneError
+
+if TYPE_CHECKING:
+    from eventsim.scene import Scene
+
+SCENE_SUFFIXES = (".toml", ".json")
+
+
+def chosen_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene:
+    """Return the scene meant by the argument SCENE and the options --set and --seed.
+
+    Raises:
+        SceneError: if there is no such scene, a setting does not fit, or the scene breaks a rule.
+    """
+    from eventsim.scene.files import load_scene
+    from eventsim.scene.gallery import names
+
+    if Path(scene).suffix.lower() in SCENE_SUFFIXES:
+        return load_scene(scene, overrides=settings, seed=seed)
+    if scene in names():
+        return built_in_scene(scene, settings, seed)
+    if Path(scene).exists():
+        raise SceneError(f"{scene}: a scene file ends in {' or '.join(SCENE_SUFFIXES)}")
+    raise SceneError(
+        f"{scene!r} is neither a scene file ({', '.join(SCENE_SUFFIXES)}) nor a built-in scene"
+        f"{did_you_mean(scene, names())}; eventsim gallery lists the built-in ones"
+    )
+
+
+def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scene:
+    """Return a built-in scene: settings that name one of its parameters first, then keys of the scene."""
+    from eventsim.scene.files import apply_overrides, scene_from_dict, scene_to_dict
+    from eventsim.scene.gallery import describe, gallery
+
+    allowed = describe(name).parameters
+    parameters = {}
+    overrides = []
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        if equals and key.strip() in allowed:
+            parameters[key.strip()] = apply_overrides({}, [f"value={text}"])["value"]
+        else:
+            overrides.append(setting)
+    if seed is not None and "seed" in allowed:
+        parameters["seed"] = seed
+    scene = gallery(name, **parameters)
+    if not overrides:
+        return scene
+    return scene_from_dict(apply_overrides(scene_to_dict(scene), overrides), source=name)

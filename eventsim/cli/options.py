@@ -1,0 +1,35 @@
+"""The arguments and options that several verbs share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+Verb = TypeVar("Verb", bound=Callable[..., Any])
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout instead of text.")
+quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print no summary and no progress.")
+
+
+def scene_options(required: bool) -> Callable[[Verb], Verb]:
+    """Add the argument SCENE and the options --set and --seed that shape it."""
+
+    def decorate(verb: Verb) -> Verb:
+        for add in (
+            click.option("--seed", type=click.IntRange(min=0), metavar="S", help=SEED_HELP),
+            click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=SET_HELP),
+            click.argument("scene", required=required),
+        ):
+            verb = add(verb)
+        return verb
+
+    return decorate
+
+
+SET_HELP = (
+    "Override a key of the scene (restitution=0.9, gas.0.count=500) or a parameter of a built-in one "
+    "(mass_ratio=10000). May be given several times."
+)
+SEED_HELP = "Seed chance: the i-th table that draws random numbers is seeded from (S, i)."

@@ -1,0 +1,99 @@
+"""The command `eventsim`: its verbs, what it says on its own, and how every failure ends."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+
+import click
+
+from eventsim import __version__
+from eventsim.cli.exits import BAD_INPUT, DONE, INTERRUPTED
+from eventsim.cli.suggest import did_you_mean
+from eventsim.errors import EventsimError
+
+VERBS = {
+    "run": "Simulate a scene from event to event; print a summary, keep a log.",
+    "check": "Validate a scene; explain what it needs and what will be used.",
+    "gallery": "List, show or copy the built-in scenes.",
+    "state": "Positions and velocities at any times, from a log.",
+}
+
+BEGIN = """\
+eventsim: event-driven hard disks in two dimensions.  Three commands to begin with:
+
+  eventsim run break --log break.csv    simulate a built-in scene, keep every event
+  eventsim gallery                      see which other scenes are built in
+  eventsim check break                  read what a scene needs and what will be used
+
+eventsim --help lists all verbs, eventsim VERB --help explains one."""
+
+DISPLAY = {"help_option_names": ["-h", "--help"], "max_content_width": 110}
+
+
+class Program(click.Group):
+    """The verbs, each imported when it is called: `eventsim --help` loads none of them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Name the verbs in the order in which a user meets them."""
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import one verb; a misspelt one is answered with the nearest."""
+        if cmd_name in VERBS:
+            verb = import_module(f"eventsim.cli.{cmd_name}").command
+            assert isinstance(verb, click.Command)
+            return verb
+        if not cmd_name.startswith("-"):
+            near = did_you_mean(cmd_name, VERBS)
+            ctx.fail(f"there is no verb {cmd_name!r}{near}; eventsim --help lists them")
+        return None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of verbs from the table, without importing them."""
+        with formatter.section("Verbs"):
+            formatter.write_dl(list(VERBS.items()))
+
+    def invoke(self, ctx: click.Context) -> object:
+        """Call the verb; turn what goes wrong into a sentence on stderr and an exit code."""
+        try:
+            result: object = super().invoke(ctx)
+            sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
+            return result
+        except EventsimError as error:
+            raise Failure(str(error)) from error
+        except BrokenPipeError:
+            # The reader had enough (| head): nothing may be written to the pipe any more, not even at exit.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            ctx.exit(DONE)
+        except KeyboardInterrupt:
+            click.echo("interrupted", err=True)
+            ctx.exit(INTERRUPTED)
+        except OSError as error:
+            place = "" if error.filename is None else f"{error.filename}: "
+            raise Failure(f"{place}{error.strerror or error}") from error
+        except MemoryError:
+            raise Failure("there is not enough memory for this") from None
+
+
+class Failure(click.ClickException):
+    """Ends the command for bad usage, scene or file with nothing but a message."""
+
+    exit_code = BAD_INPUT
+
+
+@click.group(cls=Program, invoke_without_command=True, context_settings=DISPLAY)
+@click.version_option(__version__, "-V", "--version", message="eventsim %(version)s")
+@click.pass_context
+def main(context: click.Context) -> None:
+    """Event-driven hard disks in two dimensions: a scene in, an event log out that replays bit for bit.
+
+    A SCENE is a file (TOML or JSON) or the name of a built-in scene. Every verb explains itself:
+    eventsim VERB --help.
+
+    Exit codes: 0 done; 2 bad usage, scene or file; 3 stopped early for a reason of physics or digits;
+    130 interrupted. What happened before an early stop is kept.
+    """
+    if context.invoked_subcommand is None:
+        click.echo(BEGIN)

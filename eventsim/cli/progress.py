@@ -1,0 +1,62 @@
+"""How far a long piece of work has come, on a terminal's stderr."""
+
+from __future__ import annotations
+
+import sys
+from time import perf_counter
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+PATIENCE = 0.5
+"""Seconds of work before a bar appears: short work shows none and does not pay for importing one."""
+
+
+class ProgressBar:
+    """A callback (fraction, events, time) that draws a bar; nothing where stderr is not a terminal."""
+
+    def __init__(self, quiet: bool = False) -> None:
+        self._wanted = not quiet and sys.stderr.isatty()
+        self._begun = perf_counter()
+        self._bar: Progress | None = None
+        self._task: TaskID | None = None
+
+    def __enter__(self) -> ProgressBar:
+        return self
+
+    def __call__(self, fraction: float | None, events: int, time: float) -> None:
+        """Show the fraction done (None: unknown), the number of events so far and the scene's clock."""
+        if not self._wanted:
+            return
+        if self._bar is None or self._task is None:
+            if perf_counter() - self._begun < PATIENCE:
+                return
+            self._bar, self._task = _new_bar()
+        done = None if fraction is None else min(max(fraction, 0.0), 1.0)
+        total = None if done is None else 1.0
+        self._bar.update(self._task, completed=done, total=total, events=f"{events:,}", clock=f"{time:.6g}")
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Take the bar away, so that the summary stands alone."""
+        if self._bar is not None:
+            self._bar.stop()
+
+
+def _new_bar() -> tuple[Progress, TaskID]:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    bar = Progress(
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[events]} events, clock {task.fields[clock]}"),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+        transient=True,
+    )
+    bar.start()
+    return bar, bar.add_task("", total=None, events="0", clock="")

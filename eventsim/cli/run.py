@@ -1,0 +1,117 @@
+"""`eventsim run`: simulate a scene, print what happened, keep what was asked for."""
+
+from __future__ import annotations
+
+import math
+
+import click
+
+from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
+from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES, writable
+
+FIRST_SCENE = "break"
+EXITS = {"collapse": STOPPED_EARLY, "digits": STOPPED_EARLY, "interrupted": INTERRUPTED}
+
+
+@click.command()
+@scene_options(required=False)
+@click.option("--until", type=float, metavar="T", help="Stop at this time on the scene's clock.")
+@click.option("--events", type=click.IntRange(min=0), metavar="N", help="Stop after this many events.")
+@click.option("--log", metavar="FILE", help=f"Keep every event in FILE, one of {', '.join(LOG_SUFFIXES)}.")
+@click.option("--compact", is_flag=True, help="Log only what replay cannot compute.")
+@click.option("--state", metavar="FILE", help="Write the final state to FILE (.csv or .npz).")
+@click.option("--engine", default="auto", show_default=True, metavar="NAME", help="Which engine simulates.")
+@click.option("--digest", is_flag=True, help="Compute the log's digest also where no log is kept.")
+@json_option
+@quiet_option
+def command(
+    scene: str | None,
+    settings: tuple[str, ...],
+    seed: int | None,
+    until: float | None,
+    events: int | None,
+    log: str | None,
+    compact: bool,
+    state: str | None,
+    engine: str,
+    digest: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Simulate SCENE (a file or a built-in scene; without one: break) until its stop, and print a summary.
+
+    It stops at the time or the number of events that the scene or the command line gives, whichever comes
+    first; what the command line gives replaces what the scene says.
+
+    \b
+    Examples:
+      eventsim run                                          the built-in break
+      eventsim run my.toml --until 10 --log my.csv          a scene of your own, every event kept
+      eventsim run galperin --set mass_ratio=10000 --json   pi from a hundred to one
+      eventsim run gas --events 5000 --state end.csv        where all disks are in the end
+
+    \b
+    Keys of --json:
+      scene, name              as typed; the name inside the scene (null without)
+      version, engine          of eventsim; the engine that simulated
+      disks                    their number
+      start_time, time         the scene's clock at the beginning and at the end
+      events                   rows of the log: pair_contacts + wall_contacts + rests
+      pair_contacts, wall_contacts, counters
+      elapsed_s, events_per_s  simulating only; compile_s and write_s apart
+      digest                   SHA-256 of the log; null without --log or --digest
+      residuals                energy (relative change; null where it is not conserved),
+                               momentum (share of sum m |v| not booked at walls),
+                               max_overlap (deepest overlap at a contact, in reaches)
+      stopped, reason          until | events | quiet (no event ahead) | collapse | digits |
+                               interrupted; and why, in words
+      log, state               the files written (null without)
+
+    Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse or digits; 130 interrupted.
+    """
+    log_path = writable(log, "--log", LOG_SUFFIXES)
+    state_path = writable(state, "--state", STATE_SUFFIXES)
+    if compact and log_path is None:
+        raise click.UsageError("--compact says how the log is written: give --log FILE too")
+    if log_path is not None and state_path is not None and log_path.resolve() == state_path.resolve():
+        raise click.UsageError(f"--log and --state name the same file, {log_path}")
+    if until is not None and math.isnan(until):
+        raise click.UsageError("--until nan: must be a time")
+
+    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.summary import summary_data, summary_text
+    from eventsim.cli.words import as_json_text
+    from eventsim.simulate import simulate
+
+    asked = scene or FIRST_SCENE
+    chosen = chosen_scene(asked, settings, seed)
+    if until is None and events is None and chosen.until is None and chosen.events is None:
+        raise click.UsageError(
+            f"nothing says when to stop {asked}: give --until T or --events N, or a key until or events "
+            "in the scene"
+        )
+    with ProgressBar(quiet=quiet) as progress:
+        run = simulate(
+            chosen,
+            until=until,
+            events=events,
+            engine=engine,
+            log=False if log_path is None else log_path,
+            compact=compact,
+            digest=digest,
+            progress=progress,
+        )
+    if state_path is not None:
+        from eventsim.record.states import write_states
+
+        write_states(state_path, run.scene, [run.state])
+    if as_json:
+        click.echo(as_json_text(summary_data(asked, run, log_path, state_path)))
+    elif not quiet:
+        click.echo(summary_text(asked, run, log_path, state_path))
+    if run.stopped in EXITS:
+        if as_json or quiet:
+            click.echo(f"stopped early: {run.reason or run.stopped}", err=True)
+        click.get_current_context().exit(EXITS[run.stopped])

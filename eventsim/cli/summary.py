@@ -1,0 +1,107 @@
+"""What a run says at its end: the same facts as text for people and as data for programs."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventsim import __version__
+from eventsim.cli.words import aligned, plural, scene_line, short
+
+if TYPE_CHECKING:
+    from eventsim.engines.base import Run
+
+
+def summary_data(asked: str, run: Run, log: Path | None, state: Path | None) -> dict[str, object]:
+    """Return the keys that `eventsim run --help` documents."""
+    return {
+        "scene": asked,
+        "name": run.scene.name,
+        "version": __version__,
+        "engine": run.engine,
+        "disks": len(run.scene.disks),
+        "start_time": run.start_time,
+        "time": run.time,
+        "events": run.counters.events,
+        "pair_contacts": run.counters.pair_contacts,
+        "wall_contacts": run.counters.wall_contacts,
+        "counters": asdict(run.counters),
+        "elapsed_s": run.elapsed_s,
+        "compile_s": run.compile_s,
+        "write_s": run.write_s,
+        "events_per_s": _rate(run),
+        "digest": run.digest,
+        "residuals": asdict(run.residuals),
+        "stopped": run.stopped,
+        "reason": run.reason,
+        "log": None if log is None else str(log),
+        "state": None if state is None else str(state),
+    }
+
+
+def summary_text(asked: str, run: Run, log: Path | None, state: Path | None) -> str:
+    """Return the summary as aligned lines."""
+    counters, residuals = run.counters, run.residuals
+    title = asked if run.scene.name in (None, asked) else f"{asked} ({run.scene.name})"
+    rows = [
+        ("engine", f"{run.engine}, {_seconds(run.elapsed_s)}{_apart(run)}"),
+        ("time", f"{short(run.start_time)} to {short(run.time)}"),
+        ("events", _events(run)),
+        ("energy", _energy(residuals.energy)),
+        ("momentum", f"{residuals.momentum:.1e} of sum m |v| is not booked at a wall"),
+        ("overlap", _overlap(residuals.max_overlap)),
+        ("stopped", _stop(run)),
+    ]
+    if counters.pair_contacts == 0:
+        rows = [row for row in rows if row[0] != "overlap"]
+    if run.digest is not None:
+        rows.append(("digest", run.digest))
+    if log is not None:
+        rows.append(("log", f"{log}: {plural(counters.events, 'row')}"))
+    if state is not None:
+        rows.append(("state", str(state)))
+    return f"{title}: {scene_line(run.scene)}\n{aligned(rows)}"
+
+
+def _rate(run: Run) -> float | None:
+    """Events per second of simulating; None where there was nothing to time."""
+    return run.counters.events / run.elapsed_s if run.elapsed_s > 0 else None
+
+
+def _events(run: Run) -> str:
+    counters = run.counters
+    pairs = plural(counters.pair_contacts, "pair contact")
+    text = f"{counters.events:,}: {pairs}, {plural(counters.wall_contacts, 'wall contact')}"
+    rate = _rate(run)
+    return text if rate is None or counters.events == 0 else f"{text}; {rate:,.0f} events/s"
+
+
+def _seconds(seconds: float) -> str:
+    return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
+
+
+def _apart(run: Run) -> str:
+    """The times that are not simulating, where they are worth a word."""
+    parts = [("compiling", run.compile_s), ("writing", run.write_s)]
+    return "".join(f" + {_seconds(seconds)} {what}" for what, seconds in parts if seconds > 0)
+
+
+def _energy(change: float | None) -> str:
+    return "not conserved in this scene" if change is None else f"changed by {change:.1e} of itself"
+
+
+def _overlap(deepest: float) -> str:
+    return "none at any contact" if deepest <= 0 else f"deepest at a contact {deepest:.1e} of the reach"
+
+
+def _stop(run: Run) -> str:
+    if run.reason is not None:
+        return f"early ({run.stopped}): {run.reason}"
+    words = {
+        "until": f"at the time asked for, {short(run.time)}",
+        "events": "after the number of events asked for",
+        "quiet": "no event is ahead: every disk flies free from here on",
+        "interrupted": "interrupted; what happened so far is kept",
+    }
+    return words.get(run.stopped, run.stopped)

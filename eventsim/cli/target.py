@@ -1,0 +1,32 @@
+"""Files that a verb is to write: refused before any work is done for them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+LOG_SUFFIXES = (".csv", ".jsonl", ".npz", ".parquet")
+STATE_SUFFIXES = (".csv", ".npz")
+
+
+def writable(path: str | None, option: str, suffixes: Sequence[str]) -> Path | None:
+    """Return `path` as one that can be written, None if there is none.
+
+    Raises:
+        click.UsageError: naming the option, the path and what is wrong with it.
+    """
+    if path is None:
+        return None
+    target = Path(path)
+    if target.suffix.lower() not in suffixes:
+        raise click.UsageError(f"{option} {path}: the file's name must end in {', '.join(suffixes)}")
+    if target.is_dir():
+        raise click.UsageError(f"{option} {path}: is a directory")
+    if not target.parent.is_dir():
+        raise click.UsageError(f"{option} {path}: there is no directory {target.parent}")
+    if not os.access(target.parent, os.W_OK) or (target.exists() and not os.access(target, os.W_OK)):
+        raise click.UsageError(f"{option} {path}: no permission to write there")
+    return target
