@@ -31,9 +31,7 @@ RADIUS = 0.5
 
 
 def scene(*, restitution: float = 0.5, height: float = 1.0) -> Scene:
-    """A disk dropped from `height` over the floor, with the floor's `restitution`; stops before the Zeno
-    time.
-    """
+    """A disk dropped from `height` above a floor with `restitution`; the run stops before the Zeno time."""
     demand(height > 0, "height", height, "must be above 0")
     demand(0 <= restitution <= 1, "restitution", restitution, "must be from 0 to 1")
     fall = math.sqrt(2 * height / GRAVITY)

@@ -23,9 +23,7 @@ from eventsim.scene.scene import Scene
 
 
 def scene(*, n: int = 400, mass: float = 50.0, radius: float = 5.0, seed: int = 1) -> Scene:
-    """Disk 0 of `mass` and `radius` among `n` disks of mass 1 and radius 1/2 at kT = 1, drawn from
-    `seed`.
-    """
+    """Disk 0 with `mass` and `radius` among `n` disks of mass 1, radius 1/2, kT = 1; drawn from `seed`."""
     side = 40.0
     return scene_from_dict(
         {

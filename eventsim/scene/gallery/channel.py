@@ -22,9 +22,7 @@ from eventsim.scene.scene import Scene
 
 
 def scene(*, n: int = 160, speed: float = 1.0, seed: int = 1) -> Scene:
-    """`n` disks of diameter 1, all with `speed`, directions from `seed`, in a channel 32 long and 16
-    high.
-    """
+    """`n` disks of diameter 1 with one `speed` in a channel 32 by 16; directions drawn from `seed`."""
     return scene_from_dict(
         {
             "name": "channel",

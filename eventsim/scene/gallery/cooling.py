@@ -25,9 +25,7 @@ from eventsim.scene.scene import Scene
 
 
 def scene(*, n: int = 200, restitution: float = 0.9, contact_duration: float = 1e-6, seed: int = 1) -> Scene:
-    """`n` disks filling 30 % of a unit torus, pair `restitution`, TC time `contact_duration`, drawn from
-    `seed`.
-    """
+    """`n` disks with pair `restitution` and TC time `contact_duration` fill 30 % of a torus; from `seed`."""
     return scene_from_dict(
         {
             "name": "cooling",

@@ -23,9 +23,7 @@ from eventsim.scene.scene import Scene
 
 
 def scene(*, n: int = 36, gravity: float = 1.0, seed: int = 1) -> Scene:
-    """`n` disks of diameter 1 in a jar of radius 8 under `gravity`, velocities drawn from `seed` at kT =
-    0.1.
-    """
+    """`n` disks of diameter 1 in a jar of radius 8 under `gravity`; velocities (kT = 0.1) from `seed`."""
     return scene_from_dict(
         {
             "name": "jar",

@@ -24,9 +24,7 @@ from eventsim.scene.scene import Scene
 
 
 def scene(*, n_small: int = 200, n_large: int = 50, mass_ratio: float = 4.0, seed: int = 1) -> Scene:
-    """`n_small` disks of radius 0.02, `n_large` of 0.04 and `mass_ratio` times the mass, drawn from
-    `seed`.
-    """
+    """`n_small` disks, and `n_large` of twice the radius and `mass_ratio` times the mass; from `seed`."""
     small = {
         "count": n_small,
         "radius": 0.02,

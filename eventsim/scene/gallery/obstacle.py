@@ -23,9 +23,7 @@ from eventsim.scene.scene import Scene
 
 
 def scene(*, n: int = 160, speed: float = 1.0, radius: float = 2.0, seed: int = 1) -> Scene:
-    """Obstacle 0 of `radius` and `speed` in a torus 32 by 16 with `n` disks of diameter 1, kT = 1, from
-    `seed`.
-    """
+    """Obstacle 0 with `radius` and `speed` among `n` disks of diameter 1, kT = 1, drawn from `seed`."""
     return scene_from_dict(
         {
             "name": "obstacle",

@@ -26,9 +26,7 @@ from eventsim.scene.scene import Scene
 def scene(
     *, n: int = 256, packing_fraction: float = 0.5, arrangement: str = "hexagonal", seed: int = 1
 ) -> Scene:
-    """`n` disks filling `packing_fraction` of a torus 1 by sqrt(3)/2, in an `arrangement`, drawn from
-    `seed`.
-    """
+    """`n` disks fill `packing_fraction` of a torus in an `arrangement`; velocities drawn from `seed`."""
     return scene_from_dict(
         {
             "name": "periodic fluid",

@@ -30,12 +30,7 @@ from eventsim.scene.scene import Scene
 def scene(*, n: int = 2, separation: float = 1e-9, radius: float = 0.25) -> Scene:
     """`n` points `separation` apart, and a post of `radius` in the middle of a unit torus (disk 0)."""
     demand(n >= 1, "n", n, "must be at least 1")
-    demand(
-        0 < radius < 0.45,
-        "radius",
-        radius,
-        "must be above 0 and below 0.45, or the points start inside the post",
-    )
+    demand(0 < radius < 0.5, "radius", radius, "must be above 0 and below 0.5, half the torus")
     disks = Disks(
         position=[[0.0, 0.0]] + [[-0.5, -0.4 + separation * i] for i in range(n)],
         velocity=[[0.0, 0.0]] + [[0.8, 0.6]] * n,
