@@ -18,14 +18,66 @@ def mass_fractions(mass_a: float, mass_b: float) -> tuple[float, float]:
     return (0.5 * mass_a) / total, (0.5 * mass_b) / total
 
 
-def normal_change(approach: Real, distance2: Real, restitution: Real) -> Real:
-    """The factor q of the update v_a - q mu_b d, v_b + q mu_a d: (1 + e) (d.v) / d^2, with the actual d^2 at contact.
+def reduced_mass(mass_a: float, mass_b: float) -> float:
+    """m_a m_b / (m_a + m_b); the finite mass of a pair with an immovable disk; 0 with a tracer."""
+    share_a, share_b = mass_fractions(mass_a, mass_b)
+    return share_b * mass_a if math.isinf(mass_b) else share_a * mass_b
 
-    Dividing by the actual distance, not by the reach, keeps the energy to the last bits however the position is rounded.
+
+def pair_update(
+    dx: Real,
+    dy: Real,
+    ua: Real,
+    wa: Real,
+    ub: Real,
+    wb: Real,
+    share_a: Real,
+    share_b: Real,
+    restitution: Real,
+) -> tuple[Real, Real, Real, Real, Real]:
+    """(u_a, w_a, u_b, w_b, q) after contact of two disks at d = a - b: v_a - q mu_b d, v_b + q mu_a d.
+
+    q = (1 + e) (d.v) / d^2 with the actual d^2 at contact: so the energy is kept to the last bits however the positions are
+    rounded.  A pair that does not approach (a graze, by rounding) is left as it is, q = 0.
     """
-    return (1.0 + restitution) * (approach / distance2)
+    b = dx * (ua - ub) + dy * (wa - wb)
+    if not b < 0.0:
+        return ua, wa, ub, wb, 0.0
+    q = (1.0 + restitution) * (b / (dx * dx + dy * dy))
+    return (
+        ua - (q * share_b) * dx,
+        wa - (q * share_b) * dy,
+        ub + (q * share_a) * dx,
+        wb + (q * share_a) * dy,
+        q,
+    )
 
 
-def flat_reflection(v: Real, restitution: Real) -> Real:
-    """The velocity component after contact with a wall across the axis."""
-    return -(restitution * v)
+def wall_update(nx: Real, ny: Real, u: Real, w: Real, restitution: Real) -> tuple[Real, Real, Real]:
+    """(u, w, q) after contact with a wall whose normal (nx, ny), of any length, points to the disk: v - q n.
+
+    A disk that does not approach is left as it is, q = 0.
+    """
+    b = nx * u + ny * w
+    if not b < 0.0:
+        return u, w, 0.0
+    q = (1.0 + restitution) * (b / (nx * nx + ny * ny))
+    return u - q * nx, w - q * ny, q
+
+
+def flat_update(v: Real, side: float, restitution: Real) -> tuple[Real, Real]:
+    """(v, change) of the component across a wall of the domain, met from its side +1 or -1; reversal is exact."""
+    if not side * v < 0.0:
+        return v, 0.0
+    after = -(restitution * v)
+    return after, after - v
+
+
+def contact_restitution(restitution: Real, duration: float | None, since_a: Real, since_b: Real) -> Real:
+    """The restitution of a contact, given the times since the previous contacts of its disks (the TC model).
+
+    Source: S. Luding, S. McNamara, Granular Matter 1, 113 (1998), doi:10.1007/s100350050017.
+    """
+    if duration is None:
+        return restitution
+    return 1.0 if since_a < duration or since_b < duration else restitution

@@ -119,7 +119,16 @@ def _turn(
 
 
 def _closing(
-    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, low: Real, high: Real
+    dx: Real,
+    dy: Real,
+    du: Real,
+    dw: Real,
+    ax: Real,
+    ay: Real,
+    radius: Real,
+    side: float,
+    low: Real,
+    high: Real,
 ) -> Real:
     """Where a gap that falls from low to high closes: low if it is closed there already, NEVER if it stays open."""
     if not circle_gap(dx, dy, du, dw, ax, ay, radius, side, low) > 0.0:

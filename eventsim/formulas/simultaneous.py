@@ -72,7 +72,9 @@ def _resolve(
     if not rows:
         return
     factors = [(1 + Fraction(contacts[k].restitution)) * approach[k] for k in rows]
-    matrix = [[_coupling(contacts[j], normals[j], contacts[k], normals[k], inverse) for k in rows] for j in rows]
+    matrix = [
+        [_coupling(contacts[j], normals[j], contacts[k], normals[k], inverse) for k in rows] for j in rows
+    ]
     for k, value in zip(rows, complementary(matrix, factors), strict=True):
         if value == 0:
             continue
@@ -151,7 +153,9 @@ def _eliminate(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Frac
     solution = [Fraction(0)] * n
     for pivot in reversed(order):
         head = rows[pivot]
-        known = sum((value * solution[column] for column, value in head.items() if column != pivot), Fraction(0))
+        known = sum(
+            (value * solution[column] for column, value in head.items() if column != pivot), Fraction(0)
+        )
         solution[pivot] = (values[pivot] - known) / head[pivot]
     return solution
 

@@ -44,8 +44,21 @@ def face_side(shape: Face, x: Real, y: Real, vx: Real, vy: Real) -> int:
     return 1 if shape.nx * vx + shape.ny * vy > 0.0 else -1
 
 
+def face_normal(shape: Face, side: int) -> tuple[float, float]:
+    """The normal, of any length, that points to the disk."""
+    return side * shape.nx, side * shape.ny
+
+
 def face_delay(
-    shape: Face, x: Real, y: Real, vx: Real, vy: Real, gx: Acceleration, gy: Acceleration, radius: Real, met: int
+    shape: Face,
+    x: Real,
+    y: Real,
+    vx: Real,
+    vy: Real,
+    gx: Acceleration,
+    gy: Acceleration,
+    radius: Real,
+    met: int,
 ) -> tuple[Real, int]:
     """(delay, side) of the next contact with the face; met: the side last met, 0 if another contact came since."""
     if gx is None and met != 0:
@@ -61,10 +74,14 @@ def face_delay(
         return NEVER, side
     fall = shape.nx * gx + shape.ny * gy
     delay = closing_delay(side * distance - width, side * rate, side * fall)
-    if delay < NEVER and _within(shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)):
+    if delay < NEVER and _within(
+        shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
+    ):
         return delay, side
     delay = reopening_delay(-(side * distance) - width, -(side * rate), -(side * fall))
-    if delay < NEVER and _within(shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)):
+    if delay < NEVER and _within(
+        shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
+    ):
         return delay, -side
     return NEVER, side
 

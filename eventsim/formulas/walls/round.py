@@ -47,6 +47,11 @@ def arc(x0: float, y0: float, xm: float, ym: float, x1: float, y1: float) -> Arc
     return Arc(x0 + ux, y0 + uy, float(sqrt(ux * ux + uy * uy)), x0, y0, bx, by, sign)
 
 
+def round_normal(shape: Post | Container | Arc, side: int, x: Real, y: Real) -> tuple[Real, Real]:
+    """The normal, of any length, that points to a disk at (x, y): away from the centre outside (+1), to it inside (-1)."""
+    return side * (x - shape.x), side * (y - shape.y)
+
+
 def post_delay(
     shape: Post,
     x: Real,

@@ -1,0 +1,258 @@
+"""The stage: a scene in the numbers that engines and replay work with.
+
+Positions are relative to the domain's corner, walls are broken up into primitive shapes, what the scene does not have is
+None.  `origin` and `start_time` end here: a shifted or a late scene has the same stage, bit for bit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.formulas.walls.face import Face, face
+from eventsim.formulas.walls.round import Arc, Container, Post, arc
+from eventsim.scene import walls
+from eventsim.scene.domain import BOUNDARY_NAMES, Channel, Open, Periodic
+from eventsim.scene.scene import Scene
+
+Floats: TypeAlias = NDArray[np.float64]
+Shape: TypeAlias = Face | Post | Container | Arc
+Point: TypeAlias = tuple[float, float]
+
+LONGEST_PERIODIC_WINDOW = 13
+"""A window of 2**13 epochs: a disk that only wraps keeps its digits, and a gas that has cooled is not slowed much."""
+
+LONGEST_WINDOW = 900
+"""Without wraps nothing accumulates between contacts, so a quiet scene may have windows of any length."""
+
+
+class Boundary(NamedTuple):
+    """A hard wall of the domain: across axis 0 (x) or 1 (y), at `position`, met from above (+1) or from below (-1)."""
+
+    axis: int
+    position: float
+    side: float
+    wall: int
+
+
+class Feature(NamedTuple):
+    """A primitive shape, and the number of the wall that it belongs to."""
+
+    shape: Shape
+    wall: int
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """What an engine needs to know of a scene of n disks.
+
+    Attributes:
+        n: number of disks.
+        x, y, vx, vy: (n,) start, relative to the corner; length, length / time.
+        radius: (n,).
+        mass: (n,), or None where all are equal, finite and positive.
+        gravity: (gx, gy), or None.
+        pair_restitution, wall_restitution: 1.0 where elastic.
+        contact_duration: time, or None.
+        period: the period along x and y; None along an axis without one.
+        size: (width, height) of the domain, or None.
+        boundaries: hard walls of the domain.
+        features: shapes of the walls inside it; in a periodic domain with the images that disks can meet.
+        wall_names: the names that the walls have in an event log.
+        corner: what to add to a position to have it on the scene's axes.
+        start_time: what the scene's clock shows at remainder 0 of epoch 0.
+        epoch_length: time, a power of two.
+        window_cap: the largest exponent of a window.
+    """
+
+    n: int
+    x: Floats
+    y: Floats
+    vx: Floats
+    vy: Floats
+    radius: Floats
+    mass: Floats | None
+    gravity: Point | None
+    pair_restitution: float
+    wall_restitution: float
+    contact_duration: float | None
+    period: tuple[float | None, float | None]
+    size: Point | None
+    boundaries: tuple[Boundary, ...]
+    features: tuple[Feature, ...]
+    wall_names: tuple[str, ...]
+    corner: Point
+    start_time: float
+    epoch_length: float
+    window_cap: int
+
+    @property
+    def periodic(self) -> bool:
+        """Whether any axis is periodic."""
+        return self.period != (None, None)
+
+
+def stage_of(scene: Scene) -> Stage:
+    """The stage of a scene."""
+    disks, domain = scene.disks, scene.domain
+    corner = _corner(scene)
+    x, y = disks.position[:, 0] - corner[0], disks.position[:, 1] - corner[1]
+    vx, vy = disks.velocity[:, 0].copy(), disks.velocity[:, 1].copy()
+    size = None if isinstance(domain, Open) else domain.size
+    along_x = size[0] if size is not None and isinstance(domain, Periodic | Channel) else None
+    along_y = size[1] if size is not None and isinstance(domain, Periodic) else None
+    boundaries, names = _boundaries(scene)
+    restitution = scene.restitution
+    periodic = along_x is not None
+    return Stage(
+        n=len(disks),
+        x=x,
+        y=y,
+        vx=vx,
+        vy=vy,
+        radius=disks.radius,
+        mass=None if _all_equal(disks.mass) else disks.mass,
+        gravity=scene.gravity,
+        pair_restitution=1.0 if restitution is None else restitution.pair,
+        wall_restitution=1.0 if restitution is None else restitution.wall,
+        contact_duration=None if restitution is None else scene.contact_duration,
+        period=(along_x, along_y),
+        size=size,
+        boundaries=boundaries,
+        features=_features(scene, corner, (along_x, along_y), len(names)),
+        wall_names=(*names, *walls.feature_names(scene.walls)),
+        corner=corner,
+        start_time=scene.start_time,
+        epoch_length=_epoch_length(x, y, vx, vy, disks.radius, size, scene.gravity),
+        window_cap=LONGEST_PERIODIC_WINDOW if periodic else LONGEST_WINDOW,
+    )
+
+
+def _corner(scene: Scene) -> Point:
+    if isinstance(scene.domain, Open):
+        least = scene.disks.position.min(axis=0)
+        return float(least[0]), float(least[1])
+    return scene.domain.origin
+
+
+def _all_equal(mass: Floats) -> bool:
+    return bool(np.all(mass == mass[0]) and 0.0 < mass[0] < math.inf)
+
+
+def _boundaries(scene: Scene) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:
+    domain = scene.domain
+    if isinstance(domain, Open | Periodic):
+        return (), ()
+    width, height = domain.size
+    if isinstance(domain, Channel):
+        return (Boundary(1, 0.0, 1.0, 0), Boundary(1, height, -1.0, 1)), BOUNDARY_NAMES[2:]
+    return (
+        Boundary(0, 0.0, 1.0, 0),
+        Boundary(0, width, -1.0, 1),
+        Boundary(1, 0.0, 1.0, 2),
+        Boundary(1, height, -1.0, 3),
+    ), BOUNDARY_NAMES
+
+
+def _features(
+    scene: Scene, corner: Point, period: tuple[float | None, float | None], first_wall: int
+) -> tuple[Feature, ...]:
+    """All shapes, in the order of the walls; a chain has one post for each of its points."""
+    features: list[Feature] = []
+    reach = float(scene.disks.radius.max())
+    wall = first_wall
+    for item in scene.walls:
+        for shift in _shifts(item, corner, reach, period):
+            features.extend(Feature(shape, wall + offset) for shape, offset in _shapes(item, corner, shift))
+        wall += len(item.edges()) if isinstance(item, walls.Polygon | walls.Polyline) else 1
+    return tuple(features)
+
+
+def _shapes(item: walls.Wall, corner: Point, shift: Point) -> list[tuple[Shape, int]]:
+    """The shapes of one wall relative to the corner and shifted, each with the number of its edge."""
+
+    def place(p: Point) -> Point:
+        return (p[0] - corner[0]) + shift[0], (p[1] - corner[1]) + shift[1]
+
+    if isinstance(item, walls.Circle):
+        return [(Container(*place(item.center), item.radius), 0)]
+    if isinstance(item, walls.Arc):
+        start, through, end = place(item.start), place(item.through), place(item.end)
+        return [(arc(*start, *through, *end), 0), (Post(*start), 0), (Post(*end), 0)]
+    if isinstance(item, walls.Segment):
+        edges: tuple[tuple[Point, Point], ...] = ((item.start, item.end),)
+        posts = [(item.start, 0), (item.end, 0)]
+    else:
+        edges = item.edges()
+        posts = [(start, k) for k, (start, _) in enumerate(edges)]
+        if isinstance(item, walls.Polyline):
+            posts.append((item.points[-1], len(edges) - 1))
+    shapes: list[tuple[Shape, int]] = [(face(*place(a), *place(b)), k) for k, (a, b) in enumerate(edges)]
+    shapes.extend((Post(*place(p)), k) for p, k in posts)
+    return shapes
+
+
+def _span(item: walls.Wall, corner: Point) -> tuple[float, float, float, float]:
+    """Bounds (x0, y0, x1, y1) of a wall relative to the corner; of an arc, of its whole circle."""
+    if isinstance(item, walls.Circle):
+        (cx, cy), r = item.center, item.radius
+        points: list[Point] = [(cx - r, cy - r), (cx + r, cy + r)]
+    elif isinstance(item, walls.Arc):
+        whole = arc(*item.start, *item.through, *item.end)
+        points = [
+            (whole.x - whole.radius, whole.y - whole.radius),
+            (whole.x + whole.radius, whole.y + whole.radius),
+        ]
+    elif isinstance(item, walls.Segment):
+        points = [item.start, item.end]
+    else:
+        points = list(item.points)
+    xs, ys = [p[0] - corner[0] for p in points], [p[1] - corner[1] for p in points]
+    return min(xs), min(ys), max(xs), max(ys)
+
+
+def _shifts(
+    item: walls.Wall, corner: Point, reach: float, period: tuple[float | None, float | None]
+) -> list[Point]:
+    """The translations by periods that bring a wall within reach of a centre in the domain; a container has none."""
+    if isinstance(item, walls.Circle):
+        return [(0.0, 0.0)]
+    span = _span(item, corner)
+
+    def along(low: float, high: float, length: float | None) -> list[float]:
+        if length is None:
+            return [0.0]
+        first = math.ceil((-reach - high) / length)
+        last = math.floor((length + reach - low) / length)
+        return sorted((k * length for k in range(first, last + 1)), key=abs)
+
+    return [
+        (dx, dy) for dx in along(span[0], span[2], period[0]) for dy in along(span[1], span[3], period[1])
+    ]
+
+
+def _epoch_length(
+    x: Floats, y: Floats, vx: Floats, vy: Floats, radius: Floats, size: Point | None, gravity: Point | None
+) -> float:
+    """About the time in which the fastest disk flies from one disk to the next: a power of two.
+
+    Only exponents enter, so that a scene with all velocities times 2**k has an epoch of exactly 2**-k times the length.
+    """
+    width, height = size if size is not None else (float(x.max()), float(y.max()))
+    extent = max(math.sqrt(width) * math.sqrt(height), float(radius.max()))
+    if size is None:
+        extent = max(extent, width, height)
+    length = math.frexp(extent / math.sqrt(len(x)) or 1.0)[1]
+    speeds = []
+    fastest = max(float(np.abs(vx).max()), float(np.abs(vy).max()))
+    if fastest > 0.0:
+        speeds.append(math.frexp(fastest)[1])
+    if gravity is not None:
+        pull = max(abs(gravity[0]), abs(gravity[1]))
+        speeds.append((math.frexp(pull)[1] + length) // 2)
+    exponent = length - max(speeds, default=0)
+    return math.ldexp(1.0, max(-1000, min(exponent, 900)))
