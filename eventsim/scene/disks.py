@@ -77,6 +77,11 @@ class Disks:
     def __len__(self) -> int:
         return len(self.position)
 
+    def select(self, index: NDArray[np.int64]) -> Disks:
+        """The disks with these indices (M,), in this order."""
+        position, velocity, radius, mass = (array[index] for array in self._arrays())
+        return Disks(position, velocity, radius, mass)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Disks):
             return NotImplemented

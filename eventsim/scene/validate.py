@@ -1,13 +1,211 @@
-"""Which numbers a scene may hold, and which disks may be where."""
+"""The rules of a scene: which numbers it may hold, and which disks may be where."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Iterator
+from itertools import islice
 from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.scene.disks import Disks
+from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
+from eventsim.scene.names import DiskNames, SelectedNames
+from eventsim.scene.overlaps import (
+    ENOUGH,
+    Found,
+    boundary_overlaps,
+    feature_overlaps,
+    pair_overlaps,
+)
+from eventsim.scene.wall_rules import wall_problems
+from eventsim.scene.walls import features
 
 if TYPE_CHECKING:
     from eventsim.scene.scene import Scene
 
+# Of many problems of one kind so many are written out; the rest are counted.
+WRITTEN_OUT = 3
 
-def find_problems(scene: Scene) -> list[str]:
-    """Every rule that the scene breaks, one sentence each."""
-    return [] if len(scene.disks) else ["a scene needs at least one disk"]
+
+def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
+    """Every rule that the scene breaks, one sentence each; many of one kind are counted.
+
+    Args:
+        scene: the scene; only types have been checked so far.
+        names: how to call the disks; by index if None.
+    """
+    names = names or DiskNames()
+    shapes = [*_domain_problems(scene.domain), *wall_problems(scene)]
+    problems = [*_scalar_problems(scene), *shapes]
+    if not len(scene.disks):
+        return [*problems, "disk: a scene needs at least one disk"]
+    sound = np.ones(len(scene.disks), dtype=np.bool_)
+    problems += _number_problems(scene.disks, names, sound)
+    # In a domain that is none, among walls that are none, a place would mean nothing.
+    if not shapes:
+        if sound.all():
+            problems += _place_problems(scene.disks, scene, names)
+        else:
+            index = np.flatnonzero(sound)
+            problems += _place_problems(scene.disks.select(index), scene, SelectedNames(names, index))
+    return problems
+
+
+def touching_by_rounding(scene: Scene) -> list[str]:
+    """The overlaps of a scene that are so small that they count as touching, one sentence each."""
+    disks, domain, pieces = scene.disks, scene.domain, features(scene.walls)
+    pairs = pair_overlaps(disks, domain).touching()
+    walls = feature_overlaps(disks, domain, pieces).touching()
+    sides = boundary_overlaps(disks, domain).touching()
+    touch = "overlap by {:.3g}: touching, but for rounding"
+    return [
+        *_summary(pairs, "pairs like this", lambda i, j, d: f"disk[{i}] and disk[{j}] " + touch.format(d)),
+        *_summary(
+            walls, "disks at walls", lambda i, w, d: f"disk[{i}] and wall {pieces[w].name} " + touch.format(d)
+        ),
+        *_summary(
+            sides,
+            "disks at a side",
+            lambda i, s, d: f"disk[{i}] and the {BOUNDARY_NAMES[s]} side " + touch.format(d),
+        ),
+    ]
+
+
+def _scalar_problems(scene: Scene) -> Iterator[str]:
+    """Rules for the single numbers of a scene."""
+    if scene.gravity is not None and not all(map(math.isfinite, scene.gravity)):
+        yield f"gravity = {list(scene.gravity)}: must be two finite numbers"
+    if scene.restitution is not None:
+        for key in ("pair", "wall"):
+            value = getattr(scene.restitution, key)
+            if not 0.0 <= value <= 1.0:
+                yield f"restitution.{key} = {value}: must be from 0 to 1"
+    if scene.contact_duration is not None and not 0.0 <= scene.contact_duration < math.inf:
+        yield f"contact_duration = {scene.contact_duration}: must be a finite time, at least 0"
+    if not math.isfinite(scene.start_time):
+        yield f"start_time = {scene.start_time}: must be finite"
+    elif scene.until is not None and not scene.start_time <= scene.until < math.inf:
+        yield f"until = {scene.until}: must be finite and not before start_time = {scene.start_time}"
+    if scene.events is not None and scene.events < 0:
+        yield f"events = {scene.events}: must be at least 0"
+
+
+def _domain_problems(domain: Domain) -> Iterator[str]:
+    """Rules for size and origin."""
+    if isinstance(domain, Open):
+        return
+    if not all(0.0 < length < math.inf for length in domain.size):
+        yield f"domain.size = {list(domain.size)}: both lengths must be finite and above 0"
+    if not all(map(math.isfinite, domain.origin)):
+        yield f"domain.origin = {list(domain.origin)}: must be two finite numbers"
+
+
+def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -> list[str]:
+    """Rules for the single numbers of each disk; marks in `sound` (N,) the disks that break one."""
+    with np.errstate(invalid="ignore"):
+        rules = {
+            "position": (np.isfinite(disks.position).all(axis=1), "must be two finite numbers"),
+            "velocity": (np.isfinite(disks.velocity).all(axis=1), "must be two finite numbers"),
+            "radius": (np.isfinite(disks.radius) & (disks.radius >= 0.0), "must be finite and at least 0"),
+            "mass": (disks.mass >= 0.0, "must be at least 0 (inf: cannot be deflected)"),
+        }
+    problems: list[str] = []
+    for key, (kept, rule) in rules.items():
+        sound &= kept
+        broken = np.flatnonzero(~kept)
+        value = getattr(disks, key)
+        problems += [f"{names.key(int(i), key)} = {value[i].tolist()}: {rule}" for i in broken[:WRITTEN_OUT]]
+        problems += _rest(len(broken), f"disks whose {key} {rule}")
+    return problems
+
+
+def _place_problems(disks: Disks, scene: Scene, names: DiskNames) -> list[str]:
+    """Rules for where disks are, among the walls of a scene."""
+    domain = scene.domain
+    outside, problems = _periodic_problems(disks, domain, names)
+    problems += _summary(
+        boundary_overlaps(disks, domain).broken(),
+        "disks that are outside",
+        lambda i, side, depth: (
+            f"{names.disk(i)} (center {_at(disks, i)}, radius {disks.radius[i]}) reaches {depth:.6g} beyond the"
+            f" {BOUNDARY_NAMES[side]} side: must be inside the domain {_extent(domain)}"
+        ),
+    )
+    pieces = features(scene.walls)
+    problems += _summary(
+        feature_overlaps(disks, domain, pieces).broken(),
+        "disks that are across a wall",
+        lambda i, wall, depth: (
+            f"{names.disk(i)} (center {_at(disks, i)}, radius {disks.radius[i]}) lies {depth:.6g} across"
+            f" {pieces[wall].kind} {pieces[wall].name}: a disk must not reach "
+            + ("out of its container" if pieces[wall].kind == "circle" else "into a wall")
+        ),
+    )
+    if not outside.any():
+        problems += _summary(
+            pair_overlaps(disks, domain).broken(),
+            "pairs of disks that overlap",
+            lambda i, j, depth: (
+                f"{names.disk(i)} and {names.disk(j)} overlap by {depth:.6g} (centers {_at(disks, i)} and"
+                f" {_at(disks, j)}, radii {disks.radius[i]} and {disks.radius[j]}):"
+                " disks may touch, not overlap"
+            ),
+        )
+    return problems
+
+
+def _periodic_problems(disks: Disks, domain: Domain, names: DiskNames) -> tuple[NDArray[np.bool_], list[str]]:
+    """Which disks have their centre outside of a period, and rules that only periodic directions have."""
+    outside = np.zeros(len(disks), dtype=np.bool_)
+    problems: list[str] = []
+    for axis, letter in enumerate("xy"):
+        if isinstance(domain, Open) or not domain.periodic[axis]:
+            continue
+        length = domain.size[axis]
+        place = disks.position[:, axis] - domain.origin[axis]
+        out = (place < 0.0) | (place >= length)
+        outside |= out
+        wide = np.flatnonzero(2.0 * disks.radius > length)
+        problems += [
+            f"{names.disk(int(i))}: center {_at(disks, int(i))}: {letter} must be at least {domain.origin[axis]}"
+            f" and below {domain.origin[axis] + length} (the {domain.kind} domain repeats there)"
+            for i in np.flatnonzero(out)[:WRITTEN_OUT]
+        ]
+        problems += _rest(int(out.sum()), f"disks whose center is outside the domain in {letter}")
+        problems += [
+            f"{names.key(int(i), 'radius')} = {disks.radius[i]}: the diameter must be at most the period {length},"
+            " or the disk overlaps its own image"
+            for i in wide[:WRITTEN_OUT]
+        ]
+        problems += _rest(len(wide), "disks that are wider than the period")
+    return outside, problems
+
+
+def _summary(found: Found, kind: str, sentence: Callable[[int, int, float], str]) -> list[str]:
+    """The first overlaps as sentences, the others counted."""
+    columns = zip(found.disk.tolist(), found.other.tolist(), found.depth.tolist(), strict=True)
+    written = [sentence(*overlap) for overlap in islice(columns, WRITTEN_OUT)]
+    return written + _rest(len(found), kind)
+
+
+def _rest(count: int, kind: str) -> list[str]:
+    """The line that counts what is not written out, if anything."""
+    more = "at least " if count >= ENOUGH else ""
+    return [f"... and {more}{count - WRITTEN_OUT} more {kind}"] if count > WRITTEN_OUT else []
+
+
+def _at(disks: Disks, index: int) -> str:
+    """Where a disk is."""
+    x, y = disks.position[index].tolist()
+    return f"({x}, {y})"
+
+
+def _extent(domain: Domain) -> str:
+    """The region of a domain in words."""
+    if isinstance(domain, Open):
+        return "the open plane"
+    (x, y), (width, height) = domain.origin, domain.size
+    return f"[{x}, {x + width}] x [{y}, {y + height}]"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
 from eventsim.errors import SceneError
@@ -84,6 +84,7 @@ class Circle:
 
 
 Wall: TypeAlias = Segment | Polygon | Polyline | Arc | Circle
+Feature: TypeAlias = Segment | Arc | Circle
 WALLS: dict[str, type[Wall]] = {kind.kind: kind for kind in (Segment, Polygon, Polyline, Arc, Circle)}
 
 
@@ -92,15 +93,20 @@ def wall_names(walls: Sequence[Wall]) -> tuple[str, ...]:
     return tuple(f"wall{i}" if wall.name is None else wall.name for i, wall in enumerate(walls))
 
 
-def feature_names(walls: Sequence[Wall]) -> tuple[str, ...]:
-    """The names that an event log uses, in order: a chain gives NAME.0, NAME.1, ... for its edges."""
-    names: list[str] = []
+def features(walls: Sequence[Wall]) -> tuple[Feature, ...]:
+    """The walls in single pieces, each with its name: a chain gives its edges as NAME.0, NAME.1, ..."""
+    pieces: list[Feature] = []
     for wall, name in zip(walls, wall_names(walls), strict=True):
         if isinstance(wall, Polygon | Polyline):
-            names.extend(f"{name}.{i}" for i in range(len(wall.edges())))
+            pieces.extend(Segment(start, end, f"{name}.{i}") for i, (start, end) in enumerate(wall.edges()))
         else:
-            names.append(name)
-    return tuple(names)
+            pieces.append(replace(wall, name=name))
+    return tuple(pieces)
+
+
+def feature_names(walls: Sequence[Wall]) -> tuple[str, ...]:
+    """The names that an event log uses, in order: those of the features."""
+    return tuple(str(feature.name) for feature in features(walls))
 
 
 def _set_points(wall: Wall, *keys: str) -> None:

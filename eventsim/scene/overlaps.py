@@ -1,0 +1,162 @@
+"""Which disks of a scene reach into each other, into walls or out of the domain, and how deep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventsim.scene.cells import Cells, Indices
+from eventsim.scene.disks import Disks, Floats
+from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
+from eventsim.scene.numbers import Point
+from eventsim.scene.outlines import circle_through, wall_overlaps
+from eventsim.scene.walls import Arc, Circle, Feature
+
+# Decimal input and lattices are rounded: an overlap up to so many units in the last place of the largest
+# coordinate or reach counts as touching.
+TOUCHING_ULP = 16
+# More overlaps than this are not counted: somebody put a whole gas in one place.
+ENOUGH = 100_000
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """M overlaps, ordered by disk; `other` is a disk, a feature or a side of the domain.
+
+    Attributes:
+        disk, other: indices (M,).
+        depth: length (M,), positive.
+        rounding: depth (M,) up to which an overlap counts as touching.
+    """
+
+    disk: Indices
+    other: Indices
+    depth: Floats
+    rounding: Floats
+
+    def touching(self) -> Found:
+        """Those that count as touching."""
+        return self._where(self.depth <= self.rounding)
+
+    def broken(self) -> Found:
+        """Those that are deeper than rounding explains."""
+        return self._where(self.depth > self.rounding)
+
+    def __len__(self) -> int:
+        return len(self.disk)
+
+    def _where(self, mask: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Found:
+        return Found(self.disk[mask], self.other[mask], self.depth[mask], self.rounding[mask])
+
+
+def period_of(domain: Domain) -> Point:
+    """The period of a domain along x and y; inf where there is none."""
+    if domain.size is None:
+        return math.inf, math.inf
+    (width, height), (along_x, along_y) = domain.size, domain.periodic
+    return (width if along_x else math.inf), (height if along_y else math.inf)
+
+
+def pair_overlaps(disks: Disks, domain: Domain) -> Found:
+    """Pairs of disks that overlap, disk < other; all positions inside the domain.
+
+    Near O(N), also where radii differ widely; the search ends when ENOUGH have been found.
+    """
+    position = disks.position - np.array(_corner(disks, domain))
+    scale = coordinate_scale(disks, domain)
+    chunks: list[Found] = []
+    count = 0
+    for found in Cells(position, disks.radius, disks.mass, period_of(domain)).pairs():
+        low, high = np.minimum(found.first, found.second), np.maximum(found.first, found.second)
+        reach = disks.radius[low] + disks.radius[high]
+        rounding = touching_depth(np.maximum(np.maximum(scale[low], scale[high]), reach))
+        chunks.append(Found(low, high, found.depth, rounding))
+        count += len(low)
+        if count >= ENOUGH:
+            break
+    return _gather(chunks)
+
+
+def feature_overlaps(disks: Disks, domain: Domain, features: Sequence[Feature]) -> Found:
+    """Disks that lie across a wall or reach out of a container; `other` counts the features."""
+    scale = coordinate_scale(disks, domain)
+    chunks: list[Found] = []
+    for index, near, deep in wall_overlaps(
+        features, disks.position, disks.radius, domain.origin, period_of(domain)
+    ):
+        size = feature_scale(features[index], _corner(disks, domain))
+        rounding = touching_depth(np.maximum(scale[near], size))
+        chunks.append(Found(near, np.full(len(near), index), deep, rounding))
+    return _gather(chunks)
+
+
+def boundary_overlaps(disks: Disks, domain: Domain) -> Found:
+    """Disks that reach out of the hard sides of the domain; `other` counts BOUNDARY_NAMES."""
+    if isinstance(domain, Open):
+        return _gather([])
+    rounding = touching_depth(np.maximum(coordinate_scale(disks, domain), max(domain.size)))
+    chunks: list[Found] = []
+    for side in range(len(BOUNDARY_NAMES)):
+        axis, upper = divmod(side, 2)
+        if domain.periodic[axis]:
+            continue
+        place = disks.position[:, axis] - domain.origin[axis]
+        deep = disks.radius - (domain.size[axis] - place if upper else place)
+        out = np.flatnonzero(deep > 0.0)
+        chunks.append(Found(out, np.full(len(out), side), deep[out], rounding[out]))
+    return _gather(chunks)
+
+
+def touching_depth(scale: Floats) -> Floats:
+    """The depth up to which an overlap counts as touching, where the largest length is `scale`."""
+    depth: Floats = TOUCHING_ULP * np.spacing(scale)
+    return depth
+
+
+def coordinate_scale(disks: Disks, domain: Domain) -> Floats:
+    """The largest length that the place of each disk is rounded to, (N,).
+
+    That is its coordinate as given, its coordinate from the corner, or its radius.
+    """
+    given = np.abs(disks.position).max(axis=1)
+    relative = np.abs(disks.position - np.array(_corner(disks, domain))).max(axis=1)
+    scale: Floats = np.maximum(np.maximum(given, relative), disks.radius)
+    return scale
+
+
+def feature_scale(feature: Feature, corner: Point = (0.0, 0.0)) -> float:
+    """The largest length that the place of a wall is rounded to."""
+    radius = 0.0
+    if isinstance(feature, Circle):
+        points, radius = [feature.center], feature.radius
+    elif isinstance(feature, Arc):
+        points = [feature.start, feature.through, feature.end]
+        radius = circle_through(feature.start, feature.through, feature.end)[1]
+    else:
+        points = [feature.start, feature.end]
+    return max(radius, *(max(abs(p[k]), abs(p[k] - corner[k])) for p in points for k in (0, 1)))
+
+
+def _corner(disks: Disks, domain: Domain) -> Point:
+    """Where positions are counted from: the corner of the domain, in the open the least x and y of the disks."""
+    if isinstance(domain, Open) and len(disks):
+        x, y = disks.position.min(axis=0)
+        return float(x), float(y)
+    return domain.origin
+
+
+def _gather(chunks: list[Found]) -> Found:
+    """Overlaps ordered by disk and other; of a pair that overlaps in several images the deepest."""
+    none = np.empty(0, dtype=np.int64)
+    disk = np.concatenate([none, *(chunk.disk for chunk in chunks)])
+    other = np.concatenate([none, *(chunk.other for chunk in chunks)])
+    depth = np.concatenate([np.empty(0), *(chunk.depth for chunk in chunks)])
+    rounding = np.concatenate([np.empty(0), *(chunk.rounding for chunk in chunks)])
+    order = np.lexsort((-depth, other, disk))
+    disk, other = disk[order], other[order]
+    first = np.ones(len(disk), dtype=np.bool_)
+    first[1:] = (disk[1:] != disk[:-1]) | (other[1:] != other[:-1])
+    return Found(disk[first], other[first], depth[order][first], rounding[order][first])

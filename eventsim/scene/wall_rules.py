@@ -1,0 +1,92 @@
+"""The rules of walls: shapes that are shapes, and names that tell them apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
+from eventsim.scene.outlines import circle_through
+from eventsim.scene.walls import Arc, Circle, Polygon, Polyline, Segment, Wall, wall_names
+
+if TYPE_CHECKING:
+    from eventsim.scene.scene import Scene
+
+
+def wall_problems(scene: Scene) -> list[str]:
+    """Every rule that the walls of a scene break, one sentence each."""
+    problems = list(_name_problems(scene.walls))
+    for i, wall in enumerate(scene.walls):
+        broken = list(_shape_problems(wall)) or list(_container_problems(wall, scene.domain))
+        problems += [f"wall[{i}]{key}" for key in broken]
+    return problems
+
+
+def _name_problems(walls: tuple[Wall, ...]) -> Iterator[str]:
+    """Names are unique in the log, edges included, and fit into a line of it."""
+    owner: dict[str, int] = {}
+    for i, (wall, name) in enumerate(zip(walls, wall_names(walls), strict=True)):
+        if not name.strip() or any(mark in name for mark in ',"\n\r'):
+            rule = "must not be empty nor hold a comma, a quotation mark or a line end"
+            yield f"wall[{i}].name = {name!r}: {rule}"
+        elif name in BOUNDARY_NAMES:
+            yield f"wall[{i}].name = {name!r}: left, right, bottom and top are the sides of the domain"
+        edges = len(wall.edges()) if isinstance(wall, Polygon | Polyline) else 0
+        taken = {name, *(f"{name}.{k}" for k in range(edges))}
+        for used in sorted(taken & owner.keys()):
+            yield f"wall[{i}]: the name {used!r} is taken by wall[{owner[used]}]: names must be unique"
+        owner |= dict.fromkeys(taken, i)
+
+
+def _shape_problems(wall: Wall) -> Iterator[str]:
+    """Rules of one wall, each beginning with the key that breaks it."""
+    if isinstance(wall, Segment):
+        keys = {".start": wall.start, ".end": wall.end}
+    elif isinstance(wall, Arc):
+        keys = {".start": wall.start, ".through": wall.through, ".end": wall.end}
+    elif isinstance(wall, Circle):
+        keys = {".center": wall.center}
+        if not 0.0 < wall.radius < math.inf:
+            yield f".radius = {wall.radius}: must be finite and above 0"
+    else:
+        keys = {f".points[{k}]": p for k, p in enumerate(wall.points)}
+    infinite = [key for key, p in keys.items() if not all(map(math.isfinite, p))]
+    yield from (f"{key} = {list(keys[key])}: must be two finite numbers" for key in infinite)
+    if infinite:
+        return
+    if isinstance(wall, Segment) and wall.start == wall.end:
+        yield f": start and end are the same point {wall.start}: a segment needs a length"
+    elif isinstance(wall, Arc) and not _is_round(wall):
+        yield (
+            f": start {wall.start}, through {wall.through} and end {wall.end} do not determine a circle:"
+            " they must be three points that are not on a line (use a segment)"
+        )
+    elif not isinstance(wall, Segment | Arc | Circle):
+        least = 3 if isinstance(wall, Polygon) else 2
+        if len(wall.points) < least:
+            yield f".points has {len(wall.points)} point(s): a {wall.kind} needs at least {least}"
+            return
+        for k, (start, end) in enumerate(wall.edges()):
+            if start == end:
+                hint = " (a polygon closes by itself)" if k == len(wall.points) - 1 else ""
+                yield f".points[{k}] and the next point are the same, {start}: an edge needs a length{hint}"
+
+
+def _is_round(arc: Arc) -> bool:
+    """Whether three points determine a circle that floats can hold."""
+    (x, y), radius = circle_through(arc.start, arc.through, arc.end)
+    return (
+        all(map(math.isfinite, (x, y, radius))) and radius > 0.0 and arc.through not in (arc.start, arc.end)
+    )
+
+
+def _container_problems(wall: Wall, domain: Domain) -> Iterator[str]:
+    """A container must not stick out of a period: disks cannot be inside it and inside its image."""
+    if not isinstance(wall, Circle) or isinstance(domain, Open):
+        return
+    for axis, letter in enumerate("xy"):
+        low = wall.center[axis] - wall.radius - domain.origin[axis]
+        if domain.periodic[axis] and (low < 0.0 or low + 2.0 * wall.radius > domain.size[axis]):
+            rule = "it must fit inside the domain"
+            yield f".radius = {wall.radius}: the circle reaches beyond the period in {letter}: {rule}"
