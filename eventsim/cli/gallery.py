@@ -70,9 +70,7 @@ def _list(as_json: bool, quiet: bool) -> None:
         click.echo("\neventsim gallery NAME tells the story of one, eventsim run NAME runs it")
 
 
-def _tell(
-    name: str, copy: str | None, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool
-) -> None:
+def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool) -> None:
     """Print the story of one scene, or copy it into a file."""
     from eventsim.cli.choose import SCENE_SUFFIXES, built_in_scene
     from eventsim.cli.words import aligned, as_json_text

@@ -89,8 +89,7 @@ def command(
     chosen = chosen_scene(asked, settings, seed)
     if until is None and events is None and chosen.until is None and chosen.events is None:
         raise click.UsageError(
-            f"nothing says when to stop {asked}: give --until T or --events N, or a key until or events "
-            "in the scene"
+            f"nothing says when to stop {asked}: give --until T or --events N, or a key until or events in the scene"
         )
     with ProgressBar(quiet=quiet) as progress:
         run = simulate(

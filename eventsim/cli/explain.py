@@ -1,0 +1,154 @@
+"""What a scene needs, in words: one short paragraph for each topic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from eventsim.cli.words import plural, point, short
+from eventsim.engines.reference.cells import ENOUGH_DISKS
+
+if TYPE_CHECKING:
+    from eventsim.cli.needs import Needs
+
+DOMAINS = {
+    "box": "hard walls left, right, bottom and top",
+    "periodic": "what leaves on one side comes in on the other; no walls, no corners",
+    "channel": "periodic along x, hard walls bottom and top",
+}
+SHAPES = {"face": "straight face", "post": "post", "arc": "arc", "container": "container"}
+
+
+def explanation(needs: Needs) -> Iterator[tuple[str, str]]:
+    """Yield (topic, words), in the order in which a scene file is read; then the machinery."""
+    yield "disks", _disks(needs)
+    yield "motion", _motion(needs)
+    yield "domain", _domain(needs)
+    if needs.walls:
+        yield "walls", _walls(needs)
+    yield "flights", _flights(needs)
+    yield "contacts", _contacts(needs)
+    for sentence in needs.touching:
+        yield "start", sentence
+    yield "search", _search(needs)
+    yield "clock", _clock(needs)
+    yield "engine", _engine(needs)
+    yield "stop", _stop(needs)
+
+
+def _disks(needs: Needs) -> str:
+    if needs.species_count == 1:
+        text = f"{plural(needs.disks, 'disk')}, radius {short(needs.radii[0])}, mass {short(needs.masses[0])}"
+    else:
+        species = [f"{s.count:,} of radius {short(s.radius)}, mass {short(s.mass)}" for s in needs.species]
+        rest = needs.species_count - len(species)
+        if rest > 0:
+            species.append(f"and {plural(rest, 'more kind')}")
+        text = f"{plural(needs.disks, 'disk')}: {'; '.join(species)}"
+    if needs.packing_fraction is not None:
+        text += f"; they cover {100 * needs.packing_fraction:.3g} % of the domain"
+    parts = []
+    if needs.immovable:
+        parts.append("mass inf: nothing deflects it, and gravity does not act on it")
+    if needs.tracers:
+        parts.append("mass 0: a tracer, which deflects nobody")
+    return ". ".join([text, *(part[0].upper() + part[1:] for part in parts)])
+
+
+def _motion(needs: Needs) -> str:
+    if needs.moving == 0:
+        return "all at rest"
+    text = f"{needs.moving:,} of {needs.disks:,} move" if needs.moving < needs.disks else "all move"
+    text = "it moves" if needs.disks == 1 else text
+    text += f", the fastest at {short(needs.fastest)}"
+    if needs.temperature is not None and needs.disks > 1:
+        text += f"; mean m v^2/2 is {short(needs.temperature)} (kT of a gas at rest as a whole)"
+    return text
+
+
+def _domain(needs: Needs) -> str:
+    if needs.size is None:
+        return "the open plane: no boundary"
+    place = "" if needs.origin == (0.0, 0.0) else f" from {point(*needs.origin)}"
+    return f"{needs.domain} {short(needs.size[0])} x {short(needs.size[1])}{place}: {DOMAINS[needs.domain]}"
+
+
+def _walls(needs: Needs) -> str:
+    named = ", ".join(f"{name} ({kind})" for name, kind in needs.walls.items())
+    shapes = ", ".join(plural(count, SHAPES[shape]) for shape, count in needs.shapes.items())
+    images = ", periodic images included" if needs.domain in ("periodic", "channel") else ""
+    return f"{named}; made of {shapes}{images}, each tried by every disk"
+
+
+def _flights(needs: Needs) -> str:
+    if needs.gravity is None:
+        return "straight lines: no gravity, and no term is computed for it"
+    text = f"parabolas, gravity {point(*needs.gravity)}; it cancels between disks, so only walls see the curve"
+    if any(needs.shapes.get(shape, 0) for shape in ("post", "arc", "container")):
+        text += "; a parabola against a round wall or a wall's end is a quartic, solved by bracketing"
+    if needs.immovable:
+        text += "; disks of mass inf fly straight, so others meet them on parabolas too"
+    return text
+
+
+def _contacts(needs: Needs) -> str:
+    if needs.restitution is None:
+        return "elastic: energy is conserved, and the run ends with the share of it that rounding changed"
+    pair, wall = needs.restitution
+    text = f"restitution {short(pair)} between disks, {short(wall)} at walls: energy is lost"
+    if needs.contact_duration is not None:
+        return (
+            f"{text}; a contact within {short(needs.contact_duration)} of a disk's previous one is elastic "
+            "(TC model), so contacts cannot pile up without end"
+        )
+    return f"{text}; contacts may pile up at an instant, then the run stops and says so (contact_duration avoids it)"
+
+
+def _search(needs: Needs) -> str:
+    search = needs.search
+    if needs.disks == 1:
+        text = "a single disk: no pairs"
+    elif search.side is None:
+        text = f"all pairs: each disk is tried against every other; {_why_all_pairs(needs)}"
+    else:
+        count = "" if search.columns is None else f", {search.columns} x {search.rows} of them"
+        text = (
+            f"cells of {short(search.side[0])} x {short(search.side[1])}{count}: a disk is tried against those "
+            "in its own cell and the eight around it"
+        )
+    if needs.domain in ("periodic", "channel") and needs.disks > 1:
+        text += (
+            "; the largest reach is more than half the period, so several images of a pair are tried"
+            if needs.images
+            else "; only the nearest image of a pair can be next"
+        )
+    return text
+
+
+def _why_all_pairs(needs: Needs) -> str:
+    if needs.disks < ENOUGH_DISKS:
+        return "cells would cost more than they save for so few"
+    return "the domain is too small for cells as wide as the largest disks need them"
+
+
+def _clock(needs: Needs) -> str:
+    exponent = math.frexp(needs.epoch_length)[1] - 1
+    start = "" if needs.start_time == 0.0 else f"starts at {short(needs.start_time)}; "
+    return f"{start}counts epochs of 2^{exponent} = {short(needs.epoch_length)} and a remainder, so it keeps its digits"
+
+
+def _engine(needs: Needs) -> str:
+    return f"{needs.engine} (what auto chooses here)"
+
+
+def _stop(needs: Needs) -> str:
+    stops = []
+    if needs.until is not None:
+        stops.append(f"at time {short(needs.until)}")
+    if needs.events is not None:
+        stops.append(f"after {plural(needs.events, 'event')}")
+    if not stops:
+        return "not said in the scene: give --until or --events to eventsim run"
+    first = " or ".join(stops) + (", whichever comes first" if len(stops) == 2 else "")
+    return f"{first}; earlier if no event is ahead"

@@ -1,0 +1,162 @@
+"""What a scene has, and therefore needs: the facts that `eventsim check` explains."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from eventsim.engines.reference.cells import plan
+from eventsim.scene.stage import stage_of
+from eventsim.scene.walls import wall_names
+
+if TYPE_CHECKING:
+    from eventsim.scene import Disks, Scene
+    from eventsim.scene.stage import Stage
+
+SPECIES_SHOWN = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Species:
+    """Disks of one radius and one mass, and how many there are."""
+
+    count: int
+    radius: float
+    mass: float
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How the neighbours of a disk are found: among all others (no grid), or in cells of a side (x, y), length."""
+
+    kind: Literal["all pairs", "cells"]
+    side: tuple[float, float] | None = None
+    columns: int | None = None
+    rows: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Needs:
+    """The facts about a scene.
+
+    Attributes:
+        disks: their number; moving, immovable (mass inf) and tracers (mass 0) count some of them.
+        species: the commonest radius-mass combinations, at most SPECIES_SHOWN; species_count: how many there are.
+        radii, masses: (least, largest).
+        fastest: largest speed at the start, length / time.
+        temperature: kT = sum m |v|^2 / 2N over disks of finite positive mass; None where there are none.
+        packing_fraction: area of the disks over that of the domain; None on the open plane.
+        domain, size, origin: its kind, width and height, lower-left corner.
+        walls: name -> kind of the walls inside the domain.
+        shapes: name -> number of the primitive shapes that the walls are made of, periodic images included.
+        gravity, restitution, contact_duration: None without; restitution (pair, wall).
+        epoch_length: time, a power of two.
+        search: all pairs or cells.
+        images: whether a pair of disks can meet through several periodic images at once.
+        touching: sentences on starting contacts that are touching only up to rounding.
+        until, events: the stop that the scene carries.
+        engine: what `auto` chooses.
+    """
+
+    disks: int
+    moving: int
+    immovable: int
+    tracers: int
+    species: tuple[Species, ...]
+    species_count: int
+    radii: tuple[float, float]
+    masses: tuple[float, float]
+    fastest: float
+    temperature: float | None
+    packing_fraction: float | None
+    domain: str
+    size: tuple[float, float] | None
+    origin: tuple[float, float]
+    walls: dict[str, str]
+    shapes: dict[str, int]
+    gravity: tuple[float, float] | None
+    restitution: tuple[float, float] | None
+    contact_duration: float | None
+    start_time: float
+    epoch_length: float
+    search: Search
+    images: bool
+    touching: tuple[str, ...]
+    until: float | None
+    events: int | None
+    engine: str
+
+
+def needs_of(scene: Scene) -> Needs:
+    """Return the facts about a scene; O(N log N) for N disks."""
+    disks, domain, stage = scene.disks, scene.domain, stage_of(scene)
+    species, species_count = _species(disks)
+    speed = np.hypot(disks.velocity[:, 0], disks.velocity[:, 1])
+    size = domain.size
+    shapes = Counter(type(feature.shape).__name__.lower() for feature in stage.features)
+    return Needs(
+        disks=len(disks),
+        moving=int(np.count_nonzero(speed)),
+        immovable=int(np.count_nonzero(np.isinf(disks.mass))),
+        tracers=int(np.count_nonzero(disks.mass == 0.0)),
+        species=species,
+        species_count=species_count,
+        radii=(float(disks.radius.min()), float(disks.radius.max())),
+        masses=(float(disks.mass.min()), float(disks.mass.max())),
+        fastest=float(speed.max()),
+        temperature=_temperature(disks, speed),
+        packing_fraction=None if size is None else float(np.pi * (disks.radius**2).sum()) / (size[0] * size[1]),
+        domain=domain.kind,
+        size=size,
+        origin=domain.origin,
+        walls=dict(zip(wall_names(scene.walls), (wall.kind for wall in scene.walls), strict=True)),
+        shapes=dict(shapes),
+        gravity=scene.gravity,
+        restitution=None if scene.restitution is None else (scene.restitution.pair, scene.restitution.wall),
+        contact_duration=stage.contact_duration,
+        start_time=scene.start_time,
+        epoch_length=stage.epoch_length,
+        search=_search(stage),
+        images=_several_images(stage),
+        touching=(),
+        until=scene.until,
+        events=scene.events,
+        engine="reference",
+    )
+
+
+def _species(disks: Disks) -> tuple[tuple[Species, ...], int]:
+    """The commonest species, and how many species there are."""
+    radii, radius_code = np.unique(disks.radius, return_inverse=True)
+    masses, mass_code = np.unique(disks.mass, return_inverse=True)
+    codes, first, counts = np.unique(radius_code * len(masses) + mass_code, return_index=True, return_counts=True)
+    commonest = sorted(range(len(codes)), key=lambda i: (-int(counts[i]), int(first[i])))[:SPECIES_SHOWN]
+    shown = (divmod(int(codes[i]), len(masses)) for i in commonest)
+    species = (
+        Species(int(counts[i]), float(radii[r]), float(masses[m])) for i, (r, m) in zip(commonest, shown, strict=True)
+    )
+    return tuple(species), len(codes)
+
+
+def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64]) -> float | None:
+    massive = (disks.mass > 0.0) & np.isfinite(disks.mass)
+    if not massive.any():
+        return None
+    return float(np.mean(disks.mass[massive] * speed[massive] ** 2) / 2.0)
+
+
+def _search(stage: Stage) -> Search:
+    grid = plan(stage)
+    if grid is None:
+        return Search("all pairs")
+    return Search("cells", grid.side, grid.columns, grid.rows)
+
+
+def _several_images(stage: Stage) -> bool:
+    """Whether the largest reach is more than half a period, so that the nearest image is not always the next."""
+    largest = np.sort(stage.radius)[-2:]
+    reach = float(largest.sum()) if len(largest) == 2 else 0.0
+    return any(length is not None and 2.0 * reach > length for length in stage.period)
