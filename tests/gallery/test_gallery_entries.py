@@ -107,8 +107,53 @@ def test_parameters_are_keywords_with_plain_defaults() -> None:
 
 def test_every_key_of_the_scene_file_is_used() -> None:
     realised = " ".join(f"{scene_to_dict(gallery(name))}" for name in names())
-    keys = ["name", "until", "events", "start_time", "gravity", "restitution", "pair", "wall", "contact_duration", "kind", "size", "origin", "position", "velocity", "radius", "mass", "start", "end", "points", "through", "center", "box", "periodic", "channel", "open", "segment", "polygon", "polyline", "arc", "circle", "inf"]
+    keys = [
+        "name",
+        "until",
+        "events",
+        "start_time",
+        "gravity",
+        "restitution",
+        "pair",
+        "wall",
+        "contact_duration",
+        "kind",
+        "size",
+        "origin",
+        "position",
+        "velocity",
+        "radius",
+        "mass",
+        "start",
+        "end",
+        "points",
+        "through",
+        "center",
+        "box",
+        "periodic",
+        "channel",
+        "open",
+        "segment",
+        "polygon",
+        "polyline",
+        "arc",
+        "circle",
+        "inf",
+    ]
     assert [key for key in keys if f"'{key}'" not in realised and f": {key}" not in realised] == []
     written = "".join(path.read_text() for path in [*FOLDER.glob("*.py"), *EXAMPLES.glob("*.toml")])
-    rules = ["count", "packing_fraction", "temperature", "speed", "arrangement", "random", "square", "hexagonal", "region", "seed", "disks_file", "path"]
+    rules = [
+        "count",
+        "packing_fraction",
+        "temperature",
+        "speed",
+        "arrangement",
+        "random",
+        "square",
+        "hexagonal",
+        "region",
+        "seed",
+        "disks_file",
+        "path",
+    ]
     assert [key for key in rules if not re.search(rf'"{key}"|\b{key}\b *=|\[\[{key}\]\]', written)] == []

@@ -71,9 +71,7 @@ def gallery(name: str, **parameters: Value) -> Scene:
     checked: dict[str, Value] = {}
     for key, value in parameters.items():
         if key not in defaults:
-            problems.append(
-                f"{name} has no parameter {key!r}{_hint(key, list(defaults))}; {_allowed(defaults)}"
-            )
+            problems.append(f"{name} has no parameter {key!r}{_hint(key, list(defaults))}; {_allowed(defaults)}")
             continue
         wanted = type(defaults[key])
         # A whole number will do where any number does; true and false are no numbers here.

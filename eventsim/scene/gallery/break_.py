@@ -40,11 +40,7 @@ def scene(*, speed: float = 6.0, aim: float = 0.0) -> Scene:
     demand(speed > 0, "speed", speed, "must be above 0")
     length, width = TABLE
     apex = 3 * length // 4
-    rack = [
-        (apex + ROW * row, width // 2 + HALF * (2 * place - row))
-        for row in range(5)
-        for place in range(row + 1)
-    ]
+    rack = [(apex + ROW * row, width // 2 + HALF * (2 * place - row)) for row in range(5) for place in range(row + 1)]
     disks = Disks(
         position=[[length // 4 * UNIT, width // 2 * UNIT + aim]] + [[x * UNIT, y * UNIT] for x, y in rack],
         velocity=[[speed, 0.0]] + [[0.0, 0.0]] * 15,

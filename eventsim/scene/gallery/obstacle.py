@@ -29,9 +29,7 @@ def scene(*, n: int = 160, speed: float = 1.0, radius: float = 2.0, seed: int = 
             "name": "obstacle",
             "until": 30.0,
             "domain": {"kind": "periodic", "size": [32.0, 16.0]},
-            "disk": [
-                {"position": [8.0, 8.0], "velocity": [speed, 0.0], "radius": radius, "mass": float("inf")}
-            ],
+            "disk": [{"position": [8.0, 8.0], "velocity": [speed, 0.0], "radius": radius, "mass": float("inf")}],
             "gas": [{"count": n, "radius": 0.5, "temperature": 1.0, "arrangement": "random", "seed": seed}],
         },
         source="gallery scene obstacle",

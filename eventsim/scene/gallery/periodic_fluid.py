@@ -23,9 +23,7 @@ from eventsim.scene.files import scene_from_dict
 from eventsim.scene.scene import Scene
 
 
-def scene(
-    *, n: int = 256, packing_fraction: float = 0.5, arrangement: str = "hexagonal", seed: int = 1
-) -> Scene:
+def scene(*, n: int = 256, packing_fraction: float = 0.5, arrangement: str = "hexagonal", seed: int = 1) -> Scene:
     """`n` disks fill `packing_fraction` of a torus in an `arrangement`; velocities drawn from `seed`."""
     return scene_from_dict(
         {

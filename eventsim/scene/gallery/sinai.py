@@ -37,6 +37,4 @@ def scene(*, n: int = 2, separation: float = 1e-9, radius: float = 0.25) -> Scen
         radius=[radius] + [0.0] * n,
         mass=[math.inf] + [0.0] * n,
     )
-    return Scene(
-        disks=disks, domain=Periodic((1.0, 1.0), origin=(-0.5, -0.5)), until=40.0, name="Sinai billiard"
-    )
+    return Scene(disks=disks, domain=Periodic((1.0, 1.0), origin=(-0.5, -0.5)), until=40.0, name="Sinai billiard")
