@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
@@ -42,7 +43,8 @@ def command(
     \b
     Keys of --json:
       scenes                             without NAME: a list of {name, title}
-      name, title, text, parameters      with NAME; parameters: name -> default
+      name, title, text                  with NAME: the story of the scene
+      parameters, about                  name -> default; what they mean
       copied                             the file written (null without --copy)
 
     Exit codes: 0 done; 2 bad usage or an unknown name.
@@ -83,7 +85,13 @@ def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | No
             raise click.UsageError(f"--copy {target}: there is such a file already; it is left as it is")
         _write_scene(target, built_in_scene(name, settings, seed))
     if as_json:
-        data = {"name": name, "title": entry.title, "text": entry.text, "parameters": entry.parameters}
+        data = {
+            "name": name,
+            "title": entry.title,
+            "text": entry.text,
+            "about": entry.about,
+            "parameters": entry.parameters,
+        }
         click.echo(as_json_text({**data, "copied": None if target is None else str(target)}))
     elif not quiet and target is not None:
         click.echo(f"{name} copied to {target}; eventsim run {target} runs it")
@@ -92,6 +100,7 @@ def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | No
         if entry.parameters:
             rows = [(key, repr(value)) for key, value in entry.parameters.items()]
             click.echo(f"\nParameters and their defaults (--set NAME=VALUE):\n{aligned(rows)}")
+            click.echo(fill(entry.about, 100, initial_indent="  ", subsequent_indent="  "))
 
 
 def _write_scene(target: Path, scene: Scene) -> None:

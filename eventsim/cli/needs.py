@@ -10,6 +10,7 @@ import numpy as np
 
 from eventsim.engines.reference.cells import plan
 from eventsim.scene.stage import stage_of
+from eventsim.scene.validate import touching_by_rounding
 from eventsim.scene.walls import wall_names
 
 if TYPE_CHECKING:
@@ -121,7 +122,7 @@ def needs_of(scene: Scene) -> Needs:
         epoch_length=stage.epoch_length,
         search=_search(stage),
         images=_several_images(stage),
-        touching=(),
+        touching=tuple(touching_by_rounding(scene)),
         until=scene.until,
         events=scene.events,
         engine="reference",

@@ -1,0 +1,86 @@
+"""`eventsim state`: where the disks are at any times of a run, from its log alone."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.target import STATE_SUFFIXES, writable
+
+
+class ManyTimes(click.Command):
+    """Lets one --at be followed by several times: `--at 1 2 3` is read as `--at 1 --at 2 --at 3`."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Repeat --at before each further number."""
+        spread: list[str] = []
+        for word in args:
+            after_a_time = spread[-2:-1] == ["--at"]
+            if after_a_time and _is_number(word):
+                spread.append("--at")
+            spread.append(word)
+        return super().parse_args(ctx, spread)
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+@click.command(cls=ManyTimes)
+@click.argument("log")
+@click.option(
+    "--at", "times", type=float, multiple=True, required=True, metavar="T [T ...]", help="Times on the scene's clock."
+)
+@click.option("--out", metavar="FILE", help="Write the table to FILE (.csv or .npz) instead of stdout.")
+@json_option
+@quiet_option
+def command(log: str, times: tuple[float, ...], out: str | None, as_json: bool, quiet: bool) -> None:
+    """Print the positions and velocities of all disks at each time T of the run that LOG tells.
+
+    A table with the columns time, disk, x, y, vx, vy, radius, mass; floats read back as the same bits. At the
+    exact time of an event it is the state after it. The table of a single time is a disks_file for a scene.
+
+    \b
+    Examples:
+      eventsim state break.csv --at 0.5
+      eventsim state break.csv --at 0.5 1 1.5 --out states.csv
+
+    \b
+    Keys of --json:
+      log, times, disks   the file; the times; the number of disks
+      states              a list, one for each time: {time, position, velocity}, [x, y] for each disk;
+                          left out where --out is given
+      out                 the file written (null without)
+
+    Exit codes: 0 done; 2 bad usage, no such log, or a time that the log does not cover.
+    """
+    target = writable(out, "--out", STATE_SUFFIXES)
+
+    from eventsim.cli.words import as_json_text, plural
+    from eventsim.record.log import load_log
+    from eventsim.record.replay import Replay
+    from eventsim.record.states import state_columns, write_csv, write_states
+
+    events = load_log(log)
+    replay = Replay(events)
+    states = [replay.state_at(time) for time in times]
+    if target is not None:
+        write_states(target, events.scene, states)
+    if as_json:
+        data: dict[str, object] = {"log": log, "times": list(times), "disks": len(events.scene.disks)}
+        if target is None:
+            data["states"] = [
+                {"time": s.time, "position": s.position.tolist(), "velocity": s.velocity.tolist()} for s in states
+            ]
+        click.echo(as_json_text({**data, "out": None if target is None else str(target)}))
+    elif target is None:
+        write_csv(sys.stdout.buffer, state_columns(events.scene, states))
+    elif not quiet:
+        disks = plural(len(events.scene.disks), "disk")
+        click.echo(f"{disks} at {plural(len(times), 'time')} written to {target}")
