@@ -1,0 +1,67 @@
+"""`eventsim check`: a true explanation, and all problems at once."""
+
+import json
+
+import pytest
+
+from eventsim.scene.gallery import names
+
+
+def test_a_valid_scene_is_explained(eventsim, scene_file):
+    result = eventsim("check", scene_file)
+    assert result.exit_code == 0
+    for words in ("a valid scene", "2 disks", "straight lines", "elastic", "all pairs", "at time 4"):
+        assert words in result.stdout
+
+
+@pytest.mark.parametrize("name", names())
+def test_each_built_in_scene_is_explained_and_says_how_it_is_searched(eventsim, name):
+    facts = json.loads(eventsim("check", name, "--json").stdout)
+    cells = facts["search"]["kind"] == "cells"
+    assert ("cells of" in facts["explanation"]["search"]) == cells
+    assert ("parabolas" in facts["explanation"]["flights"]) == (facts["gravity"] is not None)
+    assert ("elastic: energy" in facts["explanation"]["contacts"]) == (facts["restitution"] is None)
+    assert ("walls" in facts["explanation"]) == bool(facts["walls"])
+    assert facts["until"] is not None or facts["events"] is not None
+
+
+def test_lines_are_short_enough_to_read(eventsim):
+    for name in names():
+        assert max(map(len, eventsim("check", name).stdout.splitlines())) <= 110
+
+
+def test_json_documents_each_of_its_keys(eventsim):
+    facts = json.loads(eventsim("check", "break", "--json").stdout)
+    page = eventsim("check", "--help").stdout
+    assert [key for key in facts if key not in page] == []
+
+
+def test_touching_by_rounding_is_said(eventsim, scene_file):
+    scene_file.write_text(
+        'until = 1.0\n[domain]\nkind = "open"\n'
+        "[[disk]]\nposition = [0.0, 0.0]\nradius = 0.5\n"
+        "[[disk]]\nposition = [1000000.0, 0.0]\nvelocity = [1.0, 0.0]\nradius = 0.5\n"
+        "[[disk]]\nposition = [1000000.999999999, 0.0]\nradius = 0.5\n"
+    )
+    result = eventsim("check", scene_file)
+    assert result.exit_code == 0
+    assert "touching, but for rounding" in result.stdout
+
+
+def test_all_problems_come_at_once(eventsim, scene_file):
+    scene_file.write_text(scene_file.read_text().replace("radius = 0.25", "radius = -1.0\nspin = 2"))
+    result = eventsim("check", scene_file)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.count("spin") == 2
+
+
+def test_a_missing_scene_argument_is_named(eventsim):
+    result = eventsim("check")
+    assert result.exit_code == 2
+    assert "SCENE" in result.stderr
+
+
+def test_quiet_lets_the_exit_code_speak(eventsim, scene_file):
+    result = eventsim("check", scene_file, "--quiet")
+    assert (result.exit_code, result.output) == (0, "")

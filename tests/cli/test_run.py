@@ -1,0 +1,195 @@
+"""`eventsim run`: what it prints, writes, and refuses."""
+
+import json
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from eventsim import load_log
+
+JSON_KEYS = {
+    "scene", "engine", "time", "events", "pair_contacts", "wall_contacts", "elapsed_s", "compile_s", "write_s",
+    "events_per_s", "digest", "residuals", "stopped",
+}  # fmt: skip
+
+
+def test_a_run_prints_a_summary(eventsim, scene_file):
+    result = eventsim("run", scene_file)
+    assert result.exit_code == 0
+    assert result.stderr == ""
+    for words in ("two in a box", "2 disks in a box 4 x 2", "reference", "energy", "at the time asked for, 4"):
+        assert words in result.stdout
+
+
+def test_json_has_the_promised_keys_and_numbers(eventsim, scene_file):
+    summary = json.loads(eventsim("run", scene_file, "--json").stdout)
+    assert summary.keys() >= JSON_KEYS
+    assert summary["residuals"].keys() == {"energy", "momentum", "max_overlap"}
+    assert summary["scene"] == str(scene_file)
+    assert summary["stopped"] == "until"
+    assert summary["time"] == 4.0
+    assert summary["pair_contacts"] == 1
+    assert summary["events"] == summary["pair_contacts"] + summary["wall_contacts"]
+    assert summary["digest"] is None
+
+
+def test_json_documents_each_of_its_keys(eventsim, scene_file):
+    summary = json.loads(eventsim("run", scene_file, "--json").stdout)
+    page = eventsim("run", "--help").stdout
+    assert [key for key in summary if key not in page] == []
+
+
+def test_without_a_scene_it_runs_the_break(eventsim):
+    summary = json.loads(eventsim("run", "--events", 5, "--json").stdout)
+    assert summary["scene"] == "break"
+    assert summary["events"] >= 5
+    assert summary["stopped"] == "events"
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".jsonl", ".npz", ".parquet"])
+@pytest.mark.parametrize("compact", [[], ["--compact"]])
+def test_a_log_reads_back_with_the_digest_that_was_printed(eventsim, scene_file, tmp_path, suffix, compact):
+    log = tmp_path / f"two{suffix}"
+    summary = json.loads(eventsim("run", scene_file, "--log", log, *compact, "--json").stdout)
+    assert summary["log"] == str(log)
+    events = load_log(log)
+    assert len(events) == summary["events"]
+    assert events.digest() == summary["digest"]
+
+
+def test_the_digest_needs_no_file(eventsim, scene_file, tmp_path):
+    kept = json.loads(eventsim("run", scene_file, "--log", tmp_path / "a.csv", "--json").stdout)
+    asked = json.loads(eventsim("run", scene_file, "--digest", "--json").stdout)
+    assert kept["digest"] == asked["digest"]
+    assert len(asked["digest"]) == 64
+
+
+def test_the_final_state_starts_the_next_run(eventsim, scene_file, tmp_path):
+    state = tmp_path / "end.csv"
+    assert eventsim("run", scene_file, "--state", state).exit_code == 0
+    next_scene = tmp_path / "next.toml"
+    next_scene.write_text('until = 1.0\n[domain]\nkind = "box"\nsize = [4.0, 2.0]\n[[disks_file]]\npath = "end.csv"\n')
+    assert eventsim("run", next_scene).exit_code == 0
+
+
+def test_quiet_prints_nothing(eventsim, scene_file):
+    result = eventsim("run", scene_file, "--quiet")
+    assert (result.exit_code, result.output) == (0, "")
+
+
+def test_set_overrides_a_key_of_the_scene(eventsim, scene_file):
+    summary = json.loads(eventsim("run", scene_file, "--set", "until=0.5", "--json").stdout)
+    assert summary["time"] == 0.5
+
+
+def test_set_reaches_parameters_of_a_built_in_scene_first(eventsim):
+    summary = json.loads(eventsim("run", "galperin", "--set", "mass_ratio=10000", "--json").stdout)
+    assert summary["events"] == 314
+    assert summary["stopped"] == "quiet"
+
+
+def test_set_reaches_keys_of_a_built_in_scene_too(eventsim):
+    words = ("run", "galperin", "--set", "mass_ratio=10000", "--set", "restitution=0.9", "--events", 3, "--json")
+    summary = json.loads(eventsim(*words).stdout)
+    assert summary["residuals"]["energy"] is None
+
+
+def test_a_seed_draws_another_start_and_the_same_seed_the_same(eventsim):
+    def digest(seed):
+        words = ("run", "gas", "--set", "n=20", "--seed", seed, "--events", 20, "--digest", "--json")
+        return json.loads(eventsim(*words).stdout)["digest"]
+
+    assert digest(1) == digest(1) != digest(2)
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["run", "brek"], "did you mean 'break'"),
+        (["run", "nowhere.toml"], "nowhere.toml"),
+        (["run", "break", "--log", "a.txt"], "must end in .csv, .jsonl, .npz, .parquet"),
+        (["run", "break", "--log", "nowhere/a.csv"], "there is no directory nowhere"),
+        (["run", "break", "--state", "nowhere/a.csv"], "there is no directory nowhere"),
+        (["run", "break", "--log", "a.csv", "--state", "a.csv"], "the same file"),
+        (["run", "break", "--compact"], "--log FILE"),
+        (["run", "break", "--until", "nan"], "must be a time"),
+        (["run", "break", "--until", "soon"], "'soon' is not a valid float"),
+        (["run", "break", "--events", "-1"], "--events"),
+        (["run", "break", "--engine", "refrence"], "reference"),
+        (["run", "galperin", "--set", "mass_ratoi=1"], "mass_ratoi"),
+        (["run", "galperin", "--set", "mass_ratio=-1"], "mass_ratio"),
+        (["run", "break", "--set", "restitution"], "restitution"),
+    ],
+)
+def test_bad_usage_is_one_clear_message_and_writes_nothing(eventsim, tmp_path, monkeypatch, words, expected):
+    monkeypatch.chdir(tmp_path)
+    result = eventsim(*words)
+    assert result.exit_code == 2
+    assert expected in result.stderr
+    assert "Traceback" not in result.stderr
+    assert result.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_bad_scene_leaves_no_log(eventsim, scene_file, tmp_path):
+    scene_file.write_text(scene_file.read_text().replace("radius = 0.25", "radius = -0.25"))
+    result = eventsim("run", scene_file, "--log", tmp_path / "a.csv")
+    assert result.exit_code == 2
+    assert result.stderr.count("radius") >= 2
+    assert list(tmp_path.iterdir()) == [scene_file]
+
+
+def test_without_a_stop_both_ways_to_give_one_are_named(eventsim, scene_file):
+    scene_file.write_text(scene_file.read_text().replace("until = 4.0", ""))
+    result = eventsim("run", scene_file)
+    assert result.exit_code == 2
+    assert "--until" in result.stderr
+    assert "--events" in result.stderr
+
+
+def test_a_collapse_ends_with_exit_code_3_and_keeps_its_log(eventsim, tmp_path):
+    scene = tmp_path / "collapse.toml"
+    scene.write_text(
+        'until = 10.0\nrestitution = 0.05\n[domain]\nkind = "open"\n'
+        "[[disk]]\nposition = [-1.0, 0.0]\nvelocity = [1.0, 0.0]\nradius = 0.0625\n"
+        "[[disk]]\nposition = [0.125, 0.0]\nradius = 0.0625\n"
+        "[[disk]]\nposition = [2.25, 0.0]\nvelocity = [-1.0, 0.0]\nradius = 0.0625\n"
+    )
+    log = tmp_path / "collapse.csv"
+    result = eventsim("run", scene, "--log", log)
+    assert result.exit_code == 3
+    assert "early" in result.stdout
+    assert len(load_log(log)) > 10
+
+
+def test_an_interrupt_keeps_the_log_and_exits_130(tmp_path):
+    log = tmp_path / "gas.csv"
+    command = [sys.executable, "-m", "eventsim", "run", "gas", "--until", "1e9", "--log", str(log)]
+    running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    part = tmp_path / "gas.csv.part"
+    patience = time.monotonic() + 30
+    while not (part.exists() and part.stat().st_size > 100_000) and time.monotonic() < patience:
+        time.sleep(0.05)
+    running.send_signal(2)
+    stdout, stderr = running.communicate(timeout=30)
+    assert running.returncode == 130, stderr
+    assert "interrupted" in stdout
+    events = load_log(log)
+    assert np.array_equal(events.event, np.arange(len(events)))
+
+
+def test_a_small_run_imports_nothing_heavy_and_is_quick():
+    code = (
+        "import sys, time\nbegun = time.perf_counter()\nfrom eventsim.cli import main\n"
+        "try: main(['run', 'two-disks'])\nexcept SystemExit as end: assert end.code == 0\n"
+        "elapsed = time.perf_counter() - begun\n"
+        "loaded = {'matplotlib', 'numba', 'pyarrow', 'rich', 'flint', 'pandas'} & set(sys.modules)\n"
+        "assert not loaded, loaded\nprint(elapsed)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    # About 0.15 s on an idle core; the bound leaves room for a busy one.
+    assert float(done.stdout.splitlines()[-1]) < 2.0

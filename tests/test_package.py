@@ -1,0 +1,50 @@
+"""The package as a whole: its public names, and how little it takes to import it."""
+
+import importlib.metadata
+import json
+import subprocess
+import sys
+from operator import attrgetter
+
+import pytest
+
+import eventsim
+
+HEAVY = ("matplotlib", "numba", "pyarrow", "rich", "flint", "pandas", "click", "voluptuous")
+
+
+def modules_after(code: str) -> set[str]:
+    """The top-level modules that a fresh Python has loaded after running some code."""
+    report = "import json, sys; print(json.dumps(sorted({name.partition('.')[0] for name in sys.modules})))"
+    done = subprocess.run([sys.executable, "-c", f"{code}\n{report}"], capture_output=True, text=True, check=True)
+    return set(json.loads(done.stdout))
+
+
+def test_importing_the_package_loads_no_library_at_all():
+    assert not modules_after("import eventsim") & {*HEAVY, "numpy", "sortedcontainers"}
+
+
+def test_simulating_a_small_scene_loads_nothing_heavy():
+    code = "import eventsim as es; es.simulate(es.gallery('two-disks'), log=True)"
+    assert not modules_after(code) & set(HEAVY)
+
+
+@pytest.mark.parametrize("name", eventsim.__all__)
+def test_every_public_name_is_there(name):
+    assert getattr(eventsim, name) is not None
+    assert name in dir(eventsim)
+
+
+@pytest.mark.parametrize("module", ["eventsim.simulation", "eventsim.scene.gallery", "eventsim.engines.reference"])
+def test_public_functions_stay_functions_whatever_was_imported_before(module):
+    code = f"import {module}\nimport eventsim as es\nassert callable(es.simulate) and callable(es.gallery)"
+    modules_after(code)
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'simulat'"):
+        attrgetter("simulat")(eventsim)
+
+
+def test_the_distribution_has_the_version_of_the_package():
+    assert importlib.metadata.version("eventsim-disks") == eventsim.__version__
