@@ -39,7 +39,8 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bo
       start_time, epoch_length    of the clock
       search                      {kind, side, columns, rows}: "all pairs" or "cells"
       images                      whether several periodic images of a pair are tried
-      touching                    notes on disks that touch at the start only up to rounding
+      touching_pairs              pairs at contact at the start
+      touching_notes              starting overlaps so small that they count as touching
       until, events, engine       the stop of the scene; what auto chooses
       explanation                 topic -> words, as the text prints them
 

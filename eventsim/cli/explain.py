@@ -17,6 +17,9 @@ DOMAINS = {
     "periodic": "what leaves on one side comes in on the other; no walls, no corners",
     "channel": "periodic along x, hard walls bottom and top",
 }
+MANY = 10
+"""Moving disks from which on a temperature is worth a word."""
+
 SHAPES = {"face": "straight face", "post": "post", "arc": "arc", "container": "container"}
 
 
@@ -29,8 +32,8 @@ def explanation(needs: Needs) -> Iterator[tuple[str, str]]:
         yield "walls", _walls(needs)
     yield "flights", _flights(needs)
     yield "contacts", _contacts(needs)
-    for sentence in needs.touching:
-        yield "start", sentence
+    if needs.touching_pairs or needs.touching_notes:
+        yield "start", _start(needs)
     yield "search", _search(needs)
     yield "clock", _clock(needs)
     yield "engine", _engine(needs)
@@ -47,10 +50,12 @@ def _disks(needs: Needs) -> str:
             species.append(f"and {plural(rest, 'more kind')}")
         text = f"{plural(needs.disks, 'disk')}: {'; '.join(species)}"
     if needs.packing_fraction is not None:
-        text += f"; they cover {100 * needs.packing_fraction:.3g} % of the domain"
+        covering = "it covers" if needs.disks == 1 else "they cover"
+        text += f"; {covering} {100 * needs.packing_fraction:.3g} % of the domain"
     parts = []
     if needs.immovable:
-        parts.append("mass inf: nothing deflects it, and gravity does not act on it")
+        unmoved = "nothing deflects it" if needs.gravity is None else "neither contacts nor gravity deflect it"
+        parts.append(f"mass inf: {unmoved}")
     if needs.tracers:
         parts.append("mass 0: a tracer, which deflects nobody")
     return ". ".join([text, *(part[0].upper() + part[1:] for part in parts)])
@@ -62,8 +67,8 @@ def _motion(needs: Needs) -> str:
     text = f"{needs.moving:,} of {needs.disks:,} move" if needs.moving < needs.disks else "all move"
     text = "it moves" if needs.disks == 1 else text
     text += f", the fastest at {short(needs.fastest)}"
-    if needs.temperature is not None and needs.disks > 1:
-        text += f"; mean m v^2/2 is {short(needs.temperature)} (kT of a gas at rest as a whole)"
+    if needs.temperature is not None and needs.moving >= MANY:
+        text += f"; mean m v^2/2 is {short(needs.temperature)}, the temperature kT of a gas"
     return text
 
 
@@ -94,7 +99,7 @@ def _flights(needs: Needs) -> str:
 
 def _contacts(needs: Needs) -> str:
     if needs.restitution is None:
-        return "elastic: energy is conserved, and the run ends with the share of it that rounding changed"
+        return "elastic: energy is conserved; the run says in the end how far rounding changed it"
     pair, wall = needs.restitution
     text = f"restitution {short(pair)} between disks, {short(wall)} at walls: energy is lost"
     if needs.contact_duration is not None:
@@ -103,6 +108,14 @@ def _contacts(needs: Needs) -> str:
             "(TC model), so contacts cannot pile up without end"
         )
     return f"{text}; contacts may pile up at an instant, then the run stops and says so (contact_duration avoids it)"
+
+
+def _start(needs: Needs) -> str:
+    sentences = list(needs.touching_notes)
+    if needs.touching_pairs:
+        pairs = "1 pair touches" if needs.touching_pairs == 1 else f"{needs.touching_pairs:,} pairs touch"
+        sentences.insert(0, f"{pairs}; contacts of one instant that share disks are resolved together")
+    return "; ".join(sentences)
 
 
 def _search(needs: Needs) -> str:
@@ -115,7 +128,7 @@ def _search(needs: Needs) -> str:
         count = "" if search.columns is None else f", {search.columns} x {search.rows} of them"
         text = (
             f"cells of {short(search.side[0])} x {short(search.side[1])}{count}: a disk is tried against those "
-            "in its own cell and the eight around it"
+            "in its own cell and in those next to it"
         )
     if needs.domain in ("periodic", "channel") and needs.disks > 1:
         text += (

@@ -9,15 +9,20 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eventsim.engines.reference.cells import plan
+from eventsim.scene.disks import Disks
+from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.stage import stage_of
 from eventsim.scene.validate import touching_by_rounding
 from eventsim.scene.walls import wall_names
 
 if TYPE_CHECKING:
-    from eventsim.scene import Disks, Scene
+    from eventsim.scene import Scene
     from eventsim.scene.stage import Stage
 
 SPECIES_SHOWN = 5
+
+WIDER = 1.0 + 2.0**-50
+"""Disks wider by this factor, four units in the last place, overlap where they touch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +62,8 @@ class Needs:
         epoch_length: time, a power of two.
         search: all pairs or cells.
         images: whether a pair of disks can meet through several periodic images at once.
-        touching: sentences on starting contacts that are touching only up to rounding.
+        touching_pairs: pairs of disks at contact at the start, exactly or but for rounding.
+        touching_notes: sentences on starting overlaps so small that they count as touching.
         until, events: the stop that the scene carries.
         engine: what `auto` chooses.
     """
@@ -85,7 +91,8 @@ class Needs:
     epoch_length: float
     search: Search
     images: bool
-    touching: tuple[str, ...]
+    touching_pairs: int
+    touching_notes: tuple[str, ...]
     until: float | None
     events: int | None
     engine: str
@@ -122,7 +129,8 @@ def needs_of(scene: Scene) -> Needs:
         epoch_length=stage.epoch_length,
         search=_search(stage),
         images=_several_images(stage),
-        touching=tuple(touching_by_rounding(scene)),
+        touching_pairs=_touching_pairs(scene),
+        touching_notes=tuple(touching_by_rounding(scene)),
         until=scene.until,
         events=scene.events,
         engine="reference",
@@ -147,6 +155,13 @@ def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64]) -> float | 
     if not massive.any():
         return None
     return float(np.mean(disks.mass[massive] * speed[massive] ** 2) / 2.0)
+
+
+def _touching_pairs(scene: Scene) -> int:
+    """Pairs that would overlap if all disks were wider by a few units in the last place."""
+    disks = scene.disks
+    wider = Disks(disks.position, disks.velocity, disks.radius * WIDER, disks.mass)
+    return len(pair_overlaps(wider, scene.domain))
 
 
 def _search(stage: Stage) -> Search:
