@@ -14,9 +14,7 @@ DOUBLINGS = 2000
 """Enough to leave any float64 behind."""
 
 
-def circle_gap(
-    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, t: Real
-) -> Real:
+def circle_gap(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, t: Real) -> Real:
     """h = side (|d + v t + a t^2/2|^2 - radius^2) at delay t; side is +1 outside the circle, -1 inside."""
     px = dx + t * (du + (0.5 * ax) * t)
     py = dy + t * (dw + (0.5 * ay) * t)
@@ -85,9 +83,7 @@ def _positive_roots(q2: Real, q1: Real, q0: Real) -> tuple[Real, Real]:
     return (low if low > 0.0 else 0.0), (high if high > 0.0 else 0.0)
 
 
-def _far(
-    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, last: Real
-) -> Real:
+def _far(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, last: Real) -> Real:
     """A delay after which the gap only opens (outside) or stays closed (inside)."""
     speed = sqrt(du * du + dw * dw)
     acceleration = sqrt(ax * ax + ay * ay)
@@ -102,9 +98,7 @@ def _far(
     return t
 
 
-def _turn(
-    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side: float, low: Real, high: Real
-) -> Real:
+def _turn(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side: float, low: Real, high: Real) -> Real:
     """Where the rate changes its sign between low and high."""
     falling = circle_rate(dx, dy, du, dw, ax, ay, side, low) < 0.0
     for _ in range(BISECTIONS):

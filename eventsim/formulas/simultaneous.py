@@ -38,24 +38,40 @@ Vector = tuple[Fraction, Fraction]
 def resolve_together(
     contacts: Sequence[JointContact], velocities: Sequence[tuple[float, float]], masses: Sequence[float]
 ) -> Outcome:
-    """Resolve a cluster: first the massive disks, then the tracers against what these have become."""
+    """Resolve a cluster: immovable disks at walls, then the massive disks, then the tracers against what these have become.
+
+    The impulse between an immovable disk and a wall is nan: it has no finite size.
+    """
     exact: list[Vector] = [(Fraction(u), Fraction(w)) for u, w in velocities]
     impulses = [Fraction(0)] * len(contacts)
     tracers = {body for body, mass in enumerate(masses) if mass == 0.0}
+    immovable = {body for body, mass in enumerate(masses) if math.isinf(mass)}
+    braced = [k for k, c in enumerate(contacts) if c.b is None and c.a in immovable]
+    for body in sorted({contacts[k].a for k in braced}):
+        _resolve_alone(body, [k for k in braced if contacts[k].a == body], contacts, exact, impulses)
     inverse = [Fraction(0) if m == 0.0 or math.isinf(m) else 1 / Fraction(m) for m in masses]
-    massive = [k for k, c in enumerate(contacts) if c.a not in tracers and c.b not in tracers]
+    massive = [k for k, c in enumerate(contacts) if k not in braced and c.a not in tracers and c.b not in tracers]
     _resolve(contacts, massive, exact, inverse, impulses)
-    active = [value > 0 for value in impulses]
     norms = [math.hypot(c.dx, c.dy) for c in contacts]
     magnitudes = [_product(value, norm) for value, norm in zip(impulses, norms, strict=True)]
-    for tracer in sorted(tracers):
-        own = [k for k, c in enumerate(contacts) if tracer in (c.a, c.b)]
-        light = [Fraction(0)] * len(masses)
-        light[tracer] = Fraction(1)
-        _resolve(contacts, own, exact, light, impulses)
-        for k in own:
-            active[k] = impulses[k] > 0
+    for k in braced:
+        magnitudes[k] = math.nan
+    for body in sorted(tracers):
+        _resolve_alone(body, [k for k, c in enumerate(contacts) if body in (c.a, c.b)], contacts, exact, impulses)
+    active = [value > 0 for value in impulses]
     return Outcome([(_float(u), _float(w)) for u, w in exact], magnitudes, active)
+
+
+def _resolve_alone(
+    body: int,
+    own: Sequence[int],
+    contacts: Sequence[JointContact],
+    velocities: list[Vector],
+    impulses: list[Fraction],
+) -> None:
+    """Resolve contacts as if only this body could change its velocity; its mass does not matter then."""
+    inverse = [Fraction(int(k == body)) for k in range(len(velocities))]
+    _resolve(contacts, own, velocities, inverse, impulses)
 
 
 def _resolve(
@@ -72,9 +88,7 @@ def _resolve(
     if not rows:
         return
     factors = [(1 + Fraction(contacts[k].restitution)) * approach[k] for k in rows]
-    matrix = [
-        [_coupling(contacts[j], normals[j], contacts[k], normals[k], inverse) for k in rows] for j in rows
-    ]
+    matrix = [[_coupling(contacts[j], normals[j], contacts[k], normals[k], inverse) for k in rows] for j in rows]
     for k, value in zip(rows, complementary(matrix, factors), strict=True):
         if value == 0:
             continue
@@ -94,9 +108,7 @@ def _normal_velocity(contact: JointContact, normal: Vector, velocities: Sequence
     return u * normal[0] + w * normal[1]
 
 
-def _coupling(
-    one: JointContact, n: Vector, other: JointContact, m: Vector, inverse: Sequence[Fraction]
-) -> Fraction:
+def _coupling(one: JointContact, n: Vector, other: JointContact, m: Vector, inverse: Sequence[Fraction]) -> Fraction:
     """An element of J M^-1 J^T: what a unit impulse at one contact does to the normal velocity at the other."""
     total = Fraction(0)
     for body, sign in ((one.a, 1), (one.b, -1)):
@@ -153,9 +165,7 @@ def _eliminate(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Frac
     solution = [Fraction(0)] * n
     for pivot in reversed(order):
         head = rows[pivot]
-        known = sum(
-            (value * solution[column] for column, value in head.items() if column != pivot), Fraction(0)
-        )
+        known = sum((value * solution[column] for column, value in head.items() if column != pivot), Fraction(0))
         solution[pivot] = (values[pivot] - known) / head[pivot]
     return solution
 

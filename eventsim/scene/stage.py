@@ -54,7 +54,7 @@ class Stage:
         n: number of disks.
         x, y, vx, vy: (n,) start, relative to the corner; length, length / time.
         radius: (n,).
-        mass: (n,), or None where all are equal, finite and positive.
+        mass: (n,), or None where all are equal, finite and positive; then common_mass is that mass.
         gravity: (gx, gy), or None.
         pair_restitution, wall_restitution: 1.0 where elastic.
         contact_duration: time, or None.
@@ -76,6 +76,7 @@ class Stage:
     vy: Floats
     radius: Floats
     mass: Floats | None
+    common_mass: float
     gravity: Point | None
     pair_restitution: float
     wall_restitution: float
@@ -108,6 +109,7 @@ def stage_of(scene: Scene) -> Stage:
     boundaries, names = _boundaries(scene)
     restitution = scene.restitution
     periodic = along_x is not None
+    moves = bool(np.any(disks.velocity != 0.0))
     return Stage(
         n=len(disks),
         x=x,
@@ -116,6 +118,7 @@ def stage_of(scene: Scene) -> Stage:
         vy=vy,
         radius=disks.radius,
         mass=None if _all_equal(disks.mass) else disks.mass,
+        common_mass=float(disks.mass[0]),
         gravity=scene.gravity,
         pair_restitution=1.0 if restitution is None else restitution.pair,
         wall_restitution=1.0 if restitution is None else restitution.wall,
@@ -128,7 +131,7 @@ def stage_of(scene: Scene) -> Stage:
         corner=corner,
         start_time=scene.start_time,
         epoch_length=_epoch_length(x, y, vx, vy, disks.radius, size, scene.gravity),
-        window_cap=LONGEST_PERIODIC_WINDOW if periodic else LONGEST_WINDOW,
+        window_cap=LONGEST_PERIODIC_WINDOW if periodic and (moves or scene.gravity) else LONGEST_WINDOW,
     )
 
 

@@ -74,14 +74,10 @@ def face_delay(
         return NEVER, side
     fall = shape.nx * gx + shape.ny * gy
     delay = closing_delay(side * distance - width, side * rate, side * fall)
-    if delay < NEVER and _within(
-        shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
-    ):
+    if delay < NEVER and _within(shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)):
         return delay, side
     delay = reopening_delay(-(side * distance) - width, -(side * rate), -(side * fall))
-    if delay < NEVER and _within(
-        shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
-    ):
+    if delay < NEVER and _within(shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)):
         return delay, -side
     return NEVER, side
 

@@ -1,0 +1,227 @@
+"""The loop: pop the earliest event, advance, resolve, predict; a session that can be stopped and continued anywhere."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
+from eventsim.engines.reference.advance import cross, refill, wrap
+from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
+from eventsim.engines.reference.cells import Cells, Grid, plan
+from eventsim.engines.reference.invariants import check_invariants
+from eventsim.engines.reference.predict import Predictor
+from eventsim.engines.reference.resolve import Resolver
+from eventsim.engines.reference.state import EngineState
+from eventsim.formulas.clock import remainder_since
+from eventsim.record.events import Rows
+from eventsim.scene.stage import Stage
+
+INSTANT_LIMIT = 1000
+"""Contacts of one disk at one instant of the clock: far more than any rack or cradle needs, far fewer than a hang."""
+
+
+class ReferenceSession:
+    """The reference engine in the middle of a run.
+
+    stage: what is simulated.  keep_rows: whether the log is wanted.  grid: the cells, None for all pairs; left out, the
+    engine chooses.  check: recompute every invariant by brute force after each event (slow; for tests).
+    """
+
+    name = "reference"
+
+    def __init__(
+        self,
+        stage: Stage,
+        keep_rows: bool = True,
+        check: bool = False,
+        grid: Grid | str | None = "auto",
+        number: Any = float,
+    ) -> None:
+        self.stage = stage
+        self.counters = Counters()
+        self.state = EngineState(stage, number)
+        self.calendar = Calendar()
+        chosen = plan(stage) if isinstance(grid, str) else grid
+        self.cells = None if chosen is None else Cells(stage, chosen)
+        self.reason: str | None = None
+        self._check = check
+        self._predictor = Predictor(stage, self.state, self.calendar, self.cells)
+        self._resolver = Resolver(stage, self.state, self.counters, keep_rows)
+        self._predict_afresh()
+
+    def advance(self, stop: Stop, budget: int) -> str | None:
+        """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
+        until = self._remainder(stop.until)
+        state, calendar, counters, cells = self.state, self.calendar, self.counters, self.cells
+        for _ in range(budget):
+            if stop.events is not None and counters.events >= stop.events:
+                return "events"
+            event = calendar.first()
+            due = float("inf") if event is None else event.time
+            if due >= state.window_end <= until and not (event is None and self._quiet(stop)):
+                self._turn_over()
+                until = self._remainder(stop.until)
+                continue
+            if event is None:
+                self._pass_to(until)
+                return "quiet"
+            if due > until:
+                self._pass_to(until)
+                return "until"
+            if self.is_stale(event):
+                calendar.pop()
+                counters.stale += 1
+                continue
+            state.now = due
+            if event.rank == WRAP:
+                calendar.pop()
+                counters.wraps += 1
+                wrap(state, cells, event, self.stage.period[event.b])  # type: ignore[arg-type]
+                self._predictor.predict(event.a, due)
+            elif event.rank == CROSSING:
+                calendar.pop()
+                counters.crossings += 1
+                cross(cells, event)  # type: ignore[arg-type]
+                self._predictor.predict_ahead(event.a, event.b, event.image[0], due)
+            else:
+                stopped = self._resolve_instant()
+                if stopped is not None:
+                    return stopped
+            if self._check:
+                check_invariants(self)
+        return None
+
+    def _resolve_instant(self) -> str | None:
+        """Resolve all contacts of the earliest time that are predicted by now, then predict their disks anew."""
+        generation = self._pop_generation()
+        changed: list[int] = []
+        for component in components(generation):
+            changed += self._resolver.resolve(component)
+        now = self.state.now
+        for i in changed:
+            self._predictor.predict(i, now)
+        for i in changed:
+            if self.state.at_once[i] >= INSTANT_LIMIT:
+                return self._give_up(i)
+        return None
+
+    def _pop_generation(self) -> list[Event]:
+        """Take out all contacts of the earliest time that are not stale."""
+        calendar = self.calendar
+        first = calendar.pop()
+        generation = [first]
+        while (event := calendar.first()) is not None and event.time == first.time and event.rank == CONTACT:
+            calendar.pop()
+            if self.is_stale(event):
+                self.counters.stale += 1
+            elif event != generation[-1]:
+                generation.append(event)
+        generation.sort(key=row_order)
+        return generation
+
+    def is_stale(self, event: Event) -> bool:
+        """Whether a disk of the event has begun another flight since the prediction."""
+        count = self.state.count
+        if count[event.a] != event.count_a:
+            return True
+        return event.rank == CONTACT and event.b >= 0 and count[event.b] != event.count_b
+
+    def _turn_over(self) -> None:
+        self.counters.turnovers += 1
+        self.state.turn_over()
+        self._predict_afresh()
+
+    def _predict_afresh(self) -> None:
+        """Fill cells and calendar from the flights."""
+        self.calendar.clear()
+        if self.cells is not None:
+            refill(self.state, self.cells)
+        self._predictor.predict_all(self.state.now)
+
+    def _quiet(self, stop: Stop) -> bool:
+        """With an empty calendar nothing happens for ever; only a stop time makes it worth while to let the clock turn."""
+        return stop.until is None
+
+    def _pass_to(self, until: float) -> None:
+        """Let time pass to `until`, a remainder; without a stop time it stays where it is."""
+        if self.state.now < until < float("inf"):
+            self.state.now = until
+
+    def _remainder(self, until: float | None) -> float:
+        if until is None:
+            return float("inf")
+        return remainder_since(self.state.epoch, self.stage.epoch_length, until, self.stage.start_time)
+
+    def _give_up(self, i: int) -> str:
+        """An instant that does not end: say which disk, and what is known of it."""
+        inelastic = self.stage.pair_restitution < 1.0 or self.stage.wall_restitution < 1.0
+        what = "collapse" if inelastic or self.stage.gravity is not None else "digits"
+        x, y = self.state.place(i, self.state.now)
+        cause = (
+            "its contacts follow one another faster than the clock can tell (inelastic collapse, or a disk at rest on another "
+            "one or on a wall); contact_duration, a time in the scene, lets such a scene go on"
+            if what == "collapse"
+            else "its contacts at this instant do not end"
+        )
+        self.reason = f"disk {i} at ({x + self.stage.corner[0]:g}, {y + self.stage.corner[1]:g}): {cause}"
+        return what
+
+    @property
+    def clock(self) -> tuple[int, float]:
+        """Where the clock stands: (epoch, remainder)."""
+        return self.state.epoch, self.state.now
+
+    def motion(self) -> Motion:
+        """Where all disks are now."""
+        state = self.state
+        places = np.array([state.place(i, state.now) for i in range(state.n)])
+        speeds = np.array([state.speed(i, state.now) for i in range(state.n)])
+        wraps = np.array([state.wraps_x, state.wraps_y], dtype=np.int64)
+        return Motion(places[:, 0], places[:, 1], speeds[:, 0], speeds[:, 1], wraps[0], wraps[1])
+
+    def kick(self, i: int, vx: float, vy: float) -> None:
+        """Set the velocity of disk i from outside, now."""
+        self._resolver.kick(i, vx, vy)
+        self._predictor.predict(i, self.state.now)
+
+    def take_rows(self) -> Rows:
+        """The rows since the last call, an array of ROW."""
+        rows, self._resolver.rows = self._resolver.rows, []
+        return rows_from(rows, self.stage.epoch_length, self.stage.start_time)
+
+    def snapshot(self) -> Snapshot:
+        """All that the future depends on."""
+        return self.state.snapshot()
+
+    def restore(self, saved: Snapshot) -> None:
+        """Go on from a snapshot, this engine's or another's."""
+        self.state.restore(saved)
+        self._predict_afresh()
+
+
+def row_order(event: Event) -> tuple[int, int, int]:
+    """The order of rows of equal time: by (a, b, wall), where b is -1 for a wall."""
+    return event.a, max(event.b, -1), -event.b
+
+
+def components(generation: list[Event]) -> list[list[Event]]:
+    """The groups of contacts that are connected through shared disks, in the order of their first contacts."""
+    if len(generation) == 1:
+        return [generation]
+    parent: dict[int, int] = {}
+
+    def root(i: int) -> int:
+        while parent.setdefault(i, i) != i:
+            i = parent[i]
+        return i
+
+    for event in generation:
+        if event.b >= 0:
+            one, other = root(event.a), root(event.b)
+            parent[max(one, other)] = min(one, other)
+    groups: dict[int, list[Event]] = {}
+    for event in generation:
+        groups.setdefault(root(event.a), []).append(event)
+    return list(groups.values())

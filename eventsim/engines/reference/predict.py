@@ -1,0 +1,224 @@
+"""Predictions: all events that the present flight of a disk can lead to, pushed into the calendar."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import product
+from typing import TypeAlias
+
+from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
+from eventsim.engines.reference.cells import Cells
+from eventsim.engines.reference.state import EngineState
+from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.motion import position, velocity
+from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.real import NEVER, Real
+from eventsim.formulas.walls.face import Face, face_delay
+from eventsim.formulas.walls.round import Arc, Container, Post, arc_delay, container_delay, post_delay
+from eventsim.scene.stage import Stage
+
+Near: TypeAlias = Iterable[tuple[list[int], tuple[int, int]]]
+"""Groups of disks that may be met, each with the image (kx, ky) it is seen in."""
+
+DELAYS: dict[type, Callable[..., tuple[Real, int]]] = {
+    Face: face_delay,
+    Post: post_delay,
+    Container: container_delay,
+    Arc: arc_delay,
+}
+
+
+class Predictor:
+    """Predicts for one stage; `cells` is None where all pairs are looked at."""
+
+    def __init__(self, stage: Stage, state: EngineState, calendar: Calendar, cells: Cells | None) -> None:
+        self._state = state
+        self._push = calendar.push
+        self._cells = cells
+        self._radius: list[float] = stage.radius.tolist()
+        self._boundaries = tuple(enumerate(stage.boundaries))
+        first = len(stage.boundaries)
+        self._features = tuple(
+            (first + k, feature.shape, DELAYS[type(feature.shape)]) for k, feature in enumerate(stage.features)
+        )
+        self._period = stage.period
+        self._falls = stage.gravity is not None
+        self._unmoved = _classes(stage)
+        shifts = [(0,) if length is None else (-1, 0, 1) for length in stage.period]
+        everyone = list(range(stage.n))
+        self._everyone = [(everyone, (kx, ky)) for kx, ky in product(*shifts)]
+
+    def predict(self, i: int, now: Real) -> None:
+        """Push every event of disk i: contacts with disks and walls, wraps, and the next cell crossing."""
+        self._contacts(i, self._everyone if self._cells is None else self._cells.near(i))
+        self._alone(i, now)
+
+    def _alone(self, i: int, now: Real) -> None:
+        """Push the events of disk i that involve no other disk."""
+        cells = self._cells
+        if cells is None:
+            for place, _ in self._boundaries:
+                self._boundary(i, place)
+        else:
+            for place, boundary in self._boundaries:
+                low, high = cells.edges(i, boundary.axis)
+                if (low if boundary.side > 0.0 else high) is None:
+                    self._boundary(i, place)
+            self._crossing(i, now)
+        for place, shape, delay_to in self._features:
+            self._wall(i, place, shape, delay_to)
+        self._wraps(i)
+
+    def predict_all(self, now: Real) -> None:
+        """Push every event of every disk; a pair once."""
+        for i in range(self._state.n):
+            near = self._everyone if self._cells is None else self._cells.near(i)
+            self._contacts(i, [([j for j in members if j > i], image) for members, image in near])
+            self._alone(i, now)
+
+    def predict_ahead(self, i: int, axis: int, step: int, now: Real) -> None:
+        """Push what disk i can meet since it entered a new cell: the disks and the boundary ahead of it."""
+        cells = self._cells
+        assert cells is not None
+        self._contacts(i, cells.ahead(i, axis, step))
+        for place, boundary in self._boundaries:
+            if boundary.axis == axis and boundary.side * step < 0.0:
+                low, high = cells.edges(i, axis)
+                if (high if step > 0 else low) is None:
+                    self._boundary(i, place)
+        self._crossing(i, now)
+
+    def _contacts(self, i: int, near: Near) -> None:
+        """Push the contacts of disk i with others; symmetric under exchange of the two, bit for bit."""
+        state = self._state
+        t, x, y, vx, vy = state.t, state.x, state.y, state.vx, state.vy
+        ti, xi, yi, ui, wi = t[i], x[i], y[i], vx[i], vy[i]
+        gravity_x, gravity_y, falls = state.gravity_x, state.gravity_y, self._falls
+        radius, unmoved, met = self._radius, self._unmoved, state.met
+        reach_i = radius[i]
+        length_x, length_y = self._period
+        for members, image in near:
+            kx, ky = image
+            for j in members:
+                if j == i or (unmoved is not None and unmoved[i] and unmoved[i] == unmoved[j]):
+                    continue
+                tj = t[j]
+                if falls:
+                    tr = ti if ti > tj else tj
+                    gx, gy = gravity_x[i], gravity_y[i]
+                    hx, hy = gravity_x[j], gravity_y[j]
+                    lag, lag_j = tr - ti, tr - tj
+                    dx = position(xi, ui, lag, gx) - position(x[j], vx[j], lag_j, hx)
+                    dy = position(yi, wi, lag, gy) - position(y[j], vy[j], lag_j, hy)
+                    du = velocity(ui, lag, gx) - velocity(vx[j], lag_j, hx)
+                    dw = velocity(wi, lag, gy) - velocity(vy[j], lag_j, hy)
+                else:
+                    uj, wj = vx[j], vy[j]
+                    du, dw = ui - uj, wi - wj
+                    if ti > tj:
+                        tr, lag = ti, ti - tj
+                        dx, dy = xi - (x[j] + uj * lag), yi - (y[j] + wj * lag)
+                    else:
+                        tr, lag = tj, tj - ti
+                        dx, dy = (xi + ui * lag) - x[j], (yi + wi * lag) - y[j]
+                if kx:
+                    dx = dx - kx * length_x  # type: ignore[operator]
+                if ky:
+                    dy = dy - ky * length_y  # type: ignore[operator]
+                if falls and (gx != hx or gy != hy):
+                    delay, _ = circle_delays(dx, dy, du, dw, gx - hx, gy - hy, reach_i + radius[j], 1.0)
+                    if not delay < NEVER:
+                        continue
+                else:
+                    delay = pair_delay(dx, dy, du, dw, reach_i + radius[j])
+                    if not delay < NEVER or (met[i] and met[j] and self._just_met(i, j, kx, ky)):
+                        continue
+                if i < j:
+                    self._push(Event(tr + delay, CONTACT, i, j, image, state.count[i], state.count[j]))
+                else:
+                    self._push(Event(tr + delay, CONTACT, j, i, (-kx, -ky), state.count[j], state.count[i]))
+
+    def _just_met(self, i: int, j: int, kx: int, ky: int) -> bool:
+        """Whether both remember each other, in this image, as what they met last: flying straight, they only recede."""
+        state = self._state
+        ux, uy = kx + state.wraps_x[i] - state.wraps_x[j], ky + state.wraps_y[i] - state.wraps_y[j]
+        return (j, ux, uy) in state.met[i] and (i, -ux, -uy) in state.met[j]
+
+    def _boundary(self, i: int, place: int) -> None:
+        """Push the contact of disk i with a hard wall of the domain."""
+        state = self._state
+        axis, position_, side, _ = self._boundaries[place][1]
+        target = position_ + side * self._radius[i]
+        if axis == 0:
+            delay = crossing_delay(state.x[i], state.vx[i], state.gravity_x[i], target, side)
+        else:
+            delay = crossing_delay(state.y[i], state.vy[i], state.gravity_y[i], target, side)
+        if delay < NEVER:
+            image = (int(side), 0)
+            self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, image, state.count[i], 0))
+
+    def _wall(
+        self, i: int, place: int, shape: Face | Post | Container | Arc, delay_to: Callable[..., tuple[Real, int]]
+    ) -> None:
+        """Push the contact of disk i with a shape inside the domain."""
+        state = self._state
+        met = next((last[1] for last in state.met[i] if last[0] == -1 - place), 0)
+        delay, side = delay_to(
+            shape,
+            state.x[i],
+            state.y[i],
+            state.vx[i],
+            state.vy[i],
+            state.gravity_x[i],
+            state.gravity_y[i],
+            self._radius[i],
+            met,
+        )
+        if delay < NEVER:
+            self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, 0), state.count[i], 0))
+
+    def _wraps(self, i: int) -> None:
+        """Push the passages of disk i through periodic boundaries."""
+        state = self._state
+        for axis, length in enumerate(self._period):
+            if length is None:
+                continue
+            x, v, g = (
+                (state.x[i], state.vx[i], state.gravity_x[i])
+                if axis == 0
+                else (state.y[i], state.vy[i], state.gravity_y[i])
+            )
+            for step, target in ((1, length), (-1, 0.0)):
+                delay = crossing_delay(x, v, g, target, -step)
+                if delay < NEVER:
+                    self._push(Event(state.t[i] + delay, WRAP, i, axis, (step, 0), state.count[i], 0))
+
+    def _crossing(self, i: int, now: Real) -> None:
+        """Push the next passage of disk i into another cell, reckoned from where it is now."""
+        state, cells = self._state, self._cells
+        assert cells is not None
+        at, speed = state.place(i, now), state.speed(i, now)
+        pull = (state.gravity_x[i], state.gravity_y[i])
+        best, best_axis, best_step = NEVER, 0, 0
+        for axis in (0, 1):
+            v, g = speed[axis], pull[axis]
+            low, high = cells.edges(i, axis)
+            if high is not None and (v > 0.0 or g is not None):
+                delay = crossing_delay(at[axis], v, g, high, -1.0)
+                if delay < best:
+                    best, best_axis, best_step = delay, axis, 1
+            if low is not None and (v < 0.0 or g is not None):
+                delay = crossing_delay(at[axis], v, g, low, 1.0)
+                if delay < best:
+                    best, best_axis, best_step = delay, axis, -1
+        if best < NEVER:
+            self._push(Event(now + best, CROSSING, i, best_axis, (best_step, 0), state.count[i], 0))
+
+
+def _classes(stage: Stage) -> list[int] | None:
+    """1 for immovable disks, 2 for tracers, else 0; None where there are neither.  Two of one class do not meet."""
+    if stage.mass is None:
+        return None
+    classes = [1 if mass == float("inf") else 2 if mass == 0.0 else 0 for mass in stage.mass.tolist()]
+    return classes if any(classes) else None

@@ -1,0 +1,274 @@
+"""Contacts are resolved: a single one by the pair or wall formula, several that share disks jointly."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, TypeAlias
+
+from eventsim.engines.base import Counters
+from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.state import EngineState
+from eventsim.formulas.impulse import (
+    contact_restitution,
+    flat_update,
+    mass_fractions,
+    pair_update,
+    reduced_mass,
+    wall_update,
+)
+from eventsim.formulas.real import Real, sqrt
+from eventsim.formulas.simultaneous import JointContact, resolve_together
+from eventsim.formulas.walls.face import Face, face_normal
+from eventsim.formulas.walls.round import round_normal
+from eventsim.record.events import Kind
+from eventsim.scene.stage import Stage
+
+Row: TypeAlias = tuple[Any, ...]
+MISSING = math.nan
+
+
+class Resolver:
+    """Resolves the contacts of one stage; counts them, books momentum, and keeps their rows if asked to."""
+
+    def __init__(self, stage: Stage, state: EngineState, counters: Counters, keep_rows: bool) -> None:
+        self._stage = stage
+        self._state = state
+        self._counters = counters
+        self._radius: list[float] = stage.radius.tolist()
+        self._mass: list[float] | None = None if stage.mass is None else stage.mass.tolist()
+        self._same_mass: float = stage.common_mass
+        self._keep_rows = keep_rows
+        self.rows: list[Row] = []
+
+    def resolve(self, component: list[Event]) -> list[int]:
+        """Resolve contacts of one time that are connected through shared disks; the disks that it changed."""
+        if len(component) > 1:
+            return self._joint(component)
+        event = component[0]
+        if event.b >= 0:
+            return self._pair(event)
+        return self._wall(event)
+
+    def kick(self, i: int, vx: float, vy: float) -> None:
+        """Set the velocity of disk i from outside, at the present time; a row of its own."""
+        state = self._state
+        t = state.now
+        x, y = state.place(i, t)
+        before = state.speed(i, t)
+        state.anchor(i, t, x, y, vx, vy)
+        state.met[i] = ()
+        mass = self._mass_of(i)
+        if math.isfinite(mass):
+            self._book(mass * (vx - before[0]), mass * (vy - before[1]))
+        self._counters.kicks += 1
+        strength = mass * math.hypot(vx - before[0], vy - before[1]) if math.isfinite(mass) else MISSING
+        self._row(t, Kind.KICK, i, -1, -1, strength, -1)
+
+    def _pair(self, event: Event) -> list[int]:
+        state, stage = self._state, self._stage
+        t, a, b = event.time, event.a, event.b
+        xa, ya = state.place(a, t)
+        xb, yb = state.place(b, t)
+        ua, wa = state.speed(a, t)
+        ub, wb = state.speed(b, t)
+        dx, dy = self._apart(event, xa, ya, xb, yb)
+        share_a, share_b = (0.5, 0.5) if self._mass is None else mass_fractions(self._mass[a], self._mass[b])
+        restitution = self._restitution(stage.pair_restitution, t, a, b)
+        ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
+        state.anchor(a, t, xa, ya, ua, wa)
+        state.anchor(b, t, xb, yb, ub, wb)
+        kx = event.image[0] + state.wraps_x[a] - state.wraps_x[b]
+        ky = event.image[1] + state.wraps_y[a] - state.wraps_y[b]
+        state.met[a], state.met[b] = ((b, kx, ky),), ((a, -kx, -ky),)
+        self._note_time(a, t)
+        self._note_time(b, t)
+        reduced = self._reduced(a, b)
+        distance = sqrt(dx * dx + dy * dy)
+        self._note_overlap(a, b, distance)
+        self._book_pair(a, b, -(q * reduced) * dx, -(q * reduced) * dy)
+        self._counters.pair_contacts += 1
+        self._row(t, Kind.PAIR, a, b, -1, -(q * reduced) * distance, -1)
+        return [a, b]
+
+    def _wall(self, event: Event) -> list[int]:
+        state, stage = self._state, self._stage
+        t, i, place, side = event.time, event.a, -1 - event.b, event.image[0]
+        x, y = state.place(i, t)
+        u, w = state.speed(i, t)
+        before = u, w
+        restitution = self._restitution(stage.wall_restitution, t, i, i)
+        if place < len(stage.boundaries):
+            boundary = stage.boundaries[place]
+            target = boundary.position + boundary.side * self._radius[i]
+            if boundary.axis == 0:
+                x = target
+                u, _ = flat_update(u, boundary.side, restitution)
+            else:
+                y = target
+                w, _ = flat_update(w, boundary.side, restitution)
+            wall = boundary.wall
+        else:
+            nx, ny = self._normal(place, side, x, y)
+            u, w, _ = wall_update(nx, ny, u, w, restitution)
+            wall = stage.features[place - len(stage.boundaries)].wall
+        state.anchor(i, t, x, y, u, w)
+        state.met[i] = ((event.b, side, 0),)
+        self._note_time(i, t)
+        mass = self._mass_of(i)
+        impulse = self._book_wall(mass, u - before[0], w - before[1])
+        self._counters.wall_contacts += 1
+        self._row(t, Kind.WALL, i, -1, wall, impulse, -1)
+        return [i]
+
+    def _joint(self, component: list[Event]) -> list[int]:
+        """A cluster: the velocities after it from the law of simultaneous contacts; disks that get no impulse fly on."""
+        state, stage = self._state, self._stage
+        t = component[0].time
+        disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
+        number = {disk: k for k, disk in enumerate(disks)}
+        at = [state.place(i, t) for i in disks]
+        before = [state.speed(i, t) for i in disks]
+        contacts = []
+        for event in component:
+            xa, ya = at[number[event.a]]
+            if event.b >= 0:
+                dx, dy = self._apart(event, xa, ya, *at[number[event.b]])
+                e = self._restitution(stage.pair_restitution, t, event.a, event.b)
+                contacts.append(JointContact(number[event.a], number[event.b], dx, dy, e))
+            else:
+                nx, ny = self._normal(-1 - event.b, event.image[0], xa, ya)
+                e = self._restitution(stage.wall_restitution, t, event.a, event.a)
+                contacts.append(JointContact(number[event.a], None, nx, ny, e))
+        outcome = resolve_together(contacts, before, [self._mass_of(i) for i in disks])
+        active = [k for k, taken in enumerate(outcome.active) if taken]
+        changed = sorted({i for k in active for i in component[k][2:4] if i >= 0})
+        for i in changed:
+            x, y = at[number[i]]
+            for k in active:
+                if component[k].a == i and component[k].b < 0:
+                    x, y = self._on_boundary(-1 - component[k].b, i, x, y)
+            state.anchor(i, t, x, y, *outcome.velocities[number[i]])
+            state.met[i] = tuple(self._met(component[k], i) for k in active if i in component[k][2:4])
+            self._note_time(i, t)
+        first = self._counters.events
+        for k in active:
+            self._note_joint(component[k], contacts[k], outcome.impulses[k], first)
+        self._counters.clusters += 1
+        return changed
+
+    def _note_joint(self, event: Event, contact: JointContact, impulse: float, first: int) -> None:
+        """Book and log one contact of a cluster that is resolved."""
+        distance = math.hypot(contact.dx, contact.dy)
+        jx, jy = impulse * (contact.dx / distance), impulse * (contact.dy / distance)
+        if event.b >= 0:
+            self._note_overlap(event.a, event.b, distance)
+            self._book_pair(event.a, event.b, jx, jy)
+            self._counters.pair_contacts += 1
+            self._row(event.time, Kind.PAIR, event.a, event.b, -1, impulse, first)
+        else:
+            self._book(jx, jy)
+            self._counters.wall_contacts += 1
+            self._row(event.time, Kind.WALL, event.a, -1, self._wall_number(-1 - event.b), impulse, first)
+
+    def _met(self, event: Event, i: int) -> tuple[int, int, int]:
+        """What disk i remembers of a contact."""
+        if event.b < 0:
+            return event.b, event.image[0], 0
+        state = self._state
+        kx = event.image[0] + state.wraps_x[event.a] - state.wraps_x[event.b]
+        ky = event.image[1] + state.wraps_y[event.a] - state.wraps_y[event.b]
+        return (event.b, kx, ky) if i == event.a else (event.a, -kx, -ky)
+
+    def _apart(self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real) -> tuple[Real, Real]:
+        """The vector from b (its image) to a."""
+        (kx, ky), (length_x, length_y) = event.image, self._stage.period
+        dx, dy = xa - xb, ya - yb
+        if kx:
+            dx = dx - kx * length_x  # type: ignore[operator]
+        if ky:
+            dy = dy - ky * length_y  # type: ignore[operator]
+        return dx, dy
+
+    def _normal(self, place: int, side: int, x: Real, y: Real) -> tuple[Real, Real]:
+        """The normal, of any length, of a wall shape, towards a disk at (x, y)."""
+        boundaries = self._stage.boundaries
+        if place < len(boundaries):
+            boundary = boundaries[place]
+            return (boundary.side, 0.0) if boundary.axis == 0 else (0.0, boundary.side)
+        shape = self._stage.features[place - len(boundaries)].shape
+        if isinstance(shape, Face):
+            return face_normal(shape, side)
+        return round_normal(shape, side, x, y)
+
+    def _on_boundary(self, place: int, i: int, x: Real, y: Real) -> tuple[Real, Real]:
+        """The place of disk i, set exactly onto a boundary of the domain that it meets."""
+        if place >= len(self._stage.boundaries):
+            return x, y
+        boundary = self._stage.boundaries[place]
+        target = boundary.position + boundary.side * self._radius[i]
+        return (target, y) if boundary.axis == 0 else (x, target)
+
+    def _wall_number(self, place: int) -> int:
+        boundaries = self._stage.boundaries
+        return boundaries[place].wall if place < len(boundaries) else self._stage.features[place - len(boundaries)].wall
+
+    def _restitution(self, restitution: float, t: Real, a: int, b: int) -> Real:
+        duration = self._stage.contact_duration
+        if duration is None:
+            return restitution
+        state = self._state
+        return contact_restitution(restitution, duration, t - state.contact_time[a], t - state.contact_time[b])
+
+    def _note_time(self, i: int, t: Real) -> None:
+        state = self._state
+        state.at_once[i] = state.at_once[i] + 1 if state.contact_time[i] == t else 1
+        state.contact_time[i] = t
+
+    def _note_overlap(self, a: int, b: int, distance: Real) -> None:
+        reach = self._radius[a] + self._radius[b]
+        overlap = (reach - distance) / reach
+        if overlap > self._counters.deepest_overlap and self._finite(a) and self._finite(b):
+            self._counters.deepest_overlap = overlap
+
+    def _mass_of(self, i: int) -> float:
+        return self._same_mass if self._mass is None else self._mass[i]
+
+    def _finite(self, i: int) -> bool:
+        return 0.0 < self._mass_of(i) < math.inf
+
+    def _reduced(self, a: int, b: int) -> float:
+        return 0.5 * self._same_mass if self._mass is None else reduced_mass(self._mass[a], self._mass[b])
+
+    def _book(self, jx: Real, jy: Real) -> None:
+        """Note momentum that came from outside the disks of finite mass."""
+        momentum = self._counters.outer_momentum
+        momentum[0] += jx
+        momentum[1] += jy
+
+    def _book_pair(self, a: int, b: int, jx: Real, jy: Real) -> None:
+        """Note the momentum that an immovable disk gave to the other one; (jx, jy) is what a received."""
+        if self._mass is None:
+            return
+        if math.isinf(self._mass[b]):
+            self._book(jx, jy)
+        elif math.isinf(self._mass[a]):
+            self._book(-jx, -jy)
+
+    def _book_wall(self, mass: float, du: Real, dw: Real) -> Real:
+        """Note the momentum that a wall gave; its magnitude.  An immovable disk has none to speak of."""
+        if math.isinf(mass):
+            return MISSING
+        self._book(mass * du, mass * dw)
+        return mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))
+
+    def _row(self, t: Real, kind: Kind, a: int, b: int, wall: int, impulse: Real, joint: int) -> None:
+        """Count an event, and keep its row if rows are kept."""
+        state, counters = self._state, self._counters
+        if self._keep_rows:
+            other: tuple[Any, ...] = (MISSING, MISSING, MISSING, MISSING)
+            if b >= 0:
+                other = (state.x[b], state.y[b], state.vx[b], state.vy[b])
+            flight = (state.x[a], state.y[a], state.vx[a], state.vy[a])
+            self.rows.append((counters.events, 0.0, kind, a, b, wall, *flight, *other, impulse, joint, state.epoch, t))
+        counters.events += 1
+        state.window_rows += 1

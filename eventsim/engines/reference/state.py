@@ -1,0 +1,116 @@
+"""What changes: the free flights of all disks, whom each met last, and the clock."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+from eventsim.engines.base import Snapshot
+from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
+from eventsim.formulas.motion import position, velocity
+from eventsim.formulas.real import Acceleration, Real
+from eventsim.scene.stage import Stage
+
+Met: TypeAlias = tuple[tuple[int, int, int], ...]
+"""Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, 0); several after a joint contact."""
+
+
+class EngineState:
+    """The flights of n disks as lists of numbers; only advance and resolve change them.
+
+    t, x, y, vx, vy: the anchor of each flight, t a remainder in the present epoch.  count: the invalidation counts.
+    wraps_x, wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was
+    (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.
+    """
+
+    def __init__(self, stage: Stage, number: Any = float) -> None:
+        n = stage.n
+        self.n = n
+        self.x: list[Real] = [number(value) for value in stage.x.tolist()]
+        self.y: list[Real] = [number(value) for value in stage.y.tolist()]
+        self.vx: list[Real] = [number(value) for value in stage.vx.tolist()]
+        self.vy: list[Real] = [number(value) for value in stage.vy.tolist()]
+        self.t: list[Real] = [number(0.0)] * n
+        self.count = [0] * n
+        self.wraps_x = [0] * n
+        self.wraps_y = [0] * n
+        self.met: list[Met] = [()] * n
+        self.contact_time: list[Real] = [-float("inf")] * n
+        self.at_once = [0] * n
+        self.gravity_x, self.gravity_y = _accelerations(stage)
+        self.now: Real = number(0.0)
+        self.epoch = 0
+        self.epoch_length = stage.epoch_length
+        self.window = FIRST_WINDOW
+        self.window_cap = stage.window_cap
+        self.window_end = window_length(self.window, self.epoch_length)
+        self.window_rows = 0
+
+    def place(self, i: int, t: Real) -> tuple[Real, Real]:
+        """The centre of disk i at time t of its present flight."""
+        lag = t - self.t[i]
+        return (
+            position(self.x[i], self.vx[i], lag, self.gravity_x[i]),
+            position(self.y[i], self.vy[i], lag, self.gravity_y[i]),
+        )
+
+    def speed(self, i: int, t: Real) -> tuple[Real, Real]:
+        """The velocity of disk i at time t of its present flight."""
+        lag = t - self.t[i]
+        return velocity(self.vx[i], lag, self.gravity_x[i]), velocity(self.vy[i], lag, self.gravity_y[i])
+
+    def anchor(self, i: int, t: Real, x: Real, y: Real, vx: Real, vy: Real) -> None:
+        """Begin a new flight of disk i; all predictions that rest on the old one are stale from here on."""
+        self.t[i], self.x[i], self.y[i], self.vx[i], self.vy[i] = t, x, y, vx, vy
+        self.count[i] += 1
+
+    def turn_over(self) -> None:
+        """Begin a new window: every disk is advanced to the end of the old one, which becomes time 0."""
+        end = self.window_end
+        for i in range(self.n):
+            x, y = self.place(i, end)
+            vx, vy = self.speed(i, end)
+            self.anchor(i, end - end, x, y, vx, vy)
+            self.contact_time[i] = self.contact_time[i] - end
+        self.now = end - end
+        self.epoch += 1 << self.window
+        self.window = next_window(self.window, self.window_rows, self.n, self.window_cap)
+        self.window_end = window_length(self.window, self.epoch_length)
+        self.window_rows = 0
+
+    def snapshot(self) -> Snapshot:
+        """A copy of all that the future depends on."""
+        return Snapshot(
+            epoch=self.epoch,
+            window=self.window,
+            window_rows=self.window_rows,
+            now=self.now,
+            t=tuple(self.t),
+            x=tuple(self.x),
+            y=tuple(self.y),
+            vx=tuple(self.vx),
+            vy=tuple(self.vy),
+            wraps_x=tuple(self.wraps_x),
+            wraps_y=tuple(self.wraps_y),
+            met=tuple(self.met),
+            contact_time=tuple(self.contact_time),
+            at_once=tuple(self.at_once),
+        )
+
+    def restore(self, saved: Snapshot) -> None:
+        """Go back (or on) to a snapshot; predictions made before are stale."""
+        self.epoch, self.window, self.window_rows, self.now = saved.epoch, saved.window, saved.window_rows, saved.now
+        self.window_end = window_length(self.window, self.epoch_length)
+        self.t, self.x, self.y = list(saved.t), list(saved.x), list(saved.y)
+        self.vx, self.vy = list(saved.vx), list(saved.vy)
+        self.wraps_x, self.wraps_y = list(saved.wraps_x), list(saved.wraps_y)
+        self.met, self.contact_time, self.at_once = list(saved.met), list(saved.contact_time), list(saved.at_once)
+        self.count = [count + 1 for count in self.count]
+
+
+def _accelerations(stage: Stage) -> tuple[list[Acceleration], list[Acceleration]]:
+    """Each disk's own gravity: None without, 0 for immovable disks."""
+    if stage.gravity is None:
+        return [None] * stage.n, [None] * stage.n
+    gx, gy = stage.gravity
+    fixed = [False] * stage.n if stage.mass is None else [mass == float("inf") for mass in stage.mass.tolist()]
+    return [0.0 if held else gx for held in fixed], [0.0 if held else gy for held in fixed]

@@ -1,0 +1,68 @@
+"""How good a run is: what should have been conserved, and by how much it was not."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventsim.engines.base import Motion, Residuals, Session
+from eventsim.record.events import Floats
+from eventsim.scene.stage import Stage
+
+
+def residuals_of(session: Session) -> Residuals:
+    """The residuals of a run that has come to where its session stands; disks of finite positive mass only."""
+    stage = session.stage
+    start = Motion(stage.x, stage.y, stage.vx, stage.vy, np.zeros(stage.n, np.int64), np.zeros(stage.n, np.int64))
+    return Residuals(
+        energy=_energy_change(session, start, session.motion()),
+        momentum=_momentum_left(session, start, session.motion()),
+        max_overlap=float(session.counters.deepest_overlap),
+    )
+
+
+def _masses(stage: Stage) -> Floats:
+    """The masses, with 0 for those that are not finite."""
+    if stage.mass is None:
+        return np.full(stage.n, stage.common_mass)
+    return np.where(np.isfinite(stage.mass), stage.mass, 0.0)
+
+
+def _energy_change(session: Session, start: Motion, end: Motion) -> float | None:
+    """The relative change of the energy; None where contacts, kicks or moving obstacles change it."""
+    stage = session.stage
+    moved = stage.mass is not None and np.any(np.isinf(stage.mass) & ((stage.vx != 0.0) | (stage.vy != 0.0)))
+    if stage.pair_restitution < 1.0 or stage.wall_restitution < 1.0 or session.counters.kicks or moved:
+        return None
+    mass = _masses(stage)
+    before, scale = _energy(stage, mass, start)
+    after, _ = _energy(stage, mass, end)
+    return (after - before) / scale if scale > 0.0 else after - before
+
+
+def _energy(stage: Stage, mass: Floats, motion: Motion) -> tuple[float, float]:
+    """(energy, sum of the magnitudes of its terms); the potential energy counts from the corner."""
+    terms = [0.5 * mass * motion.vx**2, 0.5 * mass * motion.vy**2]
+    if stage.gravity is not None:
+        (gx, gy), (length_x, length_y) = stage.gravity, stage.period
+        terms.append(-mass * gx * (motion.x + motion.wraps_x * (length_x or 0.0)))
+        terms.append(-mass * gy * (motion.y + motion.wraps_y * (length_y or 0.0)))
+    every = np.concatenate(terms)
+    return math.fsum(every.tolist()), math.fsum(np.abs(every).tolist())
+
+
+def _momentum_left(session: Session, start: Motion, end: Motion) -> float:
+    """The momentum that is not booked against walls, immovable disks, gravity and kicks, over sum m |v|."""
+    stage = session.stage
+    mass = _masses(stage)
+    epoch, remainder = session.clock
+    duration = epoch * stage.epoch_length + remainder
+    gravity = stage.gravity or (0.0, 0.0)
+    left = []
+    for axis, (before, after) in enumerate(((start.vx, end.vx), (start.vy, end.vy))):
+        change = math.fsum([*(mass * after).tolist(), *(-mass * before).tolist()])
+        pull = math.fsum(mass.tolist()) * gravity[axis] * duration
+        left.append(change - session.counters.outer_momentum[axis] - pull)
+    scale = max(math.fsum((mass * np.hypot(m.vx, m.vy)).tolist()) for m in (start, end))
+    return math.hypot(*left) / scale if scale > 0.0 else math.hypot(*left)

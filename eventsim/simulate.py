@@ -1,0 +1,185 @@
+"""What a Python user calls: simulate a scene to its stop, or step through it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from eventsim.engines import ENGINES, Engine
+from eventsim.engines.base import Counters, OnEvent, Progress, Run, Snapshot, Stop
+from eventsim.engines.drive import Wishes, memory_log, provenance_of, state_of
+from eventsim.errors import CollapseError, EventsimError, SceneError
+from eventsim.record.events import Rows, State
+from eventsim.record.log import EventLog
+from eventsim.record.provenance import Ending
+from eventsim.scene import Scene
+from eventsim.scene.stage import stage_of
+
+STEP_BUDGET = 4096
+"""Steps of an engine between two looks at whether the next event has come."""
+
+
+def simulate(
+    scene: Scene,
+    until: float | None = None,
+    events: int | None = None,
+    engine: str = "auto",
+    log: bool | str | PathLike[str] = False,
+    compact: bool = False,
+    digest: bool = False,
+    progress: Progress | None = None,
+    on_event: OnEvent | None = None,
+    command: str | None = None,
+    **options: Any,
+) -> Run:
+    """Simulate a scene until a time on its clock or for a number of events, whichever comes first.
+
+    until, events: given here, they replace what the scene says.  engine: a name of `ENGINES`, or "auto".  log: False
+    (counters only), True (in memory) or a path (.csv, .jsonl, .npz, .parquet; streamed; `compact` leaves out what replay
+    computes).  digest: compute the digest also where no log is kept.  progress(fraction, events, time): called a few times a
+    second.  on_event(rows): called with each block of new rows.  options: the engine's own, such as check=True.
+
+    Simultaneous contacts are never cut apart, so a run that stops by `events` may have a few events more.
+
+    Returns a Run; its `stopped` tells why it ended.  Raises SceneError where nothing says when to stop, EventsimError for an
+    engine that does not exist.
+    """
+    stop = stop_of(scene, until, events)
+    wishes = Wishes(log=log, compact=compact, digest=digest, progress=progress, on_event=on_event, command=command)
+    return engine_named(engine).run(scene, stop, wishes, **options)
+
+
+def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:
+    """When to stop: what is asked for here, else what the scene says."""
+    if until is None and events is None:
+        until, events = scene.until, scene.events
+    if until is None and events is None:
+        raise SceneError("nothing says when to stop: give until or events, in the scene or to simulate()")
+    if until is not None and math.isnan(until):
+        raise SceneError("until = nan: must be a time")
+    if events is not None and events < 0:
+        raise SceneError(f"events = {events}: must be at least 0")
+    return Stop(until, events)
+
+
+def engine_named(name: str) -> Engine:
+    """The engine of a name; "auto" is the one that suits."""
+    if name == "auto":
+        return ENGINES["reference"]
+    if name not in ENGINES:
+        raise EventsimError(f"engine {name!r} does not exist; there are: auto, {', '.join(ENGINES)}")
+    return ENGINES[name]
+
+
+@dataclass(frozen=True, slots=True)
+class SavedSimulation:
+    """A point that a simulation can go back to."""
+
+    snapshot: Snapshot
+    counters: Counters
+    rows: int
+
+
+class Simulation:
+    """A scene that is simulated step by step.
+
+    >>> sim = Simulation(scene)
+    >>> sim.step(); sim.advance_to(2.5); sim.set_velocity(0, (1.0, 0.0)); sim.log
+    """
+
+    def __init__(self, scene: Scene, engine: str = "auto", **options: Any) -> None:
+        chosen = engine_named(engine)
+        self.scene = scene
+        self.engine = chosen.name
+        self._session = chosen.open(stage_of(scene), keep_rows=True, **options)
+        self._provenance = provenance_of(self._session, self.engine, scene)
+        self._blocks: list[Rows] = []
+        self._time: float | None = None
+
+    @property
+    def time(self) -> float:
+        """Where the scene's clock stands."""
+        return self.state.time
+
+    @property
+    def state(self) -> State:
+        """Where all disks are now; looking changes nothing."""
+        state = state_of(self._session)
+        return state if self._time is None else replace(state, time=self._time)
+
+    @property
+    def log(self) -> EventLog:
+        """All that happened so far."""
+        return memory_log(self._provenance, self._blocks, Ending(*self._session.clock, "until"))
+
+    @property
+    def counters(self) -> Counters:
+        """How often what happened."""
+        return self._session.counters
+
+    def step(self) -> Rows:
+        """Go to the next event; its row, or the rows of all contacts at that instant.  Empty where no event is ahead.
+
+        Raises CollapseError where contacts follow one another without end.
+        """
+        rows = self._advance(Stop(events=self._session.counters.events + 1))
+        self._time = None
+        return rows
+
+    def advance_to(self, time: float) -> Rows:
+        """Let time pass to `time` on the scene's clock; the rows of what happened.
+
+        Raises CollapseError as step; EventsimError for a time that has passed.
+        """
+        if math.isnan(time) or math.isinf(time) or time < self.time:
+            raise EventsimError(f"cannot advance to {time!r}: it must be a finite time, not before {self.time!r}")
+        rows = self._advance(Stop(until=time))
+        self._time = time
+        return rows
+
+    def set_velocity(self, disk: int, velocity: tuple[float, float]) -> None:
+        """Give a disk another velocity, now: a kick, logged, so that the log still replays."""
+        vx, vy = float(velocity[0]), float(velocity[1])
+        if not 0 <= disk < len(self.scene.disks):
+            raise EventsimError(f"disk {disk} does not exist; there are {len(self.scene.disks)}, counted from 0")
+        if not (math.isfinite(vx) and math.isfinite(vy)):
+            raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: must be finite")
+        self._session.kick(disk, vx, vy)
+        self._keep()
+
+    def snapshot(self) -> SavedSimulation:
+        """A point to come back to."""
+        return SavedSimulation(self._session.snapshot(), self._session.counters.copy(), self._row_count())
+
+    def restore(self, saved: SavedSimulation) -> None:
+        """Go back to a snapshot; what happened since is forgotten."""
+        self._session.restore(saved.snapshot)
+        self._session.counters.copy_from(saved.counters)
+        keep = saved.rows
+        blocks, self._blocks = self._blocks, []
+        for block in blocks:
+            self._blocks.append(block[: max(keep, 0)])
+            keep -= len(block)
+        self._time = None
+
+    def _advance(self, stop: Stop) -> Rows:
+        before = len(self._blocks)
+        stopped = None
+        while stopped is None:
+            stopped = self._session.advance(stop, STEP_BUDGET)
+            self._keep()
+        if stopped in ("collapse", "digits"):
+            raise CollapseError(f"stopped by {stopped}: {self._session.reason}")
+        blocks = self._blocks[before:]
+        self._blocks[before:] = [np.concatenate(blocks)]
+        return self._blocks[-1]
+
+    def _keep(self) -> None:
+        self._blocks.append(self._session.take_rows())
+
+    def _row_count(self) -> int:
+        return sum(len(block) for block in self._blocks)
