@@ -1,0 +1,151 @@
+"""Which contact a row of a log stands for: the image of a pair, the shape and side of a wall.
+
+A row does not say. But a contact time is a pure function of the flights, so the contact is the one whose
+time has the bits of the row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import product
+from typing import NamedTuple
+
+from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.walls.face import Face, face_delay, face_normal
+from eventsim.formulas.walls.round import (
+    Arc,
+    Container,
+    Post,
+    arc_delay,
+    container_delay,
+    post_delay,
+    round_normal,
+)
+from eventsim.record.disk_flight import DiskFlight
+from eventsim.scene.stage import Stage
+
+DELAYS: dict[type, Callable[..., tuple[float, int]]] = {
+    Face: face_delay,
+    Post: post_delay,
+    Container: container_delay,
+    Arc: arc_delay,
+}
+
+
+class Contact(NamedTuple):
+    """A contact of disk a, in the order in which the engine resolves those of one time.
+
+    b: the other disk, or -1 - place of the wall shape. image: of b as seen from a, (kx, ky); of a wall (side, 0).
+    """
+
+    a: int
+    b: int
+    image: tuple[int, int]
+
+
+class Contacts:
+    """The contacts that disks in flight have at one time."""
+
+    def __init__(self, stage: Stage, disks: list[DiskFlight]) -> None:
+        self._stage = stage
+        self._disks = disks
+        self._boundaries = len(stage.boundaries)
+        along_x, along_y = ((0,) if length is None else (-1, 0, 1) for length in stage.period)
+        self._images = list(product(along_x, along_y))
+        self._wall = [boundary.wall for boundary in stage.boundaries] + [feature.wall for feature in stage.features]
+        self._places: dict[int, list[int]] = {}
+        for place, wall in enumerate(self._wall):
+            self._places.setdefault(wall, []).append(place)
+
+    def of_pair(self, a: int, b: int, t: float) -> list[Contact]:
+        """Return the contacts of two disks at remainder t; several where a disk is as wide as the domain."""
+        return [Contact(a, b, image) for image in self._images if self._pair_time(a, b, image) == t]
+
+    def of_wall(self, a: int, wall: int, t: float) -> list[Contact]:
+        """Return the contacts of a disk with the shapes of a wall at remainder t."""
+        found = []
+        for place in self._places.get(wall, ()):
+            time, side = self._wall_time(a, place)
+            if time == t:
+                found.append(Contact(a, -1 - place, (side, 0)))
+        return found
+
+    def apart(
+        self, contact: Contact, place_a: tuple[float, float], place_b: tuple[float, float]
+    ) -> tuple[float, float]:
+        """Return the vector from b (its image) to a."""
+        return self._less(place_a[0] - place_b[0], contact, 0), self._less(place_a[1] - place_b[1], contact, 1)
+
+    def normal(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
+        """Return the normal, of any length, of a wall towards a disk at `place`."""
+        number, side = -1 - contact.b, contact.image[0]
+        if number < self._boundaries:
+            boundary = self._stage.boundaries[number]
+            return (boundary.side, 0.0) if boundary.axis == 0 else (0.0, boundary.side)
+        shape = self._stage.features[number - self._boundaries].shape
+        if isinstance(shape, Face):
+            return face_normal(shape, side)
+        return round_normal(shape, side, *place)
+
+    def on_boundary(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
+        """Return the place of a disk, set exactly onto the boundary of the domain if that is what it meets."""
+        number = -1 - contact.b
+        if number >= self._boundaries:
+            return place
+        boundary = self._stage.boundaries[number]
+        target = boundary.position + boundary.side * self._disks[contact.a].radius
+        return (target, place[1]) if boundary.axis == 0 else (place[0], target)
+
+    def boundary_axis(self, contact: Contact) -> int | None:
+        """Return the axis across which a boundary of the domain is met; None for other walls."""
+        number = -1 - contact.b
+        return self._stage.boundaries[number].axis if number < self._boundaries else None
+
+    def wall_of(self, contact: Contact) -> int:
+        """Return the number of the wall that is met."""
+        return self._wall[-1 - contact.b]
+
+    def met(self, contact: Contact, i: int) -> tuple[int, int, int]:
+        """Return what disk i of a contact remembers of it."""
+        if contact.b < 0:
+            return contact.b, contact.image[0], 0
+        kx, ky = self._unwrapped(contact.a, contact.b, contact.image)
+        return (contact.b, kx, ky) if i == contact.a else (contact.a, -kx, -ky)
+
+    def _less(self, d: float, contact: Contact, axis: int) -> float:
+        k, length = contact.image[axis], self._stage.period[axis]
+        return d - k * length if k and length is not None else d
+
+    def _unwrapped(self, a: int, b: int, image: tuple[int, int]) -> tuple[int, int]:
+        one, other = self._disks[a].wraps, self._disks[b].wraps
+        return image[0] + one[0] - other[0], image[1] + one[1] - other[1]
+
+    def _pair_time(self, a: int, b: int, image: tuple[int, int]) -> float | None:
+        """Return the remainder at which two disks meet in an image; None where they just met."""
+        one, other = self._disks[a], self._disks[b]
+        t = max(one.t, other.t)
+        (ua, wa), (ub, wb) = one.speed(t), other.speed(t)
+        dx, dy = self.apart(Contact(a, b, image), one.place(t), other.place(t))
+        du, dw, reach = ua - ub, wa - wb, one.radius + other.radius
+        if one.gx != other.gx or one.gy != other.gy:
+            first, _ = circle_delays(dx, dy, du, dw, one.gx - other.gx, one.gy - other.gy, reach, 1.0)
+            return float(t + first)
+        kx, ky = self._unwrapped(a, b, image)
+        if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
+            return None
+        return float(t + pair_delay(dx, dy, du, dw, reach))
+
+    def _wall_time(self, a: int, place: int) -> tuple[float, int]:
+        """Return (remainder, side) of the next contact of a disk with a shape."""
+        disk, stage = self._disks[a], self._stage
+        if place < self._boundaries:
+            axis, where, side, _ = stage.boundaries[place]
+            x, v, g = (disk.x, disk.vx, disk.gx) if axis == 0 else (disk.y, disk.vy, disk.gy)
+            return disk.t + crossing_delay(x, v, g, where + side * disk.radius, side), int(side)
+        shape = stage.features[place - self._boundaries].shape
+        met = next((last[1] for last in disk.met if last[0] == -1 - place), 0)
+        flight = (disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy)
+        delay, side = DELAYS[type(shape)](shape, *flight, disk.radius, met)
+        return disk.t + delay, side

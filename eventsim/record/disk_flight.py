@@ -1,0 +1,98 @@
+"""The flight of one disk, followed from row to row as the engine followed it."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+from eventsim.errors import LogError
+from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.motion import position, velocity
+from eventsim.formulas.real import NEVER, Acceleration
+from eventsim.record.windows import Windows
+from eventsim.scene.stage import Stage
+
+Met: TypeAlias = tuple[tuple[int, int, int], ...]
+"""Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, 0)."""
+
+
+class DiskFlight:
+    """A free flight, and what the next contact of its disk depends on besides.
+
+    window, t: where the clock stood at the anchor x, y, vx, vy. wraps: passages of periodic boundaries along x and y.
+    met: whom it met last. contact_time: when that was, a remainder in the present window; -inf: never.
+    """
+
+    __slots__ = ("contact_time", "gx", "gy", "met", "radius", "t", "vx", "vy", "window", "wraps", "x", "y")
+
+    def __init__(self, stage: Stage, number: int, immovable: bool) -> None:
+        self.window, self.t = 0, 0.0
+        self.x, self.y = float(stage.x[number]), float(stage.y[number])
+        self.vx, self.vy = float(stage.vx[number]), float(stage.vy[number])
+        self.radius = float(stage.radius[number])
+        self.gx: Acceleration = None
+        self.gy: Acceleration = None
+        if stage.gravity is not None:
+            self.gx, self.gy = (0.0, 0.0) if immovable else stage.gravity
+        self.wraps = [0, 0]
+        self.met: Met = ()
+        self.contact_time = -math.inf
+
+    def place(self, t: float) -> tuple[float, float]:
+        """Return the centre at remainder t of the present window."""
+        lag = t - self.t
+        return position(self.x, self.vx, lag, self.gx), position(self.y, self.vy, lag, self.gy)
+
+    def speed(self, t: float) -> tuple[float, float]:
+        """Return the velocity at remainder t of the present window."""
+        lag = t - self.t
+        return velocity(self.vx, lag, self.gx), velocity(self.vy, lag, self.gy)
+
+    def anchor(self, t: float, place: tuple[float, float], speed: tuple[float, float]) -> None:
+        """Begin a new flight."""
+        self.t = t
+        self.x, self.y = place
+        self.vx, self.vy = speed
+
+    def fly(self, period: tuple[float | None, float | None], windows: Windows, window: int, remainder: float) -> None:
+        """Follow the flight to (window, remainder): the last wrap or turnover before it becomes the anchor.
+
+        Raises LogError where that would lead back in time.
+        """
+        periodic = period != (None, None)
+        if (window, remainder) < (self.window, self.t):
+            raise LogError("the log does not fit its scene: a disk's events run backwards in time")
+        while True:
+            behind = self.window < window
+            limit = windows.length[self.window] if behind else remainder
+            if periodic:
+                due, axis, step = self._next_wrap(period)
+                if due < limit or (due == limit and not behind):
+                    self._wrap(due, axis, step, period)
+                    continue
+            if not behind:
+                return
+            self.anchor(0.0, self.place(limit), self.speed(limit))
+            self.contact_time -= limit
+            self.window += 1
+
+    def _next_wrap(self, period: tuple[float | None, float | None]) -> tuple[float, int, int]:
+        """Return when the disk next passes a periodic boundary: (remainder, axis, direction)."""
+        first = NEVER, 0, 0
+        for axis, length in enumerate(period):
+            if length is None:
+                continue
+            x, v, g = (self.x, self.vx, self.gx) if axis == 0 else (self.y, self.vy, self.gy)
+            for step, target in ((-1, 0.0), (1, length)):
+                due = self.t + crossing_delay(x, v, g, target, -step)
+                if due < first[0]:
+                    first = due, axis, step
+        return first
+
+    def _wrap(self, t: float, axis: int, step: int, period: tuple[float | None, float | None]) -> None:
+        length = period[axis]
+        assert length is not None
+        place = list(self.place(t))
+        place[axis] = 0.0 if step > 0 else length
+        self.anchor(t, (place[0], place[1]), self.speed(t))
+        self.wraps[axis] += step

@@ -1,0 +1,224 @@
+"""From a compact log to the full one: every contact is resolved again, with the formulas of the engine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import groupby, islice
+from typing import NamedTuple, TypeAlias
+
+from eventsim.errors import LogError
+from eventsim.formulas.impulse import (
+    contact_restitution,
+    flat_update,
+    mass_fractions,
+    pair_update,
+    reduced_mass,
+    wall_update,
+)
+from eventsim.formulas.simultaneous import JointContact, resolve_together
+from eventsim.record.contacts import Contact, Contacts
+from eventsim.record.disk_flight import DiskFlight
+from eventsim.record.events import SET_KINDS, Column, Rows
+from eventsim.record.log import EventLog
+from eventsim.record.times import clock_times
+from eventsim.record.windows import Windows
+from eventsim.scene.stage import stage_of
+
+Numbers: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
+COMPUTED = ("xa", "ya", "vxa", "vya", "xb", "yb", "vxb", "vyb", "impulse")
+MISSING = math.nan
+BLOCK = 1 << 14
+"""Rows held as Python objects at a time."""
+
+
+def expand_rows(log: EventLog) -> Rows:
+    """Return the full rows of a compact log, in O(rows) time.
+
+    Raises LogError where the rows do not follow from the scene.
+    """
+    rows = log.rows.copy()
+    expansion = Expansion(log)
+    numbers = expansion.numbers()
+    for first in range(0, len(rows), BLOCK):
+        block = rows[first : first + BLOCK]
+        for name, values in zip(COMPUTED, zip(*islice(numbers, len(block)), strict=True), strict=True):
+            block[name] = values
+    stage = expansion.stage
+    rows["time"] = clock_times(rows["epoch"], rows["remainder"], stage.epoch_length, stage.start_time)
+    return rows
+
+
+class Entry(NamedTuple):
+    """What a compact row says, its epoch as the window of the clock."""
+
+    event: int
+    kind: int
+    a: int
+    b: int
+    wall: int
+    joint: int
+    window: int
+    remainder: float
+
+
+class Expansion:
+    """The disks of a compact log on their way from row to row."""
+
+    def __init__(self, log: EventLog) -> None:
+        stage = self.stage = stage_of(log.scene)
+        self._log = log
+        self._windows = Windows(stage, log.epoch)
+        masses = [stage.common_mass] * stage.n if stage.mass is None else stage.mass.tolist()
+        self._mass: list[float] = masses
+        self._disks = [DiskFlight(stage, i, math.isinf(mass)) for i, mass in enumerate(masses)]
+        self._contacts = Contacts(stage, self._disks)
+        self._set = {event: (vx, vy) for event, vx, vy in log.provenance.kicks}
+
+    def numbers(self) -> Iterator[Numbers]:
+        """Yield what each row leaves out, in order."""
+        for joint, group in groupby(self._entries(), key=lambda entry: (entry.joint, entry.event * (entry.joint < 0))):
+            cluster = list(group)
+            for entry in cluster:
+                for i in (entry.a, entry.b):
+                    if i >= 0:
+                        self._disks[i].fly(self.stage.period, self._windows, entry.window, entry.remainder)
+            if joint[0] >= 0:
+                impulses = self._resolve_cluster(cluster)
+            elif cluster[0].kind in SET_KINDS:
+                impulses = [self._set_velocity(cluster[0])]
+            elif cluster[0].b >= 0:
+                impulses = [self._resolve_pair(cluster[0])]
+            else:
+                impulses = [self._resolve_wall(cluster[0])]
+            for entry, impulse in zip(cluster, impulses, strict=True):
+                one = self._disks[entry.a]
+                other = (MISSING, MISSING, MISSING, MISSING)
+                if entry.b >= 0:
+                    disk = self._disks[entry.b]
+                    other = (disk.x, disk.y, disk.vx, disk.vy)
+                yield (one.x, one.y, one.vx, one.vy, *other, impulse)
+
+    def _entries(self) -> Iterator[Entry]:
+        rows, windows = self._log.rows, self._windows.index_of(self._log.epoch)
+        for first in range(0, len(rows), BLOCK):
+            block = rows[first : first + BLOCK]
+            columns: list[Column] = [block[name] for name in ("event", "kind", "a", "b", "wall", "joint")]
+            columns += [windows[first : first + BLOCK], block["remainder"]]
+            yield from map(Entry, *(column.tolist() for column in columns))
+
+    def _set_velocity(self, entry: Entry) -> float:
+        disk, mass = self._disks[entry.a], self._mass[entry.a]
+        if entry.event not in self._set:
+            raise self._unfit(entry, "its velocity is not in the metadata (the log was not closed)")
+        before, speed = disk.speed(entry.remainder), self._set[entry.event]
+        disk.anchor(entry.remainder, disk.place(entry.remainder), speed)
+        disk.met = ()
+        return mass * math.hypot(speed[0] - before[0], speed[1] - before[1]) if math.isfinite(mass) else MISSING
+
+    def _resolve_pair(self, entry: Entry) -> float:
+        t, a, b = entry.remainder, entry.a, entry.b
+        contact = self._only(entry, self._contacts.of_pair(a, b, t))
+        one, other = self._disks[a], self._disks[b]
+        place_a, place_b = one.place(t), other.place(t)
+        dx, dy = self._contacts.apart(contact, place_a, place_b)
+        restitution = self._restitution(self.stage.pair_restitution, t, a, b)
+        shares, reduced = self._shares(a, b)
+        ua, wa, ub, wb, q = pair_update(dx, dy, *one.speed(t), *other.speed(t), *shares, restitution)
+        self._begin(contact, a, t, place_a, (ua, wa))
+        self._begin(contact, b, t, place_b, (ub, wb))
+        return float(-(q * reduced) * math.sqrt(dx * dx + dy * dy))
+
+    def _resolve_wall(self, entry: Entry) -> float:
+        t, a = entry.remainder, entry.a
+        contact = self._only(entry, self._contacts.of_wall(a, entry.wall, t))
+        disk = self._disks[a]
+        place, before = disk.place(t), disk.speed(t)
+        restitution = self._restitution(self.stage.wall_restitution, t, a, a)
+        u, w = before
+        axis = self._contacts.boundary_axis(contact)
+        if axis is None:
+            u, w, _ = wall_update(*self._contacts.normal(contact, place), u, w, restitution)
+        elif axis == 0:
+            u, _ = flat_update(u, contact.image[0], restitution)
+        else:
+            w, _ = flat_update(w, contact.image[0], restitution)
+        self._begin(contact, a, t, self._contacts.on_boundary(contact, place), (u, w))
+        return self._wall_impulse(self._mass[a], u - before[0], w - before[1])
+
+    def _resolve_cluster(self, cluster: list[Entry]) -> list[float]:
+        """Resolve all contacts that the disks of the rows have at their time; rows stand for those with an impulse."""
+        t = cluster[0].remainder
+        partners = sorted({(entry.a, entry.b, entry.wall) for entry in cluster})
+        found = [
+            contact
+            for a, b, wall in partners
+            for contact in (self._contacts.of_pair(a, b, t) if b >= 0 else self._contacts.of_wall(a, wall, t))
+        ]
+        disks = sorted({i for contact in found for i in (contact.a, contact.b) if i >= 0})
+        number = {disk: k for k, disk in enumerate(disks)}
+        places = {i: self._disks[i].place(t) for i in disks}
+        before = [self._disks[i].speed(t) for i in disks]
+        joint = [self._joint_contact(contact, number, places, t) for contact in found]
+        outcome = resolve_together(joint, before, [self._mass[i] for i in disks])
+        active = sorted((contact, k) for k, contact in enumerate(found) if outcome.active[k])
+        if [self._row_of(contact) for contact, _ in active] != [(entry.a, entry.b, entry.wall) for entry in cluster]:
+            raise self._unfit(cluster[0], "its cluster of simultaneous contacts has other members")
+        for i in sorted({i for contact, _ in active for i in (contact.a, contact.b) if i >= 0}):
+            own = [contact for contact, _ in active if i in (contact.a, contact.b)]
+            for contact in own:
+                if contact.b < 0:
+                    places[i] = self._contacts.on_boundary(contact, places[i])
+            disk = self._disks[i]
+            disk.anchor(t, places[i], outcome.velocities[number[i]])
+            disk.met = tuple(self._contacts.met(contact, i) for contact in own)
+            disk.contact_time = t
+        return [outcome.impulses[k] for _, k in active]
+
+    def _joint_contact(
+        self, contact: Contact, number: dict[int, int], places: dict[int, tuple[float, float]], t: float
+    ) -> JointContact:
+        a, b = contact.a, contact.b
+        if b >= 0:
+            dx, dy = self._contacts.apart(contact, places[a], places[b])
+            e = self._restitution(self.stage.pair_restitution, t, a, b)
+            return JointContact(number[a], number[b], dx, dy, e)
+        nx, ny = self._contacts.normal(contact, places[a])
+        return JointContact(number[a], None, nx, ny, self._restitution(self.stage.wall_restitution, t, a, a))
+
+    def _begin(
+        self, contact: Contact, i: int, t: float, place: tuple[float, float], speed: tuple[float, float]
+    ) -> None:
+        disk = self._disks[i]
+        disk.anchor(t, place, speed)
+        disk.met = (self._contacts.met(contact, i),)
+        disk.contact_time = t
+
+    def _shares(self, a: int, b: int) -> tuple[tuple[float, float], float]:
+        """Return the mass fractions of a pair and its reduced mass."""
+        if self.stage.mass is None:
+            return (0.5, 0.5), 0.5 * self.stage.common_mass
+        return mass_fractions(self._mass[a], self._mass[b]), reduced_mass(self._mass[a], self._mass[b])
+
+    def _restitution(self, restitution: float, t: float, a: int, b: int) -> float:
+        since = t - self._disks[a].contact_time, t - self._disks[b].contact_time
+        return float(contact_restitution(restitution, self.stage.contact_duration, *since))
+
+    def _row_of(self, contact: Contact) -> tuple[int, int, int]:
+        if contact.b >= 0:
+            return contact.a, contact.b, -1
+        return contact.a, -1, self._contacts.wall_of(contact)
+
+    def _only(self, entry: Entry, found: list[Contact]) -> Contact:
+        if len(found) != 1:
+            raise self._unfit(entry, f"at its time there are {len(found)} such contacts")
+        return found[0]
+
+    def _unfit(self, entry: Entry, why: str) -> LogError:
+        return LogError(f"the log does not fit its scene at event {entry.event}: {why}")
+
+    def _wall_impulse(self, mass: float, du: float, dw: float) -> float:
+        """Return the momentum that a wall gave; an immovable disk has none to speak of."""
+        if math.isinf(mass):
+            return MISSING
+        return mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else math.sqrt(du * du + dw * dw))

@@ -1,0 +1,76 @@
+"""CSV logs: a `# ` line with the scene and metadata as JSON, a header row, then one row per line.
+
+`pandas.read_csv(path, comment="#")` reads them.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from eventsim.record.events import ROW, Rows
+from eventsim.record.files.table import columns_kept, labels_of, rows_from_columns
+from eventsim.record.files.text import TextSink, read_text, words_of
+from eventsim.record.log import EventLog
+from eventsim.record.provenance import Provenance
+
+PREFIX = "# "
+
+
+class CsvSink(TextSink):
+    """Writes CSV; missing is empty."""
+
+    prefix = PREFIX
+
+    def header(self) -> str:
+        """Return the names of the columns."""
+        return _header(self.provenance)
+
+    def lines(self, rows: Rows) -> str:
+        """Return one line per row."""
+        columns = []
+        for name in self.columns:
+            labels = labels_of(name, self.provenance.wall_names)
+            if labels is None:
+                columns.append(words_of(rows[name], missing=""))
+            else:
+                texts = [_quoted(label) for label in labels.tolist()]
+                columns.append([texts[code] for code in rows[name].tolist()])
+        return "\n".join(map(",".join, zip(*columns, strict=True))) + "\n"
+
+
+def read_csv(path: Path) -> EventLog:
+    """Read a CSV log; raise LogError where it is none."""
+    return read_text(path, PREFIX, _header, _parse)
+
+
+def _header(provenance: Provenance) -> str:
+    return ",".join(columns_kept(provenance)) + "\n"
+
+
+def _quoted(label: str) -> str:
+    """Quote a name that would be taken apart, or for a comment."""
+    if any(mark in label for mark in ',"#'):
+        return '"' + label.replace('"', '""') + '"'
+    return label
+
+
+def _parse(lines: list[str], provenance: Provenance) -> Rows:
+    names = columns_kept(provenance)
+    try:
+        records = list(csv.reader(lines, strict=True))
+    except csv.Error as error:
+        raise ValueError(str(error)) from None
+    columns: dict[str, Sequence[object]] = {}
+    if any(len(record) != len(names) for record in records):
+        raise ValueError(f"{len(names)} values were expected")
+    for name, words in zip(names, zip(*records, strict=True), strict=True):
+        if name in ("kind", "wall"):
+            columns[name] = words
+        elif ROW[name].kind == "f":
+            columns[name] = [float(word) if word else math.nan for word in words]
+        else:
+            columns[name] = list(map(int, words))
+    return rows_from_columns(columns, provenance)

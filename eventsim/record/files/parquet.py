@@ -1,0 +1,92 @@
+"""Parquet logs, by pyarrow: one row group per block, the metadata as JSON under the key `eventsim`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eventsim.errors import LogError
+from eventsim.record.events import ROW, Column, Rows, blank_rows
+from eventsim.record.files.sink import FileSink
+from eventsim.record.files.table import checked_log, columns_kept, labels_of, rows_from_columns
+from eventsim.record.log import EventLog
+from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
+
+try:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+except ImportError:
+    raise LogError("parquet logs need pyarrow: install eventsim-disks[parquet]") from None
+
+METADATA = b"eventsim"
+GROUP = 1 << 17
+"""Rows of one row group; smaller blocks are collected."""
+
+
+class ParquetSink(FileSink):
+    """Writes parquet; kind and wall are dictionaries of text, missing is null."""
+
+    def _open(self) -> None:
+        self._writer = pq.ParquetWriter(self.part, _schema(self.columns))
+        self._waiting: list[Rows] = []
+
+    def _append(self, rows: Rows) -> None:
+        self._waiting.append(rows.copy())
+        if sum(map(len, self._waiting)) >= GROUP:
+            self._write_group()
+
+    def _finish(self, provenance: Provenance) -> None:
+        self._write_group()
+        self._writer.add_key_value_metadata({METADATA.decode(): provenance_text(provenance)})
+        self._writer.close()
+
+    def _discard(self) -> None:
+        self._writer.close()
+        self.part.unlink(missing_ok=True)
+
+    def _write_group(self) -> None:
+        if self._waiting:
+            rows = np.concatenate(self._waiting)
+            self._waiting = []
+            arrays = [_array(rows, name, self.provenance) for name in self.columns]
+            self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
+
+
+def read_parquet(path: Path) -> EventLog:
+    """Read a parquet log; raise LogError where it is none."""
+    try:
+        with pq.ParquetFile(path) as file:
+            metadata = file.metadata.metadata or {}
+            if METADATA not in metadata:
+                raise LogError(f"{path}: not an event log: its metadata have no key {METADATA.decode()}")
+            provenance = provenance_from_text(metadata[METADATA].decode(), str(path))
+            names = columns_kept(provenance)
+            blocks = [blank_rows(0)]
+            for group in range(file.num_row_groups):
+                table = file.read_row_group(group, columns=list(names))
+                columns = {name: _column(table.column(name)) for name in names}
+                blocks.append(rows_from_columns(columns, provenance))
+    except (OSError, pa.ArrowException, ValueError, TypeError, KeyError, OverflowError) as error:
+        raise LogError(f"{path}: not a whole parquet event log ({error})") from None
+    return checked_log(provenance, np.concatenate(blocks), path)
+
+
+def _schema(names: tuple[str, ...]) -> Any:
+    text = pa.dictionary(pa.int32(), pa.string())
+    return pa.schema([(name, text if name in ("kind", "wall") else pa.from_numpy_dtype(ROW[name])) for name in names])
+
+
+def _array(rows: Rows, name: str, provenance: Provenance) -> Any:
+    values = np.ascontiguousarray(rows[name])
+    labels = labels_of(name, provenance.wall_names)
+    if labels is None:
+        return pa.array(values, mask=np.isnan(values) if values.dtype.kind == "f" else None)
+    codes = values.astype(np.int32) % len(labels)  # -1 is the last label
+    return pa.DictionaryArray.from_arrays(pa.array(codes), pa.array(labels.tolist()))
+
+
+def _column(column: Any) -> Column:
+    values: Column = column.to_numpy()
+    return values

@@ -1,0 +1,94 @@
+"""From the columns of a file to checked rows: labels become codes, and what cannot be a log is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eventsim.errors import LogError
+from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, LABELS, ROW, Column, Rows, blank_rows
+from eventsim.record.log import EventLog
+from eventsim.record.provenance import Provenance
+
+
+def columns_kept(provenance: Provenance) -> tuple[str, ...]:
+    """Return the names of the columns in a file, in order."""
+    return COMPACT_COLUMNS if provenance.compact else COLUMNS
+
+
+def labels_of(name: str, wall_names: Sequence[str]) -> Column | None:
+    """Return the texts that a column of codes stands for (the last one for the code -1), or None for numbers."""
+    if name == "kind":
+        return np.array(LABELS)
+    if name == "wall":
+        return np.array([*wall_names, ""])
+    return None
+
+
+def rows_from_columns(columns: Mapping[str, Sequence[object] | Column], provenance: Provenance) -> Rows:
+    """Return rows (n,) from equally long columns, kind and wall as text, a missing float as NaN or None.
+
+    Raises ValueError, TypeError, OverflowError or KeyError for what does not fit its column.
+    """
+    rows = blank_rows(len(columns["event"]))
+    for name in columns_kept(provenance):
+        labels = labels_of(name, provenance.wall_names)
+        if labels is not None:
+            rows[name] = codes_of(np.asarray(columns[name], dtype=np.str_), labels, name)
+        elif ROW[name].kind == "f":
+            rows[name] = np.asarray(columns[name], dtype=np.float64)
+        else:
+            rows[name] = integers_of(columns[name], ROW[name])
+    return rows
+
+
+def codes_of(texts: Column, labels: Column, name: str) -> Column:
+    """Return for each text its place among the labels, -1 for an empty one; ValueError for an unknown text."""
+    order = np.argsort(labels)
+    place = np.searchsorted(labels, texts, sorter=order)
+    codes = order[np.minimum(place, len(labels) - 1)]
+    unknown = labels[codes] != texts
+    if unknown.any():
+        raise ValueError(f"{name} {str(texts[np.argmax(unknown)])!r} is unknown")
+    codes[texts == ""] = -1
+    return codes
+
+
+def integers_of(values: Sequence[object] | Column, dtype: np.dtype[Any]) -> Column:
+    """Return integers of the wanted width; ValueError for fractions, texts and numbers that are too large."""
+    exact = np.asarray(values)
+    if len(exact) == 0:
+        return np.empty(0, dtype=dtype)
+    if exact.dtype.kind not in "iu":
+        raise ValueError("a whole number was expected")
+    narrow = exact.astype(dtype)
+    if (narrow != exact).any():
+        raise ValueError("a whole number is too large")
+    return narrow
+
+
+def checked_log(provenance: Provenance, rows: Rows, path: Path) -> EventLog:
+    """Return the log if its rows can be those of its scene; raise LogError naming the file and the first bad row."""
+    if provenance.rows not in (None, len(rows)):
+        raise LogError(f"{path}: holds {len(rows)} rows where {provenance.rows} were written; the file was cut off")
+    count = len(provenance.scene.disks)
+    has_wall = rows["kind"] == LABELS.index("wall")
+    clock = rows["epoch"], rows["remainder"]
+    rules = {
+        "events are not numbered 0, 1, 2, ...": rows["event"] != np.arange(len(rows)),
+        f"column a names no disk of the scene (0 to {count - 1})": (rows["a"] < 0) | (rows["a"] >= count),
+        f"column b names no disk of the scene (0 to {count - 1})": (rows["b"] < -1) | (rows["b"] >= count),
+        "a pair needs a second disk and only a pair has one": (rows["b"] >= 0) != (rows["kind"] == 0),
+        "a pair needs two different disks": rows["a"] == rows["b"],
+        "a wall needs a name and only a wall has one": (rows["wall"] >= 0) != has_wall,
+        "joint is neither -1 nor an earlier event": (rows["joint"] < -1) | (rows["joint"] > rows["event"]),
+        "the remainder is not a time >= 0": ~((clock[1] >= 0) & np.isfinite(clock[1])),
+        "the epoch runs backwards": np.diff(clock[0], prepend=0) < 0,
+    }
+    for rule, broken in rules.items():
+        if broken.any():
+            raise LogError(f"{path}: row {int(np.argmax(broken))}: {rule}")
+    return EventLog(provenance, rows)

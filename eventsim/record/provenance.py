@@ -1,0 +1,128 @@
+"""Where a log comes from: the scene it tells about, what wrote it, and where the telling ends."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from eventsim.errors import LogError, SceneError
+from eventsim.record.events import SET_KINDS, Rows
+from eventsim.scene import Scene
+from eventsim.scene.files import scene_from_dict, scene_to_dict
+
+FORMAT = 1
+"""Version of the file format; a reader refuses versions it does not know."""
+
+Kick = tuple[int, float, float]
+"""Event number and the velocity that was set."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """Where a run ended: the exact clock (epoch, remainder) and the reason in one word."""
+
+    epoch: int
+    remainder: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """What a log carries besides its rows.
+
+    scene: the realised scene, every disk listed. epoch_length: a power of two, time. wall_names: what the column
+    `wall` counts. command: the command line or call that ran it, where known. kicks: velocities that were set,
+    which a compact log cannot compute. ending: None while the run goes on. rows: their number, None while it grows.
+    """
+
+    scene: Scene
+    engine: str
+    version: str
+    epoch_length: float
+    wall_names: tuple[str, ...]
+    command: str | None = None
+    compact: bool = False
+    kicks: tuple[Kick, ...] = ()
+    ending: Ending | None = None
+    rows: int | None = None
+
+    def finished(self, ending: Ending | None, kicks: tuple[Kick, ...], rows: int) -> Provenance:
+        """Return the provenance of the whole log."""
+        return replace(self, ending=ending, kicks=kicks, rows=rows)
+
+
+def kicks_of(rows: Rows) -> list[Kick]:
+    """Return the velocities that rows of full logs set, in order."""
+    chosen = rows[(rows["kind"] == SET_KINDS[0]) | (rows["kind"] == SET_KINDS[1])]
+    return list(zip(chosen["event"].tolist(), chosen["vxa"].tolist(), chosen["vya"].tolist(), strict=True))
+
+
+def provenance_text(provenance: Provenance) -> str:
+    """Return the provenance as one line of JSON (ASCII only, so that characters are bytes)."""
+    ending = provenance.ending
+    data = {
+        "scene": scene_to_dict(provenance.scene),
+        "format": FORMAT,
+        "version": provenance.version,
+        "engine": provenance.engine,
+        "command": provenance.command,
+        "epoch_length": provenance.epoch_length,
+        "wall_names": list(provenance.wall_names),
+        "compact": provenance.compact,
+        "kicks": [list(kick) for kick in provenance.kicks],
+        "ending": None
+        if ending is None
+        else {"epoch": ending.epoch, "remainder": ending.remainder, "reason": ending.reason},
+        "rows": provenance.rows,
+    }
+    return json.dumps(data)
+
+
+def provenance_from_text(text: str, source: str) -> Provenance:
+    """Read what `provenance_text` wrote; raise LogError naming `source` for anything else."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise LogError(f"{source}: not an event log: its metadata is not JSON ({error})") from None
+    if not isinstance(data, dict) or "scene" not in data or "format" not in data:
+        raise LogError(f"{source}: not an event log: no metadata with the keys scene and format")
+    if data["format"] != FORMAT:
+        raise LogError(
+            f"{source}: written in log format {data['format']!r}; this version of eventsim reads format {FORMAT}"
+        )
+    try:
+        scene = scene_from_dict(data["scene"], source=f"scene in {source}")
+    except SceneError as error:
+        raise LogError(f"{source}: the scene inside the log is damaged: {error}") from None
+    try:
+        return _provenance(data, scene)
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise LogError(f"{source}: the metadata of the log are damaged ({type(error).__name__}: {error})") from None
+
+
+def _provenance(data: Mapping[str, Any], scene: Scene) -> Provenance:
+    ending = data["ending"]
+    epoch_length = float(data["epoch_length"])
+    if not (epoch_length > 0 and math.frexp(epoch_length)[0] == 0.5):
+        raise ValueError(f"epoch_length {epoch_length!r} is not a power of two")
+    return Provenance(
+        scene=scene,
+        engine=str(data["engine"]),
+        version=str(data["version"]),
+        epoch_length=epoch_length,
+        wall_names=tuple(str(name) for name in data["wall_names"]),
+        command=None if data["command"] is None else str(data["command"]),
+        compact=bool(data["compact"]),
+        kicks=tuple((int(event), float(vx), float(vy)) for event, vx, vy in data["kicks"]),
+        ending=None
+        if ending is None
+        else Ending(int(ending["epoch"]), float(ending["remainder"]), str(ending["reason"])),
+        rows=None if data["rows"] is None else int(data["rows"]),
+    )
+
+
+def _ending(data: Mapping[str, Any]) -> Ending:
+    return Ending(epoch=int(data["epoch"]), remainder=float(data["remainder"]), reason=str(data["reason"]))

@@ -1,0 +1,65 @@
+"""Files of states: where all disks are at some times, as a table that a scene can start from."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from eventsim.errors import EventsimError
+from eventsim.record.events import Column, State
+from eventsim.record.files.sink import PART
+from eventsim.scene import Scene
+
+SUFFIXES = (".csv", ".npz")
+STATE_COLUMNS = ("time", "disk", "x", "y", "vx", "vy", "radius", "mass")
+
+
+def state_columns(scene: Scene, states: Sequence[State]) -> dict[str, Column]:
+    """Return the columns of a table with one row per time and disk; radius and mass come from the scene."""
+    count = len(scene.disks)
+    position = np.concatenate([np.empty((0, 2)), *(state.position for state in states)])
+    velocity = np.concatenate([np.empty((0, 2)), *(state.velocity for state in states)])
+    return {
+        "time": np.repeat(np.array([state.time for state in states]), count),
+        "disk": np.tile(np.arange(count), len(states)),
+        "x": position[:, 0],
+        "y": position[:, 1],
+        "vx": velocity[:, 0],
+        "vy": velocity[:, 1],
+        "radius": np.tile(scene.disks.radius, len(states)),
+        "mass": np.tile(scene.disks.mass, len(states)),
+    }
+
+
+def write_states(path: str | PathLike[str], scene: Scene, states: Sequence[State]) -> None:
+    """Write states to `path`: .csv (floats that read back as the same bits) or .npz (one array per column).
+
+    The file appears under its name only when whole. Raises EventsimError where it cannot be written.
+    """
+    file = Path(path)
+    if file.suffix.lower() not in SUFFIXES:
+        raise EventsimError(f"{file}: a file of states ends in {' or '.join(SUFFIXES)}")
+    columns = state_columns(scene, states)
+    part = file.with_name(file.name + PART)
+    try:
+        with part.open("wb") as target:
+            if file.suffix.lower() == ".npz":
+                np.savez(target, allow_pickle=False, **columns)
+            else:
+                write_csv(target, columns)
+        os.replace(part, file)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise EventsimError(f"{file}: cannot be written ({error.strerror or error})") from None
+
+
+def write_csv(target: IO[bytes], columns: dict[str, Column]) -> None:
+    """Write columns as CSV with a header row; used for files and for standard output."""
+    target.write((",".join(columns) + "\n").encode())
+    words = (map(repr, column.tolist()) for column in columns.values())
+    target.writelines(f"{','.join(line)}\n".encode() for line in zip(*words, strict=True))

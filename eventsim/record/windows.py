@@ -1,0 +1,63 @@
+"""The windows of the clock, worked out from the log alone."""
+
+from __future__ import annotations
+
+import bisect
+from fractions import Fraction
+
+import numpy as np
+
+from eventsim.errors import LogError
+from eventsim.formulas.clock import FIRST_WINDOW, next_window, remainder_since, window_length
+from eventsim.record.events import Column
+from eventsim.scene.stage import Stage
+
+
+class Windows:
+    """The schedule of turnovers: window w begins at epoch `start[w]` and is `length[w]` long (time).
+
+    It follows from the number of rows in each window, and goes on past the last row by the same rule, as far as
+    somebody asks.
+    """
+
+    start: list[int]
+    length: list[float]
+
+    def __init__(self, stage: Stage, epochs: Column) -> None:
+        self._stage = stage
+        self._exponent = FIRST_WINDOW
+        self.start = [0]
+        self.length = [window_length(FIRST_WINDOW, stage.epoch_length)]
+        epoch, counts = np.unique(epochs, return_counts=True)
+        self._rows = dict(zip(epoch.tolist(), counts.tolist(), strict=True))
+
+    def _extend(self) -> None:
+        epoch, exponent = self.start[-1], self._exponent
+        self._exponent = next_window(exponent, self._rows.get(epoch, 0), self._stage.n, self._stage.window_cap)
+        self.start.append(epoch + (1 << exponent))
+        self.length.append(window_length(self._exponent, self._stage.epoch_length))
+
+    def index_of(self, epochs: Column) -> Column:
+        """Return the window of each row from its epoch."""
+        epoch, place = np.unique(epochs, return_inverse=True)
+        return np.array([self.window_at(value) for value in epoch.tolist()], dtype=np.int64)[place]
+
+    def window_at(self, epoch: int) -> int:
+        """Return the window that begins at an epoch; LogError where none does."""
+        while self.start[-1] < epoch:
+            self._extend()
+        window = bisect.bisect_left(self.start, epoch)
+        if self.start[window] != epoch:
+            raise LogError(f"the log does not fit its scene: no window of the clock begins at epoch {epoch}")
+        return window
+
+    def place(self, time: float) -> tuple[int, float]:
+        """Return (window, remainder) of a time on the scene's clock; the remainder is rounded once."""
+        epochs = (Fraction(time) - Fraction(self._stage.start_time)) / Fraction(self._stage.epoch_length)
+        while self.start[-1] <= epochs:
+            self._extend()
+        window = max(bisect.bisect_right(self.start, epochs) - 1, 0)
+        remainder = remainder_since(self.start[window], self._stage.epoch_length, time, self._stage.start_time)
+        if remainder >= self.length[window]:  # rounded up to the end of the window: the clock has turned over
+            return window + 1, 0.0
+        return window, remainder
