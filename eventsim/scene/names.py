@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eventsim.scene.cells import Indices
@@ -33,3 +35,27 @@ class SelectedNames(DiskNames):
     def key(self, index: int, key: str) -> str:
         """One of its numbers, as a user finds it."""
         return self.names.key(int(self.index[index]), key)
+
+
+class BlockNames(DiskNames):
+    """Names by the place in a file: blocks of disks, each with a label and the numbers to put into it."""
+
+    def __init__(self) -> None:
+        self.starts: list[int] = []
+        self.blocks: list[tuple[str, Sequence[int] | Indices]] = []
+
+    def add(self, start: int, label: str, numbers: Sequence[int] | Indices) -> None:
+        """Call the disks from `start` on by a label, with one of the numbers each."""
+        self.starts.append(start)
+        self.blocks.append((label, numbers))
+
+    def disk(self, index: int) -> str:
+        """The disk in a sentence."""
+        block = bisect_right(self.starts, index) - 1
+        label, numbers = self.blocks[block]
+        return label.format(numbers[index - self.starts[block]])
+
+    def key(self, index: int, key: str) -> str:
+        """One of its numbers, as a user finds it."""
+        name = self.disk(index)
+        return f"{name}.{key}" if name.endswith("]") else f"{name}: {key}"

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from eventsim.errors import SceneError
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import Domain
+from eventsim.scene.names import DiskNames
 from eventsim.scene.numbers import Point, number, optional_number, point
 from eventsim.scene.restitution import Restitution, as_restitution
 from eventsim.scene.validate import find_problems
@@ -54,8 +55,12 @@ class Scene:
         events: int | None = None,
         start_time: float = 0.0,
         name: str | None = None,
+        *,
+        names: DiskNames | None = None,
     ) -> None:
         """The scene with these parts; a restitution may be one number, a mapping or a Restitution.
+
+        `names` says how messages call the disks, by index if None; it is not kept.
 
         Raises:
             SceneError: with every rule that is broken, each naming the disks or the key, value and rule.
@@ -75,6 +80,6 @@ class Scene:
         }
         for key, value in fields.items():
             object.__setattr__(self, key, value)
-        problems = find_problems(self)
+        problems = find_problems(self, names)
         if problems:
             raise SceneError(problems)

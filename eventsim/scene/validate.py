@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 # Of many problems of one kind so many are written out; the rest are counted.
 WRITTEN_OUT = 3
+NO_DISKS = "disk: a scene needs at least one disk"
 
 
 def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
@@ -41,7 +42,7 @@ def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
     shapes = [*_domain_problems(scene.domain), *wall_problems(scene)]
     problems = [*_scalar_problems(scene), *shapes]
     if not len(scene.disks):
-        return [*problems, "disk: a scene needs at least one disk"]
+        return [*problems, NO_DISKS]
     sound = np.ones(len(scene.disks), dtype=np.bool_)
     problems += _number_problems(scene.disks, names, sound)
     # In a domain that is none, among walls that are none, a place would mean nothing.

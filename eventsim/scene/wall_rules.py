@@ -18,7 +18,7 @@ def wall_problems(scene: Scene) -> list[str]:
     """Every rule that the walls of a scene break, one sentence each."""
     problems = list(_name_problems(scene.walls))
     for i, wall in enumerate(scene.walls):
-        broken = list(_shape_problems(wall)) or list(_container_problems(wall, scene.domain))
+        broken = list(shape_problems(wall)) or list(_container_problems(wall, scene.domain))
         problems += [f"wall[{i}]{key}" for key in broken]
     return problems
 
@@ -39,7 +39,7 @@ def _name_problems(walls: tuple[Wall, ...]) -> Iterator[str]:
         owner |= dict.fromkeys(taken, i)
 
 
-def _shape_problems(wall: Wall) -> Iterator[str]:
+def shape_problems(wall: Wall) -> Iterator[str]:
     """Rules of one wall, each beginning with the key that breaks it."""
     if isinstance(wall, Segment):
         keys = {".start": wall.start, ".end": wall.end}

@@ -1,0 +1,117 @@
+"""Disks from a table in a file: csv with a header, or npz."""
+
+from __future__ import annotations
+
+import csv
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from eventsim.errors import SceneError
+from eventsim.scene.cells import Indices
+from eventsim.scene.disks import Disks, Floats
+
+COLUMNS = ("x", "y", "vx", "vy", "radius", "mass")
+
+
+@dataclass(frozen=True, slots=True)
+class DisksFile:
+    """The disks of a file, and how to call the place of each: `row` is "line" or "row", `number` is (N,)."""
+
+    disks: Disks
+    row: str
+    number: Indices
+
+
+def read_disks_file(path: Path) -> DisksFile:
+    """The disks of a file with the columns x, y, vx, vy, radius, mass; further columns are ignored.
+
+    A file written by `eventsim state` will do if it holds one time.
+
+    Raises:
+        SceneError: naming the file, and the line where there is one.
+    """
+    try:
+        columns, row, number = _read_npz(path) if path.suffix.lower() == ".npz" else _read_csv(path)
+    except OSError as error:
+        raise SceneError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    if "time" in columns:
+        times = np.unique(columns["time"])
+        if len(times) > 1:
+            listed = ", ".join(str(time) for time in times[:3].tolist()) + (", ..." if len(times) > 3 else "")
+            raise SceneError(
+                f"{path}: holds the disks at {len(times)} times ({listed}); one start needs one time"
+            )
+    x, y, vx, vy, radius, mass = (columns[key] for key in COLUMNS)
+    return DisksFile(Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), radius, mass), row, number)
+
+
+def _read_csv(path: Path) -> tuple[dict[str, Floats], str, Indices]:
+    """The columns by name, and the line of each row; lines that begin with # are comments."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise SceneError(f"{path}: is not a text file (UTF-8)") from None
+    number = [n for n, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
+    header = [name.strip() for name in next(csv.reader([lines[number[0] - 1]]))] if number else []
+    _demand_columns(path, header)
+    wanted = [*COLUMNS, *(["time"] if "time" in header else [])]
+    places = [header.index(name) for name in wanted]
+    number = number[1:]
+    rows = [lines[n - 1] for n in number]
+    if not rows:
+        raise SceneError(f"{path}: has a header but no disks")
+    try:
+        table = np.loadtxt(rows, delimiter=",", usecols=places, comments=None, quotechar='"', ndmin=2)
+    except ValueError:
+        raise SceneError(_bad_lines(path, rows, number, wanted, places)) from None
+    return dict(zip(wanted, table.T, strict=True)), "line", np.array(number)
+
+
+def _bad_lines(
+    path: Path, rows: list[str], number: list[int], wanted: list[str], places: list[int]
+) -> list[str]:
+    """What is wrong with the first lines that cannot be read."""
+    problems: list[str] = []
+    for n, cells in zip(number, csv.reader(rows), strict=False):
+        for name, place in zip(wanted, places, strict=True):
+            if place >= len(cells):
+                problems.append(f"{path} line {n}: {name} is missing")
+                continue
+            try:
+                float(cells[place])
+            except ValueError:
+                problems.append(f"{path} line {n}: {name} = {cells[place]!r}: must be a number")
+        if len(problems) >= 5:
+            return [*problems, f"{path}: the lines after line {n} were not looked at"]
+    return problems or [f"{path}: cannot be read as comma-separated numbers"]
+
+
+def _read_npz(path: Path) -> tuple[dict[str, Floats], str, Indices]:
+    """The columns by name, and the index of each row."""
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            _demand_columns(path, list(arrays.files))
+            wanted = [*COLUMNS, *(["time"] if "time" in arrays.files else [])]
+            columns = {name: np.asarray(arrays[name], dtype=np.float64) for name in wanted}
+    except (ValueError, TypeError, EOFError, AttributeError, zipfile.BadZipFile):
+        raise SceneError(f"{path}: is not an npz file with arrays of numbers") from None
+    shapes = {name: array.shape for name, array in columns.items() if name != "time"}
+    if len(set(shapes.values())) > 1 or len(shapes["x"]) != 1:
+        listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise SceneError(f"{path}: the arrays must be one-dimensional and equally long, not {listed}")
+    return columns, "row", np.arange(len(columns["x"]))
+
+
+def _demand_columns(path: Path, header: list[str]) -> None:
+    """Raise if a column is missing or there twice."""
+    missing = [name for name in COLUMNS if name not in header]
+    if missing:
+        raise SceneError(
+            f"{path}: lacks {', '.join(missing)}: the columns must be named {', '.join(COLUMNS)}"
+        )
+    twice = [name for name in COLUMNS if header.count(name) > 1]
+    if twice:
+        raise SceneError(f"{path}: has more than one column {', '.join(twice)}")

@@ -1,0 +1,162 @@
+"""Scene files: TOML or JSON in, a scene out, and back."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from eventsim.errors import SceneError
+from eventsim.scene.disks import Disks
+from eventsim.scene.domain import Domain, Open
+from eventsim.scene.overrides import apply_overrides
+from eventsim.scene.scene import Scene
+from eventsim.scene.walls import Wall
+
+__all__ = ["apply_overrides", "load_scene", "scene_from_dict", "scene_to_dict", "scene_to_toml"]
+
+
+def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
+    """The scene of a .toml or .json file.
+
+    Args:
+        path: the file; a disks_file in it is looked for beside it.
+        overrides: settings like "gas.0.count=500" that change keys before the scene is made.
+        seed: seeds the i-th gas from (seed, i) instead of its own seed.
+
+    Raises:
+        SceneError: with all problems of the file.
+    """
+    path = Path(path)
+    data = _read(path)
+    return scene_from_dict(apply_overrides(data, overrides), path.parent, str(path), seed)
+
+
+def scene_from_dict(
+    data: Mapping[str, Any],
+    base_dir: str | Path | None = None,
+    source: str | None = None,
+    seed: int | None = None,
+) -> Scene:
+    """The scene that the tables of a scene file describe.
+
+    The order of the disks is: all [[disk]] tables, all [[disks_file]] tables, all [[gas]] tables.
+
+    Args:
+        data: the tables, with the keys of a scene file.
+        base_dir: where a disks_file is looked for; the current directory if None.
+        source: what messages call the file.
+        seed: seeds the i-th gas from (seed, i) instead of its own seed.
+
+    Raises:
+        SceneError: with all problems.
+    """
+    # The schema library is needed only here.
+    from eventsim.scene.tables import read_scene
+
+    try:
+        return read_scene(data, Path(base_dir or "."), seed)
+    except SceneError as error:
+        if source is None:
+            raise
+        raise SceneError(f"{source}: {problem}" for problem in error.problems) from None
+
+
+def scene_to_dict(scene: Scene) -> dict[str, Any]:
+    """The scene as tables for a scene file, every disk listed; scene_from_dict gives back every bit.
+
+    What has its default is left out. A mass of inf is written as "inf", so that the tables fit into JSON.
+    """
+    data: dict[str, Any] = {}
+    for key in ("name", "until", "events", "contact_duration"):
+        value = getattr(scene, key)
+        if value is not None:
+            data[key] = value
+    if not _is_default(scene.start_time, 0.0):
+        data["start_time"] = scene.start_time
+    if scene.gravity is not None:
+        data["gravity"] = list(scene.gravity)
+    if scene.restitution is not None:
+        data["restitution"] = {"pair": scene.restitution.pair, "wall": scene.restitution.wall}
+    data["domain"] = _domain_table(scene.domain)
+    data["disk"] = _disk_tables(scene.disks)
+    if scene.walls:
+        data["wall"] = [_wall_table(wall) for wall in scene.walls]
+    return data
+
+
+def scene_to_toml(scene: Scene) -> str:
+    """The text of a scene file for the scene, every disk listed."""
+    import tomli_w
+
+    data = scene_to_dict(scene)
+    for disk in data["disk"]:
+        if disk.get("mass") == "inf":
+            disk["mass"] = math.inf
+    return tomli_w.dumps(data)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    """The tables of a file."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise SceneError(f"{path}: is not a text file (UTF-8)") from None
+    except OSError as error:
+        raise SceneError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    try:
+        data = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"{path}: is not valid TOML: {error}") from None
+    except json.JSONDecodeError as error:
+        place = f"(at line {error.lineno}, column {error.colno})"
+        raise SceneError(f"{path}: is not valid JSON: {error.msg} {place}") from None
+    except RecursionError:
+        raise SceneError(f"{path}: is nested too deeply for a scene file") from None
+    if not isinstance(data, dict):
+        raise SceneError(f"{path}: must be a JSON object with the keys of a scene")
+    return data
+
+
+def _domain_table(domain: Domain) -> dict[str, Any]:
+    if isinstance(domain, Open):
+        return {"kind": domain.kind}
+    table: dict[str, Any] = {"kind": domain.kind, "size": list(domain.size)}
+    if not all(_is_default(value, 0.0) for value in domain.origin):
+        table["origin"] = list(domain.origin)
+    return table
+
+
+def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
+    tables: list[dict[str, Any]] = []
+    columns = (disks.position.tolist(), disks.velocity.tolist(), disks.radius.tolist(), disks.mass.tolist())
+    for position, velocity, radius, mass in zip(*columns, strict=True):
+        table = {"position": position, "velocity": velocity, "radius": radius}
+        if _is_default(velocity[0], 0.0) and _is_default(velocity[1], 0.0):
+            del table["velocity"]
+        if mass != 1.0:
+            table["mass"] = "inf" if math.isinf(mass) else mass
+        tables.append(table)
+    return tables
+
+
+def _wall_table(wall: Wall) -> dict[str, Any]:
+    table: dict[str, Any] = {"kind": wall.kind}
+    for key in ("start", "through", "end", "points", "center", "radius", "name"):
+        value = getattr(wall, key, None)
+        if value is not None:
+            table[key] = _lists(value)
+    return table
+
+
+def _lists(value: Any) -> Any:
+    """Tuples as lists, as TOML and JSON have them."""
+    return [_lists(item) for item in value] if isinstance(value, tuple) else value
+
+
+def _is_default(value: float, default: float) -> bool:
+    """Whether a value may be left out: equal in every bit (-0.0 is not 0.0)."""
+    return value == default and math.copysign(1.0, value) == math.copysign(1.0, default)

@@ -1,0 +1,167 @@
+"""Placing the disks of a gas among the disks and walls that are already there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.errors import SceneError
+from eventsim.scene.cells import Cells
+from eventsim.scene.disks import Disks, Floats
+from eventsim.scene.domain import Domain
+from eventsim.scene.gas import Gas, Region, disk_radius, region_of
+from eventsim.scene.insertion import insert_at_random
+from eventsim.scene.lattice import Lattice
+from eventsim.scene.outlines import wall_overlaps
+from eventsim.scene.overlaps import feature_scale, period_of, touching_depth
+from eventsim.scene.velocities import equal_speeds, thermal_velocities
+from eventsim.scene.walls import Wall, features
+
+# Random insertion jams at a packing fraction of .547; above this, many disks need not try.
+HOPELESS = 0.54
+MANY = 1000
+# A lattice so much finer than the gas needs, and still too few sites are free: the region is walled off.
+BLOCKED_SHARE = 64
+MOST_SITES = 100_000
+
+
+def place_gas(
+    gas: Gas,
+    domain: Domain,
+    walls: Sequence[Wall],
+    present: Disks,
+    rng: np.random.Generator,
+    where: str = "gas",
+) -> Disks:
+    """The disks of a gas that keeps the rules, clear of walls and of the disks `present`.
+
+    Random numbers are drawn in this order: velocities (none at rest), then the places of a random arrangement.
+    So the velocities do not depend on where the disks are. 1e6 disks at a packing fraction of .3 take seconds.
+
+    Raises:
+        SceneError: if the disks do not fit; `where` is how to call the gas.
+    """
+    region = region_of(gas, domain)
+    if region is None:
+        raise SceneError(f"{where}.region is missing: an open domain has no size that a gas could fill")
+    place = _Place(gas, domain, walls, present, region, where)
+    velocity = _velocity(gas, rng)
+    position = place.at_random(rng) if gas.arrangement == "random" else place.on_lattice()
+    return Disks(position, velocity, place.radius, gas.mass)
+
+
+def _velocity(gas: Gas, rng: np.random.Generator) -> Floats:
+    """Velocities (N, 2) as the gas wants them."""
+    if gas.temperature:
+        return thermal_velocities(gas.count, gas.mass, gas.temperature, rng)
+    if gas.speed:
+        return equal_speeds(gas.count, gas.speed, rng)
+    return np.zeros((gas.count, 2))
+
+
+class _Place:
+    """The region of one gas, and what is in the way there."""
+
+    def __init__(
+        self, gas: Gas, domain: Domain, walls: Sequence[Wall], present: Disks, region: Region, where: str
+    ) -> None:
+        self.gas = gas
+        self.where = where
+        self.region = region
+        self.radius = disk_radius(gas, region)
+        # An immovable disk keeps clear of its like as well; tracers may lie on each other.
+        self.mass = 1.0 if math.isinf(gas.mass) else gas.mass
+        self.origin = domain.origin
+        self.period = period_of(domain)
+        width, height = region[2] - region[0], region[3] - region[1]
+        self.wraps = (width >= self.period[0], height >= self.period[1])
+        if min(width, height) < 2.0 * self.radius:
+            raise SceneError(
+                f"{where}: a disk of radius {self.radius:.6g} is wider than the region {self._extent()}"
+            )
+        self.features = features(walls)
+        masses = np.where(np.isinf(present.mass), 1.0, present.mass)
+        self.others = Cells(present.position - np.array(self.origin), present.radius, masses, self.period)
+        lengths = [abs(length) for length in (*region, width, height, self.radius)]
+        lengths += [feature_scale(feature, self.origin) for feature in self.features]
+        if len(present):
+            lengths += [float(np.abs(present.position).max()), float(present.radius.max())]
+        self.rounding = float(touching_depth(np.array(max(lengths))))
+
+    def at_random(self, rng: np.random.Generator) -> Floats:
+        """Centres (count, 2) by random insertion."""
+        count = self.gas.count
+        if self.mass and self._packing_fraction() > HOPELESS and count > MANY:
+            raise SceneError(self._too_dense(None))
+        low, high = [], []
+        for axis in (0, 1):
+            margin = 0.0 if self.wraps[axis] else self.radius
+            low.append(self.region[axis] + margin - self.origin[axis])
+            high.append(self.region[axis + 2] - margin - self.origin[axis])
+        corner = np.array(self.origin)
+        placed = insert_at_random(
+            count,
+            self.radius,
+            self.mass,
+            (low[0], low[1]),
+            (high[0], high[1]),
+            self.period,
+            lambda drops: self._is_free(drops + corner),
+            rng,
+        )
+        if len(placed) < count:
+            raise SceneError(self._too_dense(len(placed)))
+        centers: Floats = placed + corner
+        return centers
+
+    def on_lattice(self) -> Floats:
+        """Centres (count, 2) on a lattice; sites that are left over are spread evenly."""
+        count = self.gas.count
+        lattice = Lattice(self.gas.arrangement == "hexagonal", self.region, self.radius, self.wraps)
+        wanted = count
+        while (shape := lattice.shape(wanted)) and wanted <= MOST_SITES + BLOCKED_SHARE * count:
+            sites = lattice.sites(shape)
+            sites = sites[self._is_free(sites)]
+            if len(sites) >= count:
+                return sites[np.arange(count) * len(sites) // count]
+            # As many more as the share of blocked sites lets expect, but at most twice as many at a time.
+            tried = max(wanted, shape.columns * shape.rows)
+            wanted = min(tried * count // max(1, len(sites)), 2 * tried) + 1
+        most = lattice.capacity(count)
+        found = f"the region {self._extent()} has room for {most}"
+        if most >= count:
+            found = "too many sites are blocked by walls or other disks"
+        denser = "" if lattice.hexagonal else "; hexagonal is denser"
+        raise SceneError(
+            f"{self.where}: {count} disks of radius {self.radius:.6g} (packing fraction"
+            f" {self._packing_fraction():.4g}) do not fit on a {self.gas.arrangement} lattice: {found}{denser}"
+        )
+
+    def _is_free(self, position: Floats) -> NDArray[np.bool_]:
+        """Which of these centres (M, 2) keep the disks clear of walls and others; touching is allowed."""
+        free = np.ones(len(position), dtype=np.bool_)
+        for found in self.others.overlaps(position - np.array(self.origin), self.radius, self.mass):
+            free[found.first[found.depth > self.rounding]] = False
+        radius = np.full(len(position), self.radius)
+        for _, near, depth in wall_overlaps(self.features, position, radius, self.origin, self.period):
+            free[near[depth > self.rounding]] = False
+        return free
+
+    def _packing_fraction(self) -> float:
+        x0, y0, x1, y1 = self.region
+        return self.gas.count * math.pi * self.radius**2 / ((x1 - x0) * (y1 - y0))
+
+    def _extent(self) -> str:
+        x0, y0, x1, y1 = self.region
+        return f"[{x0:.6g}, {x1:.6g}] x [{y0:.6g}, {y1:.6g}]"
+
+    def _too_dense(self, placed: int | None) -> str:
+        found = "" if placed is None else f" ({placed} found a place)"
+        return (
+            f'{self.where}.arrangement = "random": {self.gas.count} disks of radius {self.radius:.6g} do not fit at'
+            f" random into {self._extent()}, packing fraction {self._packing_fraction():.4g}{found}; random insertion"
+            ' works up to about 0.5 in all: use "square" or "hexagonal"'
+        )

@@ -1,0 +1,114 @@
+"""A gas: many equal disks that are described by a rule."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from eventsim.scene.domain import Domain
+
+Region: TypeAlias = tuple[float, float, float, float]
+
+# Equal disks on a hexagonal lattice, touching: the densest packing there is.
+CLOSE_PACKING = math.pi / math.sqrt(12.0)
+# More disks than this are a slip of the pen: their numbers alone would take gigabytes.
+MOST_DISKS = 50_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Gas:
+    """`count` equal disks; the fields are the keys of a [[gas]] table.
+
+    Attributes:
+        count: number of disks.
+        radius: length; or else packing_fraction, of the region.
+        mass: of each.
+        temperature: kT, mass length^2 / time^2; or else speed, the same for all; neither: at rest.
+        arrangement: "random", "square" or "hexagonal".
+        region: x0, y0, x1, y1; None for the domain.
+        seed: of the random numbers.
+    """
+
+    count: int
+    radius: float | None = None
+    packing_fraction: float | None = None
+    mass: float = 1.0
+    temperature: float | None = None
+    speed: float | None = None
+    arrangement: str = "random"
+    region: Region | None = None
+    seed: int | None = None
+
+    @property
+    def uses_chance(self) -> bool:
+        """Whether the gas cannot be made without random numbers."""
+        return self.arrangement == "random" or bool(self.temperature) or bool(self.speed)
+
+
+def region_of(gas: Gas, domain: Domain) -> Region | None:
+    """The region that a gas fills; None where neither the gas nor the domain says."""
+    if gas.region is not None:
+        return gas.region
+    if domain.size is None:
+        return None
+    (x, y), (width, height) = domain.origin, domain.size
+    return x, y, x + width, y + height
+
+
+def disk_radius(gas: Gas, region: Region) -> float:
+    """The radius of each disk, from the packing fraction where that is given."""
+    if gas.packing_fraction is None:
+        return gas.radius or 0.0
+    x0, y0, x1, y1 = region
+    return math.sqrt(gas.packing_fraction * (x1 - x0) * (y1 - y0) / (gas.count * math.pi))
+
+
+def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -> Iterator[str]:
+    """Every rule that a gas breaks, one sentence each.
+
+    Args:
+        gas: the gas; types have been checked.
+        domain: the domain, None where it is not known.
+        where: how to call the table, as in "gas[0]".
+        seeded: whether a seed for all tables has been given.
+    """
+    if gas.count > MOST_DISKS:
+        yield f"{where}.count = {gas.count}: must be at most {MOST_DISKS}"
+    if (gas.radius is None) == (gas.packing_fraction is None):
+        yield f"{where}: must have either radius or packing_fraction" + (", not both" if gas.radius else "")
+    if gas.radius is not None and not 0.0 <= gas.radius < math.inf:
+        yield f"{where}.radius = {gas.radius}: must be finite and at least 0"
+    if gas.packing_fraction is not None and not 0.0 < gas.packing_fraction <= CLOSE_PACKING:
+        rule = f"must be above 0 and at most {CLOSE_PACKING:.7f}..., the densest packing of equal disks"
+        yield f"{where}.packing_fraction = {gas.packing_fraction}: {rule}"
+    if not gas.mass >= 0.0:
+        yield f"{where}.mass = {gas.mass}: must be at least 0 (inf: cannot be deflected)"
+    if gas.temperature is not None and gas.speed is not None:
+        yield f"{where}: must have temperature or speed, not both"
+    for key in ("temperature", "speed"):
+        value = getattr(gas, key)
+        if value is not None and not 0.0 <= value < math.inf:
+            yield f"{where}.{key} = {value}: must be finite and at least 0"
+    if gas.temperature and gas.mass in (0.0, math.inf):
+        yield f"{where}.temperature: a mass of {gas.mass} has no temperature; use speed"
+    if gas.uses_chance and gas.seed is None and not seeded:
+        yield f"{where}.seed is missing: where chance is used, a seed makes the scene the same every time"
+    yield from _region_problems(gas, domain, where)
+
+
+def _region_problems(gas: Gas, domain: Domain | None, where: str) -> Iterator[str]:
+    """Rules for the region: an area, inside the domain."""
+    if gas.region is None:
+        if domain is not None and domain.size is None:
+            yield f"{where}.region is missing: an open domain has no size that a gas could fill"
+        return
+    x0, y0, x1, y1 = gas.region
+    if not (all(map(math.isfinite, gas.region)) and x0 < x1 and y0 < y1):
+        yield f"{where}.region = {list(gas.region)}: must be finite numbers [x0, y0, x1, y1], x0 < x1 and y0 < y1"
+    elif domain is not None and domain.size is not None:
+        (x, y), (width, height) = domain.origin, domain.size
+        if x0 < x or y0 < y or x1 > x + width or y1 > y + height:
+            extent = [x, y, x + width, y + height]
+            yield f"{where}.region = {list(gas.region)}: must be inside the domain {extent}"

@@ -1,0 +1,202 @@
+"""Which keys the tables of a scene file have, and of which type their values are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from difflib import get_close_matches
+from numbers import Integral, Real
+from typing import Any
+
+from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFieldInvalid, Schema
+
+from eventsim.scene.domain import DOMAINS
+from eventsim.scene.walls import WALLS
+
+ARRANGEMENTS = ("random", "square", "hexagonal")
+TABLE_LISTS = ("disk", "disks_file", "gas", "wall")
+
+
+def number(value: object) -> float:
+    """A real number as a float."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise Invalid("must be a number")
+    try:
+        return float(value)
+    except OverflowError:
+        raise Invalid("is too large for a number") from None
+
+
+def mass(value: object) -> float:
+    """A mass; JSON has no word for inf, so it may be written as text."""
+    return math.inf if value == "inf" else number(value)
+
+
+def whole(least: int) -> Callable[[object], int]:
+    """A whole number from `least` on."""
+
+    def whole_number(value: object) -> int:
+        if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+            raise Invalid(f"must be a whole number, at least {least}")
+        return int(value)
+
+    return whole_number
+
+
+def numbers(count: int, meaning: str) -> Callable[[object], tuple[float, ...]]:
+    """A list of `count` numbers."""
+
+    def list_of_numbers(value: object) -> tuple[float, ...]:
+        if not isinstance(value, list | tuple) or len(value) != count:
+            raise Invalid(f"must be {meaning}")
+        try:
+            return tuple(map(number, value))
+        except Invalid:
+            raise Invalid(f"must be {meaning}") from None
+
+    return list_of_numbers
+
+
+def points(value: object) -> tuple[tuple[float, ...], ...]:
+    """A list of points."""
+    if not isinstance(value, list | tuple):
+        raise Invalid("must be a list of points [x, y]")
+    try:
+        return tuple(map(POINT, value))
+    except Invalid:
+        raise Invalid("must be a list of points [x, y]") from None
+
+
+def text(value: object) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise Invalid("must be a text in quotation marks")
+    return value
+
+
+def one_of(*words: str) -> Callable[[object], str]:
+    """One of several words."""
+
+    def word(value: object) -> str:
+        if value not in words:
+            near = get_close_matches(value, words, n=1) if isinstance(value, str) else []
+            hint = f' (did you mean "{near[0]}"?)' if near else ""
+            raise Invalid("must be one of " + ", ".join(f'"{w}"' for w in words) + hint)
+        return str(value)
+
+    return word
+
+
+POINT = numbers(2, "two numbers [x, y]")
+KIND: dict[Any, Any] = {Required("kind"): text}
+ENDS: dict[Any, Any] = {Required("start"): POINT, Required("end"): POINT}
+NAME: dict[Any, Any] = {Optional("name"): text}
+SIZED = Schema(
+    {**KIND, Required("size"): numbers(2, "two numbers [width, height]"), Optional("origin"): POINT}
+)
+
+SCENE = Schema(
+    {
+        Optional("name"): text,
+        Optional("until"): number,
+        Optional("events"): whole(0),
+        Optional("start_time"): number,
+        Optional("gravity"): POINT,
+        Optional("restitution"): number,
+        Optional("contact_duration"): number,
+    }
+)
+RESTITUTION = Schema({Optional("pair"): number, Optional("wall"): number})
+DOMAIN = {"box": SIZED, "periodic": SIZED, "channel": SIZED, "open": Schema(KIND)}
+DISK = Schema(
+    {
+        Required("position"): POINT,
+        Optional("velocity"): POINT,
+        Required("radius"): number,
+        Optional("mass"): mass,
+    }
+)
+GAS = Schema(
+    {
+        Required("count"): whole(1),
+        Optional("radius"): number,
+        Optional("packing_fraction"): number,
+        Optional("mass"): mass,
+        Optional("temperature"): number,
+        Optional("speed"): number,
+        Optional("arrangement"): one_of(*ARRANGEMENTS),
+        Optional("region"): numbers(4, "four numbers [x0, y0, x1, y1]"),
+        Optional("seed"): whole(0),
+    }
+)
+DISKS_FILE = Schema({Required("path"): text})
+WALL = {
+    "segment": Schema({**KIND, **ENDS, **NAME}),
+    "polygon": Schema({**KIND, Required("points"): points, **NAME}),
+    "polyline": Schema({**KIND, Required("points"): points, **NAME}),
+    "arc": Schema({**KIND, **ENDS, Required("through"): POINT, **NAME}),
+    "circle": Schema({**KIND, Required("center"): POINT, Required("radius"): number, **NAME}),
+}
+SCALARS = tuple(str(key) for key in SCENE.schema)
+SCENE_KEYS = (*SCALARS, "domain", *TABLE_LISTS)
+
+assert DOMAIN.keys() == DOMAINS.keys()
+assert WALL.keys() == WALLS.keys()
+
+
+def read_table(schema: Schema, table: object, where: str, problems: list[str]) -> dict[str, Any] | None:
+    """The values of a table in the types of a schema; None, and one problem for each, where some do not fit.
+
+    `where` is the path of the table, empty for the scene itself. An unknown key is a problem, but the rest of
+    the table is read all the same.
+    """
+    if not isinstance(table, Mapping):
+        problems.append(f"{where} = {shown(table)}: must be a table")
+        return None
+    prefix = f"{where}." if where else ""
+    known = [str(key) for key in schema.schema]
+    report_unknown(table, known, prefix, problems)
+    try:
+        values: dict[str, Any] = schema({key: value for key, value in table.items() if key in known})
+    except MultipleInvalid as broken:
+        for error in broken.errors:
+            key = str(error.path[0])
+            if isinstance(error, RequiredFieldInvalid):
+                problems.append(f"{prefix}{key} is missing")
+            else:
+                problems.append(f"{prefix}{key} = {shown(table[key])}: {error.error_message}")
+        return None
+    return values
+
+
+def read_kind(
+    schemas: Mapping[str, Schema], table: object, where: str, problems: list[str]
+) -> dict[str, Any] | None:
+    """The same for a table whose keys depend on its `kind`."""
+    if not isinstance(table, Mapping):
+        problems.append(f"{where} = {shown(table)}: must be a table")
+        return None
+    if "kind" not in table:
+        problems.append(f"{where}.kind is missing: one of " + ", ".join(f'"{kind}"' for kind in schemas))
+        return None
+    try:
+        kind = one_of(*schemas)(table["kind"])
+    except Invalid as error:
+        problems.append(f"{where}.kind = {shown(table['kind'])}: {error.error_message}")
+        return None
+    return read_table(schemas[kind], table, where, problems)
+
+
+def report_unknown(table: Mapping[Any, object], known: list[str], prefix: str, problems: list[str]) -> None:
+    """One problem for each key that is not among the known ones."""
+    for key in table:
+        if key not in known:
+            near = get_close_matches(str(key), known, n=1)
+            hint = f'did you mean "{near[0]}"?' if near else "known here: " + ", ".join(known)
+            problems.append(f"{prefix}{key}: unknown key ({hint})")
+
+
+def shown(value: object) -> str:
+    """A value as a message quotes it."""
+    written = {True: "true", False: "false"}[value] if isinstance(value, bool) else repr(value)
+    return written if len(written) <= 60 else written[:57] + "..."

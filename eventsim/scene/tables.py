@@ -1,0 +1,167 @@
+"""From the tables of a scene file to a scene, collecting every problem on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eventsim.errors import SceneError
+from eventsim.scene import schema
+from eventsim.scene.disks import Disks, join
+from eventsim.scene.disks_file import read_disks_file
+from eventsim.scene.domain import DOMAINS, Domain, Open
+from eventsim.scene.fill import place_gas
+from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems
+from eventsim.scene.names import BlockNames
+from eventsim.scene.scene import Scene
+from eventsim.scene.validate import NO_DISKS
+from eventsim.scene.wall_rules import shape_problems
+from eventsim.scene.walls import WALLS, Wall
+
+
+def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Scene:
+    """The scene of these tables; see files.scene_from_dict.
+
+    Raises:
+        SceneError: with all problems. Gases are placed only when nothing else is wrong.
+    """
+    problems: list[str] = []
+    found = _read_parts(data, base_dir, problems)
+    gases = _read_gases(data, found.domain, seed, problems)
+    disks = join(found.disks)
+    try:
+        scene = found.scene(disks)
+    except SceneError as error:
+        # Disks may be missing because their gas has not been placed, or because their tables have problems.
+        problems += [p for p in error.problems if p != NO_DISKS or not (gases or problems)]
+    if problems:
+        raise SceneError(problems)
+    if not gases:
+        return scene
+    for i, gas in gases:
+        rng = np.random.default_rng(gas.seed if seed is None else (seed, i))
+        placed = place_gas(gas, found.domain or Open(), found.walls, disks, rng, f"gas[{i}]")
+        found.names.add(len(disks), f"disk {{}} (of gas[{i}])", range(len(disks), len(disks) + len(placed)))
+        disks = join([disks, placed])
+    return found.scene(disks)
+
+
+@dataclass(slots=True)
+class _Parts:
+    """What of a scene could be read."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    domain: Domain | None = None
+    walls: list[Wall] = field(default_factory=list)
+    disks: list[Disks] = field(default_factory=list)
+    names: BlockNames = field(default_factory=BlockNames)
+
+    def scene(self, disks: Disks) -> Scene:
+        """The scene of the parts and these disks; in the open while the domain is not known."""
+        domain = Open() if self.domain is None else self.domain
+        return Scene(disks, domain, self.walls, **self.values, names=self.names)
+
+
+def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str]) -> _Parts:
+    """Everything but the gases."""
+    schema.report_unknown(data, list(schema.SCENE_KEYS), "", problems)
+    parts = _Parts()
+    scalars = {key: value for key, value in data.items() if key in schema.SCALARS}
+    if isinstance(scalars.get("restitution"), Mapping):
+        table = scalars.pop("restitution")
+        parts.values["restitution"] = schema.read_table(schema.RESTITUTION, table, "restitution", problems)
+    # One by one: a bad one does not keep the rules from being applied to the others.
+    for key, value in scalars.items():
+        parts.values |= schema.read_table(schema.SCENE, {key: value}, "", problems) or {}
+    if "domain" not in data:
+        problems.append("domain is missing: a table with kind and size, as in the scene file's description")
+    else:
+        table = schema.read_kind(schema.DOMAIN, data["domain"], "domain", problems)
+        if table is not None:
+            parts.domain = DOMAINS[table.pop("kind")](**table)
+    _read_walls(data, parts, problems)
+    _read_disks(data, parts, problems)
+    _read_disks_files(data, base_dir, parts, problems)
+    return parts
+
+
+def _tables(data: Mapping[str, Any], key: str, problems: list[str]) -> list[Any]:
+    """The tables of a [[key]] list."""
+    tables = data.get(key, [])
+    if isinstance(tables, list | tuple):
+        return list(tables)
+    problems.append(
+        f"{key} = {schema.shown(tables)}: must be a list of tables; write [[{key}]], in double brackets"
+    )
+    return []
+
+
+def _read_walls(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> None:
+    """The walls, if all can be read; if not, at least the shapes of those that can."""
+    read: dict[int, Wall] = {}
+    tables = _tables(data, "wall", problems)
+    for i, wall in enumerate(tables):
+        table = schema.read_kind(schema.WALL, wall, f"wall[{i}]", problems)
+        if table is not None:
+            read[i] = WALLS[table.pop("kind")](**table)
+    if len(read) == len(tables):
+        parts.walls = list(read.values())
+    else:
+        problems += [f"wall[{i}]{problem}" for i, wall in read.items() for problem in shape_problems(wall)]
+
+
+def _read_disks(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> None:
+    """The [[disk]] tables that can be read."""
+    read: dict[int, dict[str, Any]] = {}
+    for i, disk in enumerate(_tables(data, "disk", problems)):
+        table = schema.read_table(schema.DISK, disk, f"disk[{i}]", problems)
+        if table is not None:
+            read[i] = table
+    if read:
+        tables = read.values()
+        parts.names.add(0, "disk[{}]", list(read))
+        parts.disks.append(
+            Disks(
+                [table["position"] for table in tables],
+                [table.get("velocity", (0.0, 0.0)) for table in tables],
+                [table["radius"] for table in tables],
+                [table.get("mass", 1.0) for table in tables],
+            )
+        )
+
+
+def _read_disks_files(data: Mapping[str, Any], base_dir: Path, parts: _Parts, problems: list[str]) -> None:
+    """The disks of the [[disks_file]] tables that can be read."""
+    for i, entry in enumerate(_tables(data, "disks_file", problems)):
+        table = schema.read_table(schema.DISKS_FILE, entry, f"disks_file[{i}]", problems)
+        if table is None:
+            continue
+        try:
+            file = read_disks_file(base_dir / table["path"])
+        except SceneError as error:
+            problems += [f"disks_file[{i}].path: {problem}" for problem in error.problems]
+            continue
+        parts.names.add(sum(map(len, parts.disks)), f"{table['path']} {file.row} {{}}", file.number)
+        parts.disks.append(file.disks)
+
+
+def _read_gases(
+    data: Mapping[str, Any], domain: Domain | None, seed: int | None, problems: list[str]
+) -> list[tuple[int, Gas]]:
+    """The [[gas]] tables that keep the rules, each with its index."""
+    gases: list[tuple[int, Gas]] = []
+    for i, entry in enumerate(_tables(data, "gas", problems)):
+        table = schema.read_table(schema.GAS, entry, f"gas[{i}]", problems)
+        if table is None:
+            continue
+        gas = Gas(**table)
+        problems += gas_problems(gas, domain, f"gas[{i}]", seeded=seed is not None)
+        gases.append((i, gas))
+    total = sum(gas.count for _, gas in gases)
+    if len(gases) > 1 and total > MOST_DISKS:
+        problems.append(f"gas: {total} disks in all: must be at most {MOST_DISKS}")
+    return gases
