@@ -83,8 +83,10 @@ def __getattr__(name: str) -> object:
     """Load a public name from its home on first use (PEP 562)."""
     if name not in _HOMES:
         raise AttributeError(f"module 'eventsim' has no attribute {name!r}")
-    value: object = getattr(import_module(f"eventsim.{_HOMES[name]}"), name)
-    globals()[name] = value
+    home = import_module(f"eventsim.{_HOMES[name]}")
+    # All names of the home at once: importing eventsim.simulate has just bound `simulate` to the module itself.
+    globals().update({each: getattr(home, each) for each in _HOMES if _HOMES[each] == _HOMES[name]})
+    value: object = globals()[name]
     return value
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sys
 from importlib import import_module
 
@@ -11,7 +12,7 @@ import click
 from eventsim import __version__
 from eventsim.cli.exits import BAD_INPUT, DONE, INTERRUPTED
 from eventsim.cli.suggest import did_you_mean
-from eventsim.errors import EventsimError
+from eventsim.errors import EventsimError, SceneError
 
 VERBS = {
     "run": "Simulate a scene from event to event; print a summary, keep a log.",
@@ -55,6 +56,11 @@ class Program(click.Group):
         with formatter.section("Verbs"):
             formatter.write_dl(list(VERBS.items()))
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Keep the command line as it was typed: logs say by which they were written."""
+        ctx.obj = shlex.join(["eventsim", *args])
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> object:
         """Call the verb; turn what goes wrong into a sentence on stderr and an exit code."""
         try:
@@ -62,7 +68,7 @@ class Program(click.Group):
             sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
             return result
         except EventsimError as error:
-            raise Failure(str(error)) from error
+            raise Failure(_message(error)) from error
         except BrokenPipeError:
             # The reader had enough (| head): nothing may be written to the pipe any more, not even at exit.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -75,6 +81,13 @@ class Program(click.Group):
             raise Failure(f"{place}{error.strerror or error}") from error
         except MemoryError:
             raise Failure("there is not enough memory for this") from None
+
+
+def _message(error: EventsimError) -> str:
+    """The text of an error; several problems of a scene below each other."""
+    if isinstance(error, SceneError) and len(error.problems) > 1:
+        return "\n  ".join([f"{len(error.problems)} problems", *error.problems])
+    return str(error)
 
 
 class Failure(click.ClickException):

@@ -101,6 +101,7 @@ def command(
             compact=compact,
             digest=digest,
             progress=progress,
+            command=click.get_current_context().obj,
         )
     if state_path is not None:
         from eventsim.record.states import write_states
