@@ -21,6 +21,9 @@ from eventsim.scene.stage import Stage
 Near: TypeAlias = Iterable[tuple[list[int], tuple[int, int]]]
 """Groups of disks that may be met, each with the image (kx, ky) it is seen in."""
 
+Border: TypeAlias = tuple[int, int, float, float]
+"""An end of the domain: (rank of its events, place of the wall, position, 1 where the radius keeps a centre away from it)."""
+
 DELAYS: dict[type, Callable[..., tuple[Real, int]]] = {
     Face: face_delay,
     Post: post_delay,
@@ -37,7 +40,7 @@ class Predictor:
         self._push = calendar.push
         self._cells = cells
         self._radius: list[float] = stage.radius.tolist()
-        self._boundaries = tuple(enumerate(stage.boundaries))
+        self._borders = _borders(stage)
         first = len(stage.boundaries)
         self._features = tuple(
             (first + k, feature.shape, DELAYS[type(feature.shape)]) for k, feature in enumerate(stage.features)
@@ -54,22 +57,6 @@ class Predictor:
         self._contacts(i, self._everyone if self._cells is None else self._cells.near(i))
         self._alone(i, now)
 
-    def _alone(self, i: int, now: Real) -> None:
-        """Push the events of disk i that involve no other disk."""
-        cells = self._cells
-        if cells is None:
-            for place, _ in self._boundaries:
-                self._boundary(i, place)
-        else:
-            for place, boundary in self._boundaries:
-                low, high = cells.edges(i, boundary.axis)
-                if (low if boundary.side > 0.0 else high) is None:
-                    self._boundary(i, place)
-            self._crossing(i, now)
-        for place, shape, delay_to in self._features:
-            self._wall(i, place, shape, delay_to)
-        self._wraps(i)
-
     def predict_all(self, now: Real) -> None:
         """Push every event of every disk; a pair once."""
         for i in range(self._state.n):
@@ -77,16 +64,26 @@ class Predictor:
             self._contacts(i, [([j for j in members if j > i], image) for members, image in near])
             self._alone(i, now)
 
+    def _alone(self, i: int, now: Real) -> None:
+        """Push the events of disk i that involve no other disk."""
+        for axis in (0, 1):
+            low, high = (None, None) if self._cells is None else self._cells.edges(i, axis)
+            if low is None:
+                self._border(i, axis, -1)
+            if high is None:
+                self._border(i, axis, 1)
+        for place, shape, delay_to in self._features:
+            self._wall(i, place, shape, delay_to)
+        if self._cells is not None:
+            self._crossing(i, now)
+
     def predict_ahead(self, i: int, axis: int, step: int, now: Real) -> None:
-        """Push what disk i can meet since it entered a new cell: the disks and the boundary ahead of it."""
+        """Push what disk i can meet since it entered a new cell: the disks ahead of it, and the end of the domain."""
         cells = self._cells
         assert cells is not None
         self._contacts(i, cells.ahead(i, axis, step))
-        for place, boundary in self._boundaries:
-            if boundary.axis == axis and boundary.side * step < 0.0:
-                low, high = cells.edges(i, axis)
-                if (high if step > 0 else low) is None:
-                    self._boundary(i, place)
+        if cells.edges(i, axis)[step > 0] is None:
+            self._border(i, axis, step)
         self._crossing(i, now)
 
     def _contacts(self, i: int, near: Near) -> None:
@@ -145,18 +142,18 @@ class Predictor:
         ux, uy = kx + state.wraps_x[i] - state.wraps_x[j], ky + state.wraps_y[i] - state.wraps_y[j]
         return (j, ux, uy) in state.met[i] and (i, -ux, -uy) in state.met[j]
 
-    def _boundary(self, i: int, place: int) -> None:
-        """Push the contact of disk i with a hard wall of the domain."""
+    def _border(self, i: int, axis: int, step: int) -> None:
+        """Push what happens to disk i at the low (-1) or high (+1) end of the domain: a contact, a wrap, or nothing."""
+        border = self._borders[axis][step > 0]
+        if border is None:
+            return
+        rank, place, position_, inset = border
         state = self._state
-        axis, position_, side, _ = self._boundaries[place][1]
-        target = position_ + side * self._radius[i]
-        if axis == 0:
-            delay = crossing_delay(state.x[i], state.vx[i], state.gravity_x[i], target, side)
-        else:
-            delay = crossing_delay(state.y[i], state.vy[i], state.gravity_y[i], target, side)
+        x, v, g = (state.x, state.vx, state.gravity_x) if axis == 0 else (state.y, state.vy, state.gravity_y)
+        delay = crossing_delay(x[i], v[i], g[i], position_ - step * (inset * self._radius[i]), -step)
         if delay < NEVER:
-            image = (int(side), 0)
-            self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, image, state.count[i], 0))
+            b, image = (axis, (step, 0)) if rank == WRAP else (-1 - place, (-step, 0))
+            self._push(Event(state.t[i] + delay, rank, i, b, image, state.count[i], 0))
 
     def _wall(
         self, i: int, place: int, shape: Face | Post | Container | Arc, delay_to: Callable[..., tuple[Real, int]]
@@ -178,42 +175,36 @@ class Predictor:
         if delay < NEVER:
             self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, 0), state.count[i], 0))
 
-    def _wraps(self, i: int) -> None:
-        """Push the passages of disk i through periodic boundaries."""
-        state = self._state
-        for axis, length in enumerate(self._period):
-            if length is None:
-                continue
-            x, v, g = (
-                (state.x[i], state.vx[i], state.gravity_x[i])
-                if axis == 0
-                else (state.y[i], state.vy[i], state.gravity_y[i])
-            )
-            for step, target in ((1, length), (-1, 0.0)):
-                delay = crossing_delay(x, v, g, target, -step)
-                if delay < NEVER:
-                    self._push(Event(state.t[i] + delay, WRAP, i, axis, (step, 0), state.count[i], 0))
-
     def _crossing(self, i: int, now: Real) -> None:
         """Push the next passage of disk i into another cell, reckoned from where it is now."""
         state, cells = self._state, self._cells
         assert cells is not None
-        at, speed = state.place(i, now), state.speed(i, now)
-        pull = (state.gravity_x[i], state.gravity_y[i])
+        x, y = state.place(i, now)
+        u, w = state.speed(i, now)
         best, best_axis, best_step = NEVER, 0, 0
-        for axis in (0, 1):
-            v, g = speed[axis], pull[axis]
+        for axis, at, v, g in ((0, x, u, state.gravity_x[i]), (1, y, w, state.gravity_y[i])):
             low, high = cells.edges(i, axis)
             if high is not None and (v > 0.0 or g is not None):
-                delay = crossing_delay(at[axis], v, g, high, -1.0)
+                delay = crossing_delay(at, v, g, high, -1)
                 if delay < best:
                     best, best_axis, best_step = delay, axis, 1
             if low is not None and (v < 0.0 or g is not None):
-                delay = crossing_delay(at[axis], v, g, low, 1.0)
+                delay = crossing_delay(at, v, g, low, 1)
                 if delay < best:
                     best, best_axis, best_step = delay, axis, -1
         if best < NEVER:
             self._push(Event(now + best, CROSSING, i, best_axis, (best_step, 0), state.count[i], 0))
+
+
+def _borders(stage: Stage) -> tuple[tuple[Border | None, Border | None], ...]:
+    """What is at the low and the high end of the domain along x and y."""
+    found: list[list[Border | None]] = [[None, None], [None, None]]
+    for axis, length in enumerate(stage.period):
+        if length is not None:
+            found[axis] = [(WRAP, -1, 0.0, 0.0), (WRAP, -1, length, 0.0)]
+    for place, boundary in enumerate(stage.boundaries):
+        found[boundary.axis][boundary.side < 0.0] = (CONTACT, place, boundary.position, 1.0)
+    return tuple((low, high) for low, high in found)
 
 
 def _classes(stage: Stage) -> list[int] | None:
