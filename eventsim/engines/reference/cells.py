@@ -7,11 +7,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import product
 from typing import NamedTuple, TypeAlias
+
+import numpy as np
 
 from eventsim.scene.stage import Stage
 
 Cell: TypeAlias = tuple[int, int]
+Group: TypeAlias = tuple[list[int], tuple[int, int]]
+"""Disks that may be met, and the image (kx, ky) they are seen in."""
 
 MARGIN = 1.0 + 2.0**-20
 """Cells are wider than the longest reach by this, so that a disk enters a neighbouring cell well before the contact."""
@@ -20,20 +25,25 @@ ENOUGH_DISKS = 24
 """Below it, looking at all pairs is faster than keeping cells."""
 
 
+GIANT, FEW = 4.0, 32
+"""A disk of more than 4 times the median radius is kept out of the cells, if it is one of at most n / 32."""
+
+
 class Grid(NamedTuple):
-    """Cells of `side` (x, y); columns and rows, None where the plane is open."""
+    """Cells of `side` (x, y); columns and rows, None where the plane is open; giants: disks tried against all others."""
 
     side: tuple[float, float]
     columns: int | None
     rows: int | None
+    giants: tuple[int, ...] = ()
 
 
 def plan(stage: Stage, side: float | None = None) -> Grid | None:
     """The grid that a scene profits from, or None: all pairs.  A side that is asked for is kept to if it is wide enough."""
     if side is None and stage.n < ENOUGH_DISKS:
         return None
-    radii = sorted(stage.radius.tolist())[-2:]
-    least = max(sum(radii), 2.0 * radii[-1]) * MARGIN
+    giants = _giants(stage)
+    least = sum(sorted(np.delete(stage.radius, giants).tolist())[-2:]) * MARGIN
     extent = stage.size if stage.size is not None else (float(stage.x.max()), float(stage.y.max()))
     if side is None:
         spacing = math.sqrt(extent[0]) * math.sqrt(extent[1]) / math.sqrt(stage.n)
@@ -41,29 +51,49 @@ def plan(stage: Stage, side: float | None = None) -> Grid | None:
     if not (side >= least and side > 0.0):
         return None
     if stage.size is None:
-        return Grid((side, side), None, None)
+        return Grid((side, side), None, None, giants)
     columns, rows = (int(min(length / side, 2.0**20)) for length in stage.size)
     enough = [count >= 3 or length is None for count, length in zip((columns, rows), stage.period, strict=True)]
     if not all(enough) or max(columns, rows) < 3:
         return None
     columns, rows = max(columns, 1), max(rows, 1)
-    return Grid((stage.size[0] / columns, stage.size[1] / rows), columns, rows)
+    return Grid((stage.size[0] / columns, stage.size[1] / rows), columns, rows, giants)
+
+
+def _giants(stage: Stage) -> tuple[int, ...]:
+    """The disks that would make every cell as large as they are."""
+    giants = np.flatnonzero(stage.radius > GIANT * np.median(stage.radius))
+    return tuple(giants.tolist()) if len(giants) * FEW <= stage.n else ()
+
+
+def images_of(stage: Stage) -> list[tuple[int, int]]:
+    """The images (kx, ky) in which a disk of the domain can be met from inside it."""
+    along_x, along_y = ((0,) if length is None else (-1, 0, 1) for length in stage.period)
+    return list(product(along_x, along_y))
 
 
 class Cells:
-    """Which disks are in which cell."""
+    """Which disks are in which cell; the giants are in none, they are near to everybody."""
 
     def __init__(self, stage: Stage, grid: Grid) -> None:
         self.side = grid.side
         self._shape = (grid.columns, grid.rows)
         self._periodic = tuple(length is not None for length in stage.period)
         self._members: dict[Cell, list[int]] = {}
-        self._around: dict[Cell, list[tuple[list[int], tuple[int, int]]]] = {}
-        self._ahead: dict[tuple[Cell, int, int], list[tuple[list[int], tuple[int, int]]]] = {}
-        self.cell_of: list[Cell] = [(0, 0)] * stage.n
+        self._around: dict[Cell, list[Group]] = {}
+        self._ahead: dict[tuple[Cell, int, int], list[Group]] = {}
+        self.cell_of: list[Cell | None] = [(0, 0)] * stage.n
+        for giant in grid.giants:
+            self.cell_of[giant] = None
+        images = images_of(stage)
+        giants, everyone = list(grid.giants), list(range(stage.n))
+        self._giants: list[Group] = [(giants, image) for image in images] if giants else []
+        self._everyone: list[Group] = [(everyone, image) for image in images]
 
     def place(self, i: int, x: float, y: float) -> None:
         """Put disk i into the cell of its centre; it must not be in another one."""
+        if self.cell_of[i] is None:
+            return
         cell = self._clip(int(x // self.side[0]), 0), self._clip(int(y // self.side[1]), 1)
         self.cell_of[i] = cell
         self._in(cell).append(i)
@@ -75,8 +105,11 @@ class Cells:
 
     def move(self, i: int, axis: int, step: int) -> None:
         """Move disk i to the next cell along an axis; over a periodic boundary to the other side."""
-        column, row = self.cell_of[i]
-        self._in((column, row)).remove(i)
+        cell = self.cell_of[i]
+        if cell is None:
+            return
+        column, row = cell
+        self._in(cell).remove(i)
         if axis == 0:
             column = self._next(column, step, 0)
         else:
@@ -84,26 +117,33 @@ class Cells:
         self.cell_of[i] = (column, row)
         self._in((column, row)).append(i)
 
-    def near(self, i: int) -> list[tuple[list[int], tuple[int, int]]]:
+    def near(self, i: int) -> list[Group]:
         """The members of the cells around disk i, its own included, each with the image (kx, ky) that is meant."""
         cell = self.cell_of[i]
+        if cell is None:
+            return self._everyone
         around = self._around.get(cell)
         if around is None:
-            around = self._around[cell] = list(self._neighbours(cell, (-1, 0, 1), (-1, 0, 1)))
+            around = self._around[cell] = [*self._neighbours(cell, (-1, 0, 1), (-1, 0, 1)), *self._giants]
         return around
 
-    def ahead(self, i: int, axis: int, step: int) -> list[tuple[list[int], tuple[int, int]]]:
+    def ahead(self, i: int, axis: int, step: int) -> list[Group]:
         """As near, but only the three cells on the side towards which disk i has just moved."""
-        key = self.cell_of[i], axis, step
+        cell = self.cell_of[i]
+        assert cell is not None
+        key = cell, axis, step
         ahead = self._ahead.get(key)
         if ahead is None:
             offsets = ((step,), (-1, 0, 1)) if axis == 0 else ((-1, 0, 1), (step,))
-            ahead = self._ahead[key] = list(self._neighbours(key[0], *offsets))
+            ahead = self._ahead[key] = list(self._neighbours(cell, *offsets))
         return ahead
 
     def edges(self, i: int, axis: int) -> tuple[float | None, float | None]:
-        """The coordinates at which disk i leaves its cell downwards and upwards; None at the end of the grid."""
-        k = self.cell_of[i][axis]
+        """The coordinates at which disk i leaves its cell downwards and upwards; None at the end of the grid, and for a giant."""
+        cell = self.cell_of[i]
+        if cell is None:
+            return None, None
+        k = cell[axis]
         count = self._shape[axis]
         low = None if k == 0 and count is not None else k * self.side[axis]
         high = None if count is not None and k == count - 1 else (k + 1) * self.side[axis]
@@ -120,9 +160,7 @@ class Cells:
         count = self._shape[axis]
         return (k + step) % count if count is not None and self._periodic[axis] else k + step
 
-    def _neighbours(
-        self, cell: Cell, offsets_x: tuple[int, ...], offsets_y: tuple[int, ...]
-    ) -> Iterator[tuple[list[int], tuple[int, int]]]:
+    def _neighbours(self, cell: Cell, offsets_x: tuple[int, ...], offsets_y: tuple[int, ...]) -> Iterator[Group]:
         for dx in offsets_x:
             for dy in offsets_y:
                 column, kx = self._fold(cell[0] + dx, 0)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from itertools import product
 from typing import TypeAlias
 
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
-from eventsim.engines.reference.cells import Cells
+from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.contact import pair_delay
 from eventsim.formulas.crossing import crossing_delay
@@ -17,9 +16,6 @@ from eventsim.formulas.real import NEVER, Real
 from eventsim.formulas.walls.face import Face, face_delay
 from eventsim.formulas.walls.round import Arc, Container, Post, arc_delay, container_delay, post_delay
 from eventsim.scene.stage import Stage
-
-Near: TypeAlias = Iterable[tuple[list[int], tuple[int, int]]]
-"""Groups of disks that may be met, each with the image (kx, ky) it is seen in."""
 
 Border: TypeAlias = tuple[int, int, float, float]
 """An end of the domain: (rank of its events, place of the wall, position, 1 where the radius keeps a centre away from it)."""
@@ -48,9 +44,8 @@ class Predictor:
         self._period = stage.period
         self._falls = stage.gravity is not None
         self._unmoved = _classes(stage)
-        shifts = [(0,) if length is None else (-1, 0, 1) for length in stage.period]
         everyone = list(range(stage.n))
-        self._everyone = [(everyone, (kx, ky)) for kx, ky in product(*shifts)]
+        self._everyone: list[Group] = [(everyone, image) for image in images_of(stage)]
 
     def predict(self, i: int, now: Real) -> None:
         """Push every event of disk i: contacts with disks and walls, wraps, and the next cell crossing."""
@@ -86,7 +81,7 @@ class Predictor:
             self._border(i, axis, step)
         self._crossing(i, now)
 
-    def _contacts(self, i: int, near: Near) -> None:
+    def _contacts(self, i: int, near: Iterable[Group]) -> None:
         """Push the contacts of disk i with others; symmetric under exchange of the two, bit for bit."""
         state = self._state
         t, x, y, vx, vy = state.t, state.x, state.y, state.vx, state.vy
