@@ -15,11 +15,11 @@ from eventsim.scene.numbers import Point
 
 Indices: TypeAlias = NDArray[np.int64]
 
-MASSIVE, TRACER, IMMOVABLE = 0, 1, 2
+MASSIVE, TRACER, IMMOVABLE = KINDS = 0, 1, 2
 # A cell is a little wider than the largest diameter in it, so that a rounded cell index misses no overlap.
 CELL_MARGIN = 1.001
 # Cell indices are clipped to this range; clipping brings far cells together, it never separates near ones.
-LAST_CELL = 2.0**30
+LAST_CELL = 2**30
 ROW_STRIDE = 2**31
 # Candidate pairs looked at in one go: bounds the memory, about 100 bytes each.
 CANDIDATES_AT_ONCE = 2**21
@@ -63,9 +63,9 @@ class Cells:
         kind = _kinds(mass)
         octave = np.frexp(radius)[1].astype(np.int64)
         octave[radius == 0.0] = octave.min() - 1
-        groups = np.unique(np.stack([octave, kind], axis=1), axis=0)
-        for level, k in groups:
-            self.grids.append(self._grid(np.flatnonzero((octave == level) & (kind == k)), int(k)))
+        group = len(KINDS) * octave + kind
+        for label in np.unique(group):
+            self.grids.append(self._grid(np.flatnonzero(group == label), int(label % len(KINDS))))
 
     def pairs(self) -> Iterator[Overlaps]:
         """All overlapping pairs among the disks, in chunks.
@@ -74,16 +74,12 @@ class Cells:
         """
         for i, small in enumerate(self.grids):
             for large in self.grids[i:]:
-                for found in self._search(large, small.members, self.position, self.radius, small.kind):
-                    if small is large:
-                        once = found.first < found.second
-                        found = Overlaps(found.first[once], found.second[once], found.depth[once])
-                    yield found
+                yield from self._search(large, small.members, self.position, self.radius, small.kind)
 
     def overlaps(self, position: Floats, radius: float, mass: float) -> Iterator[Overlaps]:
         """Overlaps of other, equal disks at `position` (M, 2) with these, in chunks; `first` counts those."""
-        everyone = np.arange(len(position))
         radii = np.full(len(position), radius)
+        everyone = np.arange(len(position))
         kind = int(_kinds(np.array([mass]))[0])
         for grid in self.grids:
             yield from self._search(grid, everyone, position, radii, kind)
@@ -99,8 +95,8 @@ class Cells:
         width = 2.0 * largest or extent / np.sqrt(len(members)) or 1.0
         corner = (float(low[0]), float(low[1]))
         width = min(CELL_MARGIN * width, np.finfo(np.float64).max)
-        column, row = _cell(position[:, 0], corner[0], width), _cell(position[:, 1], corner[1], width)
-        keys = row.astype(np.int64) * ROW_STRIDE + column.astype(np.int64)
+        column, row = (_cell(position[:, axis], corner[axis], width) for axis in (0, 1))
+        keys = row * ROW_STRIDE + column
         order = np.argsort(keys, kind="stable")
         return _Grid(members[order], keys[order], corner, width, largest, kind)
 
@@ -113,7 +109,8 @@ class Cells:
         reach = float(radius[queries].max()) + grid.radius
         if reach == 0.0:
             return
-        span = np.floor(min(reach / grid.width, LAST_CELL)) + 1.0
+        itself = queries is grid.members
+        span = int(min(reach / grid.width, LAST_CELL)) + 1
         images = [(0.0,) if np.isinf(length) else (0.0, -length, length) for length in self.period]
         for shift in product(*images):
             near = queries
@@ -121,21 +118,27 @@ class Cells:
                 if shift[axis]:
                     moved = position[near, axis] + shift[axis]
                     near = near[(moved > -reach) & (moved < self.period[axis] + reach)]
-            column = _cell(position[near, 0] + shift[0], grid.corner[0], grid.width, LAST_CELL + 2)
-            row = _cell(position[near, 1] + shift[1], grid.corner[1], grid.width, LAST_CELL + 2)
-            left = np.clip(column - span, 0.0, LAST_CELL).astype(np.int64)
-            right = np.clip(column + span, 0.0, LAST_CELL).astype(np.int64)
-            for up in range(-int(span), int(span) + 1):
-                base = (row.astype(np.int64) + up) * ROW_STRIDE
-                start = np.searchsorted(grid.keys, base + left, side="left")
+            column, row = (_cell(position[near, k] + shift[k], grid.corner[k], grid.width, 2) for k in (0, 1))
+            if not itself:
+                # In the order of the cells, neighbours in turn: the search below then runs through the cache.
+                order = np.argsort(row * ROW_STRIDE + column)
+                near, column, row = near[order], column[order], row[order]
+            left, right = np.clip(column - span, 0, LAST_CELL), np.clip(column + span, 0, LAST_CELL)
+            # Within one grid each pair is found from the disk that comes first.
+            half = itself and shift == (0.0, 0.0)
+            for up in range(0 if half else -span, span + 1):
+                base = (row + up) * ROW_STRIDE
                 stop = np.searchsorted(grid.keys, base + right, side="right")
+                start = np.searchsorted(grid.keys, base + left, side="left")
+                if half and up == 0:
+                    start = np.arange(1, len(near) + 1)
                 for query, slot in _expand(start, stop):
                     first, second = near[query], grid.members[slot]
-                    apart = position[first] - self.position[second]
                     with np.errstate(over="ignore"):
-                        distance = np.hypot(apart[:, 0] + shift[0], apart[:, 1] + shift[1])
-                    depth = radius[first] + self.radius[second] - distance
-                    deep = depth > 0.0
+                        x = position[first, 0] - self.position[second, 0] + shift[0]
+                        y = position[first, 1] - self.position[second, 1] + shift[1]
+                        depth = radius[first] + self.radius[second] - np.hypot(x, y)
+                    deep = depth > 0.0 if half or not itself else (depth > 0.0) & (first < second)
                     yield Overlaps(first[deep], second[deep], depth[deep])
 
 
@@ -144,10 +147,10 @@ def _kinds(mass: Floats) -> Indices:
     return np.where(mass == 0.0, TRACER, np.where(np.isinf(mass), IMMOVABLE, MASSIVE))
 
 
-def _cell(coordinate: Floats, corner: float, width: float, last: float = LAST_CELL) -> Floats:
-    """The index of the cell that holds a coordinate, as a whole float."""
+def _cell(coordinate: Floats, corner: float, width: float, beyond: int = 0) -> Indices:
+    """The index of the cell that holds a coordinate, up to `beyond` cells outside of the grid."""
     with np.errstate(over="ignore"):
-        return np.clip(np.floor((coordinate - corner) / width), LAST_CELL - last, last)
+        return np.clip(np.floor((coordinate - corner) / width), -beyond, LAST_CELL + beyond).astype(np.int64)
 
 
 def _expand(start: Indices, stop: Indices) -> Iterator[tuple[Indices, Indices]]:

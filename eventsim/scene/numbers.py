@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from numbers import Real
+from numbers import Integral, Real
 from typing import TypeAlias
 
 from eventsim.errors import SceneError
@@ -28,6 +28,19 @@ def number(value: object, key: str) -> float:
 def optional_number(value: object, key: str) -> float | None:
     """The value as a float, or None where there is none."""
     return None if value is None else number(value, key)
+
+
+def optional_whole(value: object, key: str) -> int | None:
+    """The value as an int, or None where there is none.
+
+    Raises:
+        SceneError: if the value is not a whole number.
+    """
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise SceneError(f"{key} = {value!r}: must be a whole number")
+    return int(value)
 
 
 def point(value: object, key: str) -> Point:

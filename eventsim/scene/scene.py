@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from eventsim.errors import SceneError
 from eventsim.scene.disks import Disks
-from eventsim.scene.domain import Domain
+from eventsim.scene.domain import DOMAINS, Domain
 from eventsim.scene.names import DiskNames
-from eventsim.scene.numbers import Point, number, optional_number, point
+from eventsim.scene.numbers import Point, number, optional_number, optional_whole, point
 from eventsim.scene.restitution import Restitution, as_restitution
 from eventsim.scene.validate import find_problems
-from eventsim.scene.walls import Wall
+from eventsim.scene.walls import WALLS, Wall
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -65,6 +65,7 @@ class Scene:
         Raises:
             SceneError: with every rule that is broken, each naming the disks or the key, value and rule.
         """
+        _demand_types(disks, domain, walls, name)
         pull = None if gravity is None else point(gravity, "gravity")
         fields = {
             "disks": disks,
@@ -74,7 +75,7 @@ class Scene:
             "restitution": as_restitution(restitution),
             "contact_duration": optional_number(contact_duration, "contact_duration"),
             "until": optional_number(until, "until"),
-            "events": events,
+            "events": optional_whole(events, "events"),
             "start_time": number(start_time, "start_time"),
             "name": name,
         }
@@ -83,3 +84,22 @@ class Scene:
         problems = find_problems(self, names)
         if problems:
             raise SceneError(problems)
+
+
+def _demand_types(disks: object, domain: object, walls: Sequence[object], name: object) -> None:
+    """Raise if a part is not what its place is for, as when code passes a size for a domain."""
+    problems: list[str] = []
+    if not isinstance(disks, Disks):
+        problems.append(f"disks = {disks!r}: must be Disks(position, velocity, radius, mass)")
+    if not isinstance(domain, tuple(DOMAINS.values())):
+        problems.append(f"domain = {domain!r}: must be a Box, Periodic, Channel or Open")
+    if not isinstance(walls, list | tuple):
+        problems.append(f"walls = {walls!r}: must be a sequence of walls")
+    else:
+        kinds = ", ".join(kind.__name__ for kind in WALLS.values())
+        strange = [(i, wall) for i, wall in enumerate(walls) if not isinstance(wall, tuple(WALLS.values()))]
+        problems += [f"wall[{i}] = {wall!r}: must be one of {kinds}" for i, wall in strange]
+    if name is not None and not isinstance(name, str):
+        problems.append(f"name = {name!r}: must be a text")
+    if problems:
+        raise SceneError(problems)

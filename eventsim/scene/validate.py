@@ -140,9 +140,12 @@ def _place_problems(disks: Disks, scene: Scene, names: DiskNames) -> list[str]:
         feature_overlaps(disks, domain, pieces).broken(),
         "disks that are across a wall",
         lambda i, wall, depth: (
-            f"{names.disk(i)} (center {_at(disks, i)}, radius {disks.radius[i]}) lies {depth:.6g} across"
-            f" {pieces[wall].kind} {pieces[wall].name}: a disk must not reach "
-            + ("out of its container" if pieces[wall].kind == "circle" else "into a wall")
+            f"{names.disk(i)} (center {_at(disks, i)}, radius {disks.radius[i]}) reaches {depth:.6g} "
+            + (
+                f"out of circle {pieces[wall].name}: must be inside its container"
+                if pieces[wall].kind == "circle"
+                else f"across {pieces[wall].kind} {pieces[wall].name}: may touch a wall, not reach into it"
+            )
         ),
     )
     if not outside.any():
