@@ -23,6 +23,8 @@ from eventsim.scene.walls import Wall, features
 # Random insertion jams at a packing fraction of .547; above this, many disks need not try.
 HOPELESS = 0.54
 MANY = 1000
+# A few disks may find themselves stuck just short of their number, and may try again from the start.
+ROUNDS = 10
 # A lattice so much finer than the gas needs, and still too few sites are free: the region is walled off.
 BLOCKED_SHARE = 64
 MOST_SITES = 100_000
@@ -102,17 +104,22 @@ class _Place:
             low.append(self.region[axis] + margin - self.origin[axis])
             high.append(self.region[axis + 2] - margin - self.origin[axis])
         corner = np.array(self.origin)
-        placed = insert_at_random(
-            count,
-            self.radius,
-            self.mass,
-            (low[0], low[1]),
-            (high[0], high[1]),
-            self.period,
-            lambda drops: self._is_free(drops + corner),
-            rng,
-        )
-        if len(placed) < count:
+        for _ in range(ROUNDS):
+            placed = insert_at_random(
+                count,
+                self.radius,
+                self.mass,
+                (low[0], low[1]),
+                (high[0], high[1]),
+                self.period,
+                lambda drops: self._is_free(drops + corner),
+                rng,
+            )
+            if len(placed) == count:
+                break
+            if count > MANY or count - len(placed) > 1 + count // 30:
+                raise SceneError(self._too_dense(len(placed)))
+        else:
             raise SceneError(self._too_dense(len(placed)))
         centers: Floats = placed + corner
         return centers

@@ -99,6 +99,12 @@ def _demand_types(disks: object, domain: object, walls: Sequence[object], name: 
         kinds = ", ".join(kind.__name__ for kind in WALLS.values())
         strange = [(i, wall) for i, wall in enumerate(walls) if not isinstance(wall, tuple(WALLS.values()))]
         problems += [f"wall[{i}] = {wall!r}: must be one of {kinds}" for i, wall in strange]
+        called = [(i, getattr(wall, "name", None)) for i, wall in enumerate(walls)]
+        problems += [
+            f"wall[{i}].name = {name!r}: must be a text"
+            for i, name in called
+            if not isinstance(name, str | None)
+        ]
     if name is not None and not isinstance(name, str):
         problems.append(f"name = {name!r}: must be a text")
     if problems:

@@ -80,10 +80,11 @@ def _scalar_problems(scene: Scene) -> Iterator[str]:
     if scene.gravity is not None and not all(map(math.isfinite, scene.gravity)):
         yield f"gravity = {list(scene.gravity)}: must be two finite numbers"
     if scene.restitution is not None:
-        for key in ("pair", "wall"):
-            value = getattr(scene.restitution, key)
+        pair, wall = scene.restitution.pair, scene.restitution.wall
+        both = {"restitution": pair} if pair == wall else {"restitution.pair": pair, "restitution.wall": wall}
+        for key, value in both.items():
             if not 0.0 <= value <= 1.0:
-                yield f"restitution.{key} = {value}: must be from 0 to 1"
+                yield f"{key} = {value}: must be from 0 to 1"
     if scene.contact_duration is not None and not 0.0 <= scene.contact_duration < math.inf:
         yield f"contact_duration = {scene.contact_duration}: must be a finite time, at least 0"
     if not math.isfinite(scene.start_time):

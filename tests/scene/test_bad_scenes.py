@@ -1,0 +1,223 @@
+"""Scene files with mistakes: every problem is told at once, with the key or the disks, the value and the rule."""
+
+import pytest
+
+from eventsim.errors import SceneError
+from eventsim.scene.files import load_scene
+
+BOX = '[domain]\nkind = "box"\nsize = [10, 5]\n'
+DISK = "[[disk]]\nposition = [2, 2]\nradius = 0.5\n"
+GAS = "[[gas]]\ncount = 10\nradius = 0.1\nseed = 1\n"
+
+# name: (text of the file, for each expected problem the words that must be in it)
+BAD = {
+    "unknown key": (
+        "untill = 3\n" + BOX + DISK,
+        [["untill", "unknown key", 'did you mean "until"']],
+    ),
+    "unknown key of a disk": (
+        BOX + DISK + "colour = 3\n",
+        [["disk[0].colour", "unknown key", "position, velocity, radius, mass"]],
+    ),
+    "missing domain": (DISK, [["domain is missing"]]),
+    "missing radius": (BOX + "[[disk]]\nposition = [1, 1]\n", [["disk[0].radius is missing"]]),
+    "wrong type": (
+        BOX + '[[disk]]\nposition = [1, 1]\nradius = "big"\n',
+        [["disk[0].radius = 'big'", "must be a number"]],
+    ),
+    "a position with three numbers": (
+        BOX + "[[disk]]\nposition = [1, 1, 1]\nradius = 1\n",
+        [["disk[0].position = [1, 1, 1]", "two numbers [x, y]"]],
+    ),
+    "negative radius": (
+        BOX + "[[disk]]\nposition = [1, 1]\nradius = -1\n",
+        [["disk[0].radius = -1.0", "at least 0"]],
+    ),
+    "nan": (
+        BOX + "[[disk]]\nposition = [1, nan]\nvelocity = [inf, 0]\nradius = 1\nmass = nan\n",
+        [
+            ["disk[0].position = [1.0, nan]", "finite"],
+            ["disk[0].velocity = [inf, 0.0]", "finite"],
+            ["disk[0].mass = nan", "at least 0"],
+        ],
+    ),
+    "overlap": (
+        BOX + DISK + "[[disk]]\nposition = [2.5, 2]\nradius = 0.25\n",
+        [["disk[0] and disk[1] overlap by 0.25", "touch, not overlap"]],
+    ),
+    "outside": (
+        BOX + "[[disk]]\nposition = [9.75, 2]\nradius = 0.5\n",
+        [["disk[0]", "(9.75, 2.0)", "0.25 beyond the right side", "[0.0, 10.0] x [0.0, 5.0]"]],
+    ),
+    "across a wall": (
+        BOX + DISK + '[[wall]]\nkind = "segment"\nstart = [0, 2.25]\nend = [5, 2.25]\nname = "shelf"\n',
+        [["disk[0]", "reaches 0.25 across segment shelf"]],
+    ),
+    "out of the container": (
+        '[domain]\nkind = "open"\n' + DISK + '[[wall]]\nkind = "circle"\ncenter = [0, 2]\nradius = 2\n',
+        [["disk[0]", "reaches 0.5 out of circle wall0", "inside its container"]],
+    ),
+    "unknown domain": (
+        '[domain]\nkind = "torus"\nsize = [1, 1]\n' + DISK,
+        [["domain.kind = 'torus'", '"box", "periodic", "channel", "open"']],
+    ),
+    "no size": ('[domain]\nkind = "box"\n' + DISK, [["domain.size is missing"]]),
+    "a size of zero": (
+        '[domain]\nkind = "box"\nsize = [10, 0]\n' + DISK,
+        [["domain.size = [10.0, 0.0]", "above 0"]],
+    ),
+    "open with a size": (
+        '[domain]\nkind = "open"\nsize = [1, 1]\n' + DISK,
+        [["domain.size", "unknown key"]],
+    ),
+    "no disks": (BOX, [["at least one disk"]]),
+    "missing seed": (
+        BOX + "[[gas]]\ncount = 10\nradius = 0.1\n",
+        [["gas[0].seed is missing", "chance"]],
+    ),
+    "gas with two radii and two speeds": (
+        BOX + GAS + "packing_fraction = 0.1\ntemperature = 1\nspeed = 1\n",
+        [["gas[0]", "radius or packing_fraction, not both"], ["gas[0]", "temperature or speed, not both"]],
+    ),
+    "gas too dense for random": (
+        BOX + '[[gas]]\ncount = 300\npacking_fraction = 0.65\narrangement = "random"\nseed = 1\n',
+        [["gas[0]", "packing fraction 0.65", '"square" or "hexagonal"']],
+    ),
+    "gas too large for a lattice": (
+        BOX + '[[gas]]\ncount = 60\nradius = 0.5\narrangement = "square"\n',
+        [["gas[0]", "60 disks of radius 0.5", "do not fit", "room for 50", "hexagonal"]],
+    ),
+    "gas outside": (
+        BOX + GAS + "region = [8, 0, 12, 5]\n",
+        [["gas[0].region = [8.0, 0.0, 12.0, 5.0]", "inside the domain"]],
+    ),
+    "gas of nothing": (
+        BOX + "[[gas]]\ncount = 0\nradius = 0.1\nseed = 1\n",
+        [["gas[0].count = 0", "at least 1"]],
+    ),
+    "gas of more than memory holds": (
+        BOX + "[[gas]]\ncount = 10_000_000_000\nradius = 0\nseed = 1\n",
+        [["gas[0].count = 10000000000", "at most 50000000"]],
+    ),
+    "hot posts": (BOX + GAS + "mass = inf\ntemperature = 1\n", [["gas[0].temperature", "inf", "use speed"]]),
+    "misspelt arrangement": (
+        BOX + GAS + 'arrangement = "hexagon"\n',
+        [["gas[0].arrangement = 'hexagon'", 'did you mean "hexagonal"']],
+    ),
+    "gas in the open": ('[domain]\nkind = "open"\n' + GAS, [["gas[0].region is missing", "no size"]]),
+    "restitution above one": (
+        "restitution = {pair = 1.5, wall = -1}\n" + BOX + DISK,
+        [["restitution.pair = 1.5", "from 0 to 1"], ["restitution.wall = -1.0", "from 0 to 1"]],
+    ),
+    "stop before the start": (
+        "until = 1\nstart_time = 2\n" + BOX + DISK,
+        [["until = 1.0", "start_time = 2.0"]],
+    ),
+    "half an event": ("events = 2.5\n" + BOX + DISK, [["events = 2.5", "whole number"]]),
+    "walls that are none": (
+        BOX
+        + DISK
+        + '[[wall]]\nkind = "segment"\nstart = [1, 1]\nend = [1, 1]\n'
+        + '[[wall]]\nkind = "polygon"\npoints = [[0, 0], [1, 0]]\n'
+        + '[[wall]]\nkind = "arc"\nstart = [0, 0]\nthrough = [1, 1]\nend = [2, 2]\n'
+        + '[[wall]]\nkind = "circle"\ncenter = [0, 0]\nradius = 0\n',
+        [
+            ["wall[0]", "same point"],
+            ["wall[1].points", "at least 3"],
+            ["wall[2]", "not on a line"],
+            ["wall[3].radius = 0.0", "above 0"],
+        ],
+    ),
+    "wall names": (
+        BOX
+        + DISK
+        + '[[wall]]\nkind = "segment"\nstart = [7, 1]\nend = [7, 2]\nname = "left"\n'
+        + '[[wall]]\nkind = "segment"\nstart = [8, 1]\nend = [8, 2]\nname = "wall2"\n'
+        + '[[wall]]\nkind = "segment"\nstart = [9, 1]\nend = [9, 2]\n',
+        [["wall[0].name = 'left'", "sides of the domain"], ["wall[2]", "'wall2' is taken by wall[1]"]],
+    ),
+    "a wall without a kind": (
+        BOX + DISK + "[[wall]]\nstart = [0, 0]\n",
+        [["wall[0].kind is missing", '"segment"']],
+    ),
+    "single brackets": (
+        BOX + "[disk]\nposition = [1, 1]\nradius = 0.5\n",
+        [["disk = ", "[[disk]]", "double brackets"]],
+    ),
+    "outside the period": (
+        '[domain]\nkind = "periodic"\nsize = [10, 5]\n[[disk]]\nposition = [10, 2]\nradius = 0.5\n',
+        [["disk[0]", "x must be at least 0.0 and below 10.0", "periodic"]],
+    ),
+    "wider than the period": (
+        '[domain]\nkind = "periodic"\nsize = [10, 5]\n[[disk]]\nposition = [1, 2]\nradius = 3\n',
+        [["disk[0].radius = 3.0", "at most the period 5.0"]],
+    ),
+    "overlap with an image": (
+        '[domain]\nkind = "periodic"\nsize = [10, 5]\n'
+        "[[disk]]\nposition = [0.25, 2]\nradius = 0.5\n[[disk]]\nposition = [9.75, 2]\nradius = 0.5\n",
+        [["disk[0] and disk[1] overlap by 0.5"]],
+    ),
+    "no disks file": (
+        BOX + '[[disks_file]]\npath = "gone.csv"\n',
+        [["disks_file[0].path", "gone.csv", "no such file"]],
+    ),
+    "mistakes of many kinds": (
+        'colour = "red"\nrestitution = 2\n'
+        + BOX
+        + DISK
+        + "[[disk]]\nposition = [2, 2]\nradius = 0.25\n[[disk]]\nposition = [2, 3]\n"
+        + '[[wall]]\nkind = "segment"\nstart = [1, 1]\nend = [1, 1]\n[[wall]]\nkind = "line"\n',
+        [
+            ["colour", "unknown key"],
+            ["restitution = 2.0", "from 0 to 1"],
+            ["disk[2].radius is missing"],
+            ["disk[0] and disk[1] overlap"],
+            ["wall[0]", "same point"],
+            ["wall[1].kind = 'line'"],
+        ],
+    ),
+    "not TOML": ("until = \n", [["not valid TOML", "line 1"]]),
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), BAD.values(), ids=BAD.keys())
+def test_every_problem_of_a_bad_file_is_told_at_once(tmp_path, text, expected):
+    file = tmp_path / "bad.toml"
+    file.write_text(text)
+    with pytest.raises(SceneError) as caught:
+        load_scene(file)
+    problems = list(caught.value.problems)
+    assert len(problems) == len(expected), problems
+    assert all(problem.startswith(f"{file}: ") for problem in problems)
+    assert str(caught.value) == "\n".join(problems)
+    for words in expected:
+        fitting = [problem for problem in problems if all(word in problem for word in words)]
+        assert fitting, f"no problem with {words} in {problems}"
+        problems.remove(fitting[0])
+
+
+def test_many_overlaps_are_counted_not_listed(tmp_path):
+    file = tmp_path / "bad.toml"
+    file.write_text(BOX + DISK * 20)
+    with pytest.raises(SceneError) as caught:
+        load_scene(file)
+    assert len(caught.value.problems) == 4
+    assert "and 187 more pairs of disks that overlap" in caught.value.problems[-1]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("gone.toml", None, "no such file"),
+        ("bad.json", '{"until": 3,\n"domain": }', "not valid JSON: Expecting value (at line 2, column 11)"),
+        ("list.json", "[1, 2]", "JSON object"),
+        ("nan.json", '{"domain": {"kind": "open"}, "disk": [{"position": [NaN, 0], "radius": 1}]}', "finite"),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_told_in_a_sentence(tmp_path, name, text, words):
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    with pytest.raises(SceneError, match=name) as caught:
+        load_scene(tmp_path / name)
+    assert len(caught.value.problems) == 1
+    assert words in caught.value.problems[0]

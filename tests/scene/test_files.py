@@ -1,0 +1,245 @@
+"""Scene files: what is written is read back in every bit, and settings change keys."""
+
+import json
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from eventsim.errors import SceneError
+from eventsim.scene import Arc, Box, Channel, Circle, Disks, Open, Periodic, Polygon, Polyline, Scene, Segment
+from eventsim.scene.files import apply_overrides, load_scene, scene_from_dict, scene_to_dict, scene_to_toml
+
+finite = st.floats(-1e6, 1e6)
+points = st.tuples(finite, finite)
+domains = st.one_of(
+    st.just(Open()),
+    *(
+        st.builds(kind, st.tuples(*[st.floats(3e6, 1e7)] * 2), st.just((-1.5e6, -1.25e6)))
+        for kind in (Box, Periodic, Channel)
+    ),
+)
+walls = st.lists(
+    st.sampled_from(
+        [
+            Segment((0.1, 0.2), (0.3, -0.0)),
+            Polygon([(1 / 3, 0), (1, 0), (0, 1)]),
+            Polyline([(5, 5), (6, 6)]),
+            Arc((0, 0), (1, 1), (2, 0)),
+            Circle((0, 0), 1e7 / 3),
+        ]
+    ),
+    max_size=3,
+)
+
+
+@st.composite
+def scenes(draw):
+    count = draw(st.integers(1, 5))
+    domain = draw(domains)
+    some = draw(walls)
+    if domain.size is not None and any(domain.periodic):
+        some = [wall for wall in some if not isinstance(wall, Circle)]
+    # Points (radius 0) of any mass lie anywhere without overlap.
+    disks = Disks(
+        draw(st.lists(points, min_size=count, max_size=count)),
+        draw(st.lists(points, min_size=count, max_size=count)),
+        0.0,
+        draw(st.lists(st.one_of(st.floats(0, 1e300), st.just(math.inf)), min_size=count, max_size=count)),
+    )
+    return Scene(
+        disks,
+        domain,
+        some,
+        gravity=draw(st.none() | points),
+        restitution=draw(st.none() | st.floats(0, 1) | st.fixed_dictionaries({"wall": st.floats(0, 1)})),
+        contact_duration=draw(st.none() | st.floats(0, 1e3)),
+        until=draw(st.none() | st.floats(2, 1e6)),
+        events=draw(st.none() | st.integers(0, 10**12)),
+        start_time=draw(st.floats(-1e6, 1)),
+        name=draw(st.none() | st.text(st.characters(exclude_categories=["Cs"]))),
+    )
+
+
+def bits(scene):
+    """Everything a scene holds, with -0.0 told from 0.0."""
+    disks = scene.disks
+    arrays = [array.tobytes() for array in (disks.position, disks.velocity, disks.radius, disks.mass)]
+    rest = (scene.domain, scene.walls, scene.gravity, scene.restitution, scene.contact_duration)
+    return arrays, repr((*rest, scene.until, scene.events, scene.start_time, scene.name))
+
+
+@given(scenes())
+@settings(max_examples=100, deadline=None)
+def test_a_scene_comes_back_in_every_bit(scene):
+    tables = scene_to_dict(scene)
+    assert bits(scene_from_dict(tables)) == bits(scene)
+    assert bits(scene_from_dict(json.loads(json.dumps(tables, allow_nan=False)))) == bits(scene)
+    assert bits(scene_from_dict(tomllib.loads(scene_to_toml(scene)))) == bits(scene)
+    assert scene_to_dict(scene_from_dict(tables)) == tables
+
+
+def test_a_file_with_every_key_gives_the_scene_it_describes(tmp_path):
+    (tmp_path / "start.csv").write_text("mass,x,y,vx,vy,radius,colour\n2,6,3,0,1,0.25,red\n")
+    (tmp_path / "all.toml").write_text(
+        """
+        name = "all"
+        until = 4
+        events = 100
+        start_time = 1.0
+        gravity = [0, -9.81]
+        restitution = {pair = 0.9}
+        contact_duration = 1e-6
+        domain = {kind = "box", size = [10, 5], origin = [-1, 0]}
+        disk = [{position = [0, 1], velocity = [3, 0], radius = 0.5, mass = inf}]
+        disks_file = [{path = "start.csv"}]
+        wall = [{kind = "segment", start = [2, 0], end = [2, 5], name = "middle"}]
+        gas = [{count = 5, radius = 0.1, mass = 3, speed = 2, arrangement = "square", region = [3, 0, 5, 5], seed = 1}]
+        """
+    )
+    scene = load_scene(tmp_path / "all.toml")
+    assert (scene.name, scene.until, scene.events, scene.start_time) == ("all", 4.0, 100, 1.0)
+    assert (scene.gravity, scene.restitution.pair, scene.restitution.wall) == ((0.0, -9.81), 0.9, 1.0)
+    assert scene.domain == Box((10, 5), (-1, 0))
+    assert scene.walls == (Segment((2, 0), (2, 5), "middle"),)
+    # The order: disk tables, files of disks, gases.
+    assert scene.disks.mass.tolist() == [math.inf, 2, 3, 3, 3, 3, 3]
+    assert scene.disks.position[1].tolist() == [6, 3]
+    assert np.hypot(*scene.disks.velocity[2:].T) == pytest.approx(2, rel=4e-16)
+
+
+def test_json_has_the_same_keys_and_a_word_for_inf(tmp_path):
+    tables = {"domain": {"kind": "open"}, "disk": [{"position": [0, 0], "radius": 1, "mass": "inf"}]}
+    (tmp_path / "post.json").write_text(json.dumps(tables))
+    assert load_scene(tmp_path / "post.json").disks.mass.tolist() == [math.inf]
+
+
+GASES = {
+    "domain": {"kind": "box", "size": [10, 10]},
+    "gas": [
+        {"count": 5, "radius": 0.1, "seed": 7, "speed": 1.0, "region": [5 * i, 0, 5 * i + 5, 10]}
+        for i in (0, 1)
+    ],
+}
+
+
+def test_tables_with_one_seed_are_alike_and_a_seed_for_all_makes_them_differ():
+    velocity = scene_from_dict(GASES).disks.velocity
+    assert np.array_equal(velocity[:5], velocity[5:])
+    velocity = scene_from_dict(GASES, seed=7).disks.velocity
+    assert not np.array_equal(velocity[:5], velocity[5:])
+    assert scene_from_dict(GASES, seed=7) == scene_from_dict(GASES, seed=7)
+    angle = 2 * math.pi * np.random.default_rng((7, 1)).random(5)
+    assert np.array_equal(velocity[5:], np.stack([np.cos(angle), np.sin(angle)], axis=1))
+
+
+def test_a_seed_for_all_stands_in_for_a_missing_one():
+    tables = {"domain": {"kind": "box", "size": [1, 1]}, "gas": [{"count": 3, "radius": 0.1}]}
+    assert len(scene_from_dict(tables, seed=0).disks) == 3
+
+
+def test_settings_change_keys_without_touching_the_original():
+    tables = {"gas": [{"count": 5}], "restitution": 1.0}
+    changed = apply_overrides(
+        tables,
+        [
+            "gas.0.count=500",
+            "restitution=0.9",
+            "gas[1].speed = 2",
+            "name=my scene",
+            "gravity=[0, -1]",
+            "domain.kind=box",
+        ],
+    )
+    assert changed == {
+        "gas": [{"count": 500}, {"speed": 2}],
+        "restitution": 0.9,
+        "name": "my scene",
+        "gravity": [0, -1],
+        "domain": {"kind": "box"},
+    }
+    assert tables == {"gas": [{"count": 5}], "restitution": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("gas.0.count", "must be key=value"),
+        ("=3", "must be key=value"),
+        ("gas.3.count=1", "'3' is no index from 0 to 1"),
+        ("gas.x=1", "'x' is no index"),
+        ("until.x=1", "until is 3, which has no key 'x'"),
+    ],
+)
+def test_a_setting_that_leads_nowhere_is_refused(setting, words):
+    with pytest.raises(SceneError, match=words):
+        apply_overrides({"gas": [{"count": 5}], "until": 3}, [setting])
+
+
+HEADER = "time,disk,x,y,vx,vy,radius,mass\n"
+
+
+def load_with_disks(folder: Path, name: str) -> Scene:
+    return scene_from_dict({"domain": {"kind": "open"}, "disks_file": [{"path": name}]}, folder)
+
+
+def test_disks_come_from_csv_and_npz_alike_in_every_bit(tmp_path):
+    rng = np.random.default_rng(1)
+    table = {key: rng.random(50) * 10.0 ** rng.integers(-9, 9, 50) for key in ("x", "y", "vx", "vy", "mass")}
+    table["radius"] = np.zeros(50)
+    rows = [
+        ",".join(map(repr, row)) for row in zip(*(column.tolist() for column in table.values()), strict=True)
+    ]
+    (tmp_path / "start.csv").write_text("# a comment\n" + ",".join(table) + "\n" + "\n".join(rows) + "\n")
+    np.savez(tmp_path / "start.npz", **table)
+    scene = load_with_disks(tmp_path, "start.csv")
+    assert np.array_equal(scene.disks.position, np.stack([table["x"], table["y"]], axis=1))
+    assert scene == load_with_disks(tmp_path, "start.npz")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (HEADER + "0,0,1,1,0,0,0.5,1\n1,0,2,1,0,0,0.5,1\n", ["2 times (0.0, 1.0)"]),
+        ("x,y\n1,2\n", ["lacks vx, vy, radius, mass"]),
+        (
+            HEADER + "0,0,1,1,0,0,0.5,1\n\n0,1,9,1,zero,0,0.5\n",
+            ["line 4: vx = 'zero'", "line 4: mass is missing"],
+        ),
+        (HEADER, ["no disks"]),
+        ("", ["lacks x"]),
+        (
+            HEADER + "0,0,1,1,0,0,0.5,1\n0,1,1,1,0,0,0.5,1\n",
+            ["start.csv line 2 and start.csv line 3 overlap"],
+        ),
+        (
+            HEADER + "0,0,1,1,0,0,-0.5,1\n",
+            [
+                "start.csv line 2: radius = -0.5",
+            ],
+        ),
+    ],
+)
+def test_a_bad_file_of_disks_is_told_with_its_line(tmp_path, text, words):
+    (tmp_path / "start.csv").write_text(text)
+    with pytest.raises(SceneError) as caught:
+        load_with_disks(tmp_path, "start.csv")
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_bad_npz_is_told_in_a_sentence(tmp_path):
+    (tmp_path / "start.npz").write_bytes(b"no zip")
+    with pytest.raises(SceneError, match="not an npz file"):
+        load_with_disks(tmp_path, "start.npz")
+    np.savez(
+        tmp_path / "start.npz",
+        **dict.fromkeys(("x", "y", "vx", "vy", "radius"), np.zeros(2)),
+        mass=np.zeros(3),
+    )
+    with pytest.raises(SceneError, match="equally long"):
+        load_with_disks(tmp_path, "start.npz")

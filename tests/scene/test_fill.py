@@ -1,0 +1,138 @@
+"""Gases: disks placed by rule keep clear of each other, of walls and of what is there."""
+
+import math
+
+import numpy as np
+import pytest
+
+from eventsim.errors import SceneError
+from eventsim.scene import Box, Channel, Circle, Disks, Open, Periodic, Polygon, Scene, Segment
+from eventsim.scene.files import scene_from_dict
+from eventsim.scene.fill import place_gas
+from eventsim.scene.gas import Gas
+
+NOBODY = Disks(np.empty((0, 2)), radius=0.0)
+CLOSE = math.pi / math.sqrt(12)
+
+
+def place(gas, domain, walls=(), present=NOBODY, seed=1):
+    """The scene of a gas and the disks that are there; that it exists says that nothing overlaps."""
+    placed = place_gas(gas, domain, walls, present, np.random.default_rng(seed))
+    assert len(placed) == gas.count
+    return Scene(
+        Disks(
+            np.concatenate([present.position, placed.position]),
+            np.concatenate([present.velocity, placed.velocity]),
+            np.concatenate([present.radius, placed.radius]),
+            np.concatenate([present.mass, placed.mass]),
+        ),
+        domain,
+        walls,
+    )
+
+
+@pytest.mark.parametrize(
+    "domain", [Box((2, 1), (5, -3)), Channel((2, 1), (5, -3)), Periodic((2, 1), (5, -3))]
+)
+@pytest.mark.parametrize(
+    ("arrangement", "packing_fraction"),
+    [("random", 0.3), ("random", 0.5), ("square", 0.7), ("hexagonal", 0.8)],
+)
+def test_a_gas_fills_its_domain_without_overlap(domain, arrangement, packing_fraction):
+    disks = place(Gas(200, packing_fraction=packing_fraction, arrangement=arrangement), domain).disks
+    assert 200 * math.pi * disks.radius[0] ** 2 == pytest.approx(2 * packing_fraction)
+    # It fills the domain: each quarter of the length has about a quarter of the disks.
+    share = np.histogram(disks.position[:, 0], bins=4, range=(5, 7))[0] / 200
+    assert np.abs(share - 0.25).max() < 0.1
+
+
+@pytest.mark.parametrize("rows", [2, 16, 100])
+def test_a_hexagonal_lattice_reaches_close_packing_in_a_periodic_domain(rows):
+    domain = Periodic((1.0, math.sqrt(3) / 2))
+    scene = place(Gas(rows * rows, packing_fraction=CLOSE, arrangement="hexagonal"), domain)
+    assert 2 * scene.disks.radius[0] == pytest.approx(1 / rows, rel=1e-15)
+
+
+def test_a_square_lattice_reaches_touching_in_a_box():
+    scene = place(Gas(100, radius=0.05, arrangement="square"), Box((1, 1)))
+    assert scene.disks.position.min() == pytest.approx(0.05, rel=1e-15)
+
+
+def test_a_row_of_disks_fits_between_walls_as_wide_as_a_disk():
+    place(Gas(10, radius=0.5, arrangement="hexagonal"), Box((10, 1)))
+
+
+@pytest.mark.parametrize("arrangement", ["random", "square", "hexagonal"])
+def test_a_gas_keeps_clear_of_walls_and_of_disks_that_are_there(arrangement):
+    present = Disks([[2, 2], [7, 7]], radius=[1.5, 0.01], mass=[math.inf, 1])
+    walls = [Polygon([(5, 1), (9, 1), (7, 4)]), Segment((0, 5), (10, 5.5)), Circle((5, 5), 7)]
+    place(Gas(80, radius=0.25, arrangement=arrangement), Box((10, 10)), walls, present)
+
+
+@pytest.mark.parametrize("arrangement", ["random", "square", "hexagonal"])
+def test_whole_disks_are_inside_a_region(arrangement):
+    gas = Gas(30, radius=0.1, arrangement=arrangement, region=(1, 1, 3, 2))
+    position = place(gas, Periodic((4, 4))).disks.position
+    assert (position >= 1.1 - 1e-15).all()
+    assert (position <= [2.9 + 1e-15, 1.9 + 1e-15]).all()
+
+
+def test_a_gas_fills_a_container_in_the_open():
+    place(Gas(100, radius=0.1, region=(-2, -2, 2, 2)), Open(), [Circle((0, 0), 2)])
+
+
+@pytest.mark.parametrize("arrangement", ["random", "square", "hexagonal"])
+def test_a_gas_that_is_walled_off_is_refused(arrangement):
+    gas = Gas(10, radius=0.0, arrangement=arrangement, region=(5, 5, 6, 6))
+    with pytest.raises(SceneError, match="do not fit"):
+        place(gas, Open(), [Circle((0, 0), 1)])
+
+
+def test_a_random_gas_is_what_dropping_one_disk_after_the_other_gives():
+    gas = Gas(60, radius=0.05)
+    domain = Box((1, 1))
+    rng = np.random.default_rng(3)
+    slow: list[list[float]] = []
+    while len(slow) < gas.count:
+        drop = 0.05 + 0.9 * rng.random(2)
+        if all(math.dist(drop, other) >= 0.1 for other in slow):
+            slow.append(drop.tolist())
+    assert place(gas, domain, seed=3).disks.position == pytest.approx(np.array(slow), abs=1e-15)
+
+
+def test_tracers_may_lie_on_each_other_but_not_on_massive_disks():
+    present = Disks([[5, 5]], radius=1.0)
+    disks = place(Gas(500, radius=0.5, mass=0.0, speed=1.0), Box((10, 10)), (), present).disks
+    assert np.hypot(*(disks.position[1:] - 5).T).min() >= 1.5
+
+
+def test_a_thermal_gas_has_its_temperature_and_no_momentum():
+    velocity = place(Gas(1000, radius=0.0, mass=3.0, temperature=2.0), Box((1, 1))).disks.velocity
+    # Rounding of a mean of 1000 numbers: about sqrt(1000) * 2^-53, here with room.
+    assert 3.0 * (velocity**2).sum() / 2000 == pytest.approx(2.0, rel=1e-14)
+    assert np.abs(velocity.mean(axis=0)).max() < 1e-15
+    # Maxwell: <v^4> = 2 <v^2>^2 in the plane, with a standard error of about 4 / sqrt(1000) of <v^2>^2.
+    square = (velocity**2).sum(axis=1)
+    assert (square**2).mean() / square.mean() ** 2 == pytest.approx(2.0, abs=4 * 4 / math.sqrt(1000))
+
+
+def test_velocities_do_not_depend_on_where_the_disks_are():
+    first = place(Gas(50, radius=0.01, temperature=1.0), Box((1, 1))).disks.velocity
+    second = place(Gas(50, radius=0.02, temperature=1.0, arrangement="square"), Box((3, 1))).disks.velocity
+    assert np.array_equal(first, second)
+
+
+def test_a_mixture_is_placed_table_after_table():
+    tables = {
+        "domain": {"kind": "periodic", "size": [20, 20]},
+        "gas": [
+            {"count": 20, "radius": 1.0, "seed": 1},
+            {"count": 200, "radius": 0.3, "seed": 2, "temperature": 1.0},
+        ],
+    }
+    assert scene_from_dict(tables).disks.radius.tolist() == [1.0] * 20 + [0.3] * 200
+
+
+@pytest.mark.parametrize("arrangement", ["random", "hexagonal"])
+def test_twenty_thousand_disks_are_placed_and_validated(arrangement):
+    place(Gas(20_000, packing_fraction=0.3, arrangement=arrangement, temperature=1.0), Periodic((1, 1)))

@@ -1,0 +1,179 @@
+"""Scenes built in code: valid once they exist, and never changing."""
+
+import dataclasses
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from eventsim.errors import SceneError
+from eventsim.scene import (
+    Arc,
+    Box,
+    Channel,
+    Circle,
+    Disks,
+    Open,
+    Periodic,
+    Polygon,
+    Polyline,
+    Restitution,
+    Scene,
+    Segment,
+    feature_names,
+    wall_names,
+)
+from eventsim.scene.validate import touching_by_rounding
+
+ONE = Disks([[1, 1]], radius=0.5)
+
+
+def test_disks_are_read_only_copies_with_defaults():
+    position = np.array([[1.0, 2.0], [3.0, 4.0]])
+    disks = Disks(position, radius=0.5)
+    position[0, 0] = 9.0
+    assert len(disks) == 2
+    assert disks.position.tolist() == [[1, 2], [3, 4]]
+    assert disks.velocity.tolist() == [[0, 0], [0, 0]]
+    assert disks.radius.tolist() == [0.5, 0.5]
+    assert disks.mass.tolist() == [1, 1]
+    with pytest.raises(ValueError, match="read-only"):
+        disks.position[0, 0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"position": [[1, 2]]}, "radius is missing"),
+        ({"position": [[1, 2, 3]], "radius": 1}, "must be \\(N, 2\\)"),
+        ({"position": [[1, 2]], "velocity": [1, 2], "radius": 1}, "velocity has the shape"),
+        ({"position": [[1, 2]], "radius": [1, 2]}, "radius has the shape"),
+        ({"position": [["a", 2]], "radius": 1}, "every entry must be a number"),
+    ],
+)
+def test_disks_of_wrong_shape_are_refused(arguments, words):
+    with pytest.raises(SceneError, match=words):
+        Disks(**arguments)
+
+
+def test_a_replaced_scene_is_checked_again():
+    scene = Scene(ONE, Box((4, 3)))
+    later = dataclasses.replace(scene, until=2.0)
+    assert later.until == 2.0
+    assert dataclasses.replace(later, until=None) == scene
+    assert hash(dataclasses.replace(later, until=None)) == hash(scene)
+    assert pickle.loads(pickle.dumps(scene)) == scene
+    with pytest.raises(SceneError, match="beyond the right side"):
+        dataclasses.replace(scene, domain=Box((1, 3)))
+
+
+def test_what_a_scene_does_not_need_is_none():
+    scene = Scene(ONE, Open(), gravity=(0, 0), restitution={"pair": 1})
+    assert scene.gravity is None
+    assert scene.restitution is None
+    assert scene.domain.size is None
+
+
+@pytest.mark.parametrize("given", [0.5, {"pair": 0.5, "wall": 0.5}, Restitution(0.5, 0.5)])
+def test_restitution_may_be_a_number_a_mapping_or_itself(given):
+    assert Scene(ONE, Open(), restitution=given).restitution == Restitution(0.5, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ({"domain": (3, 3)}, "must be a Box"),
+        ({"walls": Segment((3, 0), (3, 1))}, "sequence of walls"),
+        ({"walls": ["ramp"]}, "must be one of Segment"),
+        ({"walls": [Segment((3, 0), (3, 1), name=3)]}, "must be a text"),
+        ({"restitution": {"wal": 1}}, "unknown key"),
+        ({"events": 2.5}, "whole number"),
+        ({"events": -1}, "at least 0"),
+        ({"gravity": (0, math.nan)}, "finite"),
+        ({"contact_duration": -1.0}, "at least 0"),
+        ({"start_time": math.inf}, "finite"),
+        ({"until": "soon"}, "must be a number"),
+    ],
+)
+def test_a_part_of_the_wrong_kind_is_refused_in_a_sentence(parts, words):
+    with pytest.raises(SceneError, match=words):
+        Scene(**({"disks": ONE, "domain": Open()} | parts))
+
+
+def test_walls_are_named_by_their_place_and_edges_by_their_chain():
+    walls = (
+        Segment((0, 0), (1, 0)),
+        Polygon([(0, 0), (1, 0), (0, 1)], name="tri"),
+        Polyline([(0, 0), (1, 0), (0, 1)]),
+        Arc((0, 0), (1, 1), (2, 0)),
+        Circle((0, 0), 3),
+    )
+    assert wall_names(walls) == ("wall0", "tri", "wall2", "wall3", "wall4")
+    assert feature_names(walls) == (
+        "wall0",
+        "tri.0",
+        "tri.1",
+        "tri.2",
+        "wall2.0",
+        "wall2.1",
+        "wall3",
+        "wall4",
+    )
+
+
+def test_an_edge_and_another_wall_cannot_share_a_name():
+    walls = [Polyline([(5, 0), (6, 0)], name="a"), Segment((7, 0), (8, 0), name="a.0")]
+    with pytest.raises(SceneError, match=r"'a\.0' is taken by wall\[0\]"):
+        Scene(ONE, Open(), walls)
+
+
+@pytest.mark.parametrize("domain", [Open(), Box((2e6, 1)), Channel((2e6, 1)), Periodic((2e6, 1))])
+def test_an_overlap_of_a_few_ulp_counts_as_touching_and_is_told(domain):
+    # F10: 1e-9 is 8.6 ulp of 1e6; 2e-9 is more than 16.
+    near = Disks([[1e6, 0.5], [1e6 + 1 - 1e-9, 0.5]], radius=0.5)
+    told = touching_by_rounding(Scene(near, domain))
+    assert len(told) == 1
+    assert "disk[0] and disk[1]" in told[0]
+    with pytest.raises(SceneError, match="overlap by"):
+        Scene(Disks([[1e6, 0.5], [1e6 + 1 - 2e-9, 0.5]], radius=0.5), domain)
+
+
+def test_touching_exactly_is_no_overlap():
+    scene = Scene(
+        Disks([[0.5, 0.5], [1.5, 0.5]], radius=0.5), Box((2, 1)), [Segment((0, 1), (2, 1), name="lid")]
+    )
+    assert touching_by_rounding(scene) == []
+
+
+@pytest.mark.parametrize("mass", [0.0, math.inf])
+def test_disks_that_do_not_meet_may_overlap(mass):
+    Scene(Disks([[0, 0], [0.1, 0]], radius=1.0, mass=mass), Open())
+    with pytest.raises(SceneError, match="overlap by"):
+        Scene(Disks([[0, 0], [0.1, 0]], radius=1.0, mass=[mass, 1.0]), Open())
+
+
+def test_a_wall_has_images_in_a_periodic_domain():
+    wall = Segment((3.9, 1), (3.9, 2))
+    with pytest.raises(SceneError, match="across segment wall0"):
+        Scene(Disks([[0.1, 1.5]], radius=0.25), Periodic((4, 4)), [wall])
+    Scene(Disks([[0.1, 1.5]], radius=0.25), Box((4, 4), origin=(-1, 0)), [wall])
+
+
+@pytest.mark.parametrize(
+    ("center", "clear"),
+    [((0.0, 1.5), True), ((0.0, 0.8), False), ((1.2, -0.1), False), ((0.0, -1.0), True), ((0.0, 0.0), True)],
+)
+def test_only_the_drawn_part_of_a_circle_is_an_arc(center, clear):
+    upper_half = Arc((1, 0), (0, 1), (-1, 0))
+    disks = Disks([center], radius=0.3)
+    if clear:
+        Scene(disks, Open(), [upper_half])
+    else:
+        with pytest.raises(SceneError, match="across arc wall0"):
+            Scene(disks, Open(), [upper_half])
+
+
+def test_a_container_must_fit_into_the_period():
+    with pytest.raises(SceneError, match="beyond the period in x"):
+        Scene(ONE, Channel((2, 4)), [Circle((1, 2), 1.5)])
