@@ -115,14 +115,13 @@ class _Place:
                 lambda drops: self._is_free(drops + corner),
                 rng,
             )
-            if len(placed) == count:
+            missing = count - len(placed)
+            if not missing:
+                centers: Floats = placed + corner
+                return centers
+            if count > MANY or missing > 1 + count // 30:
                 break
-            if count > MANY or count - len(placed) > 1 + count // 30:
-                raise SceneError(self._too_dense(len(placed)))
-        else:
-            raise SceneError(self._too_dense(len(placed)))
-        centers: Floats = placed + corner
-        return centers
+        raise SceneError(self._too_dense(len(placed)))
 
     def on_lattice(self) -> Floats:
         """Centres (count, 2) on a lattice; sites that are left over are spread evenly."""
@@ -149,8 +148,10 @@ class _Place:
 
     def _is_free(self, position: Floats) -> NDArray[np.bool_]:
         """Which of these centres (M, 2) keep the disks clear of walls and others; touching is allowed."""
-        free = np.ones(len(position), dtype=np.bool_)
-        for found in self.others.overlaps(position - np.array(self.origin), self.radius, self.mass):
+        relative = position - np.array(self.origin)
+        # Rounding may lift a centre onto the end of a period, which is no place of its own.
+        free: NDArray[np.bool_] = (relative < np.array(self.period)).all(axis=1)
+        for found in self.others.overlaps(relative, self.radius, self.mass):
             free[found.first[found.depth > self.rounding]] = False
         radius = np.full(len(position), self.radius)
         for _, near, depth in wall_overlaps(self.features, position, radius, self.origin, self.period):

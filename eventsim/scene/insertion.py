@@ -44,7 +44,7 @@ def insert_at_random(
         low: least x and y of a centre, relative to the corner of the domain.
         high: largest x and y.
         period: of the domain along x and y; inf where there is none.
-        free: which of the centres (K, 2) have nobody else and no wall in their way.
+        free: which of the centres (K, 2) are in the domain, with nobody else and no wall in their way.
         rng: where the numbers are drawn from.
     """
     placed = np.empty((0, 2))
@@ -54,8 +54,6 @@ def insert_at_random(
     while len(placed) < count and left > 0:
         left -= batch
         drops = lower + extent * rng.random((batch, 2))
-        # Rounding may lift a drop onto the end of a period, which is no place of its own.
-        drops = drops[(drops < np.array(period)).all(axis=1)]
         drops = drops[free(drops)]
         taken = np.zeros(len(drops), dtype=np.bool_)
         present = Cells(placed, np.full(len(placed), radius), np.full(len(placed), mass), period)
