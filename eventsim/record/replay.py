@@ -50,6 +50,11 @@ class Replay:
                 raise LogError(f"there is no state at time {time!r}: the log ends at {self._clock(*last)!r}")
         return self._state(*self.windows.place(time), time)
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """The times on the scene's clock where the log begins and ends."""
+        return self.stage.start_time, self._clock(*self._end())
+
     def final(self) -> State:
         """Return the state where the run stopped; of a log that still grows, the state after its last row."""
         return self._at(self._end())

@@ -1,0 +1,117 @@
+"""Animations: a log as a movie, a strip of moments or a page that plays, by the suffix of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.errors import EventsimError
+from eventsim.record.log import EventLog
+from eventsim.record.replay import Replay
+from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments
+from eventsim.show.gif import palette_of, write_gif
+from eventsim.show.mp4 import ffmpeg, write_mp4
+from eventsim.show.output import suffix_of, whole_file
+from eventsim.show.picture import Look, Picture
+from eventsim.show.player.page import write_page
+from eventsim.show.strip import write_strip
+
+SUFFIXES = (".mp4", ".gif", ".html", ".png")
+FPS = {".mp4": 30.0, ".gif": 20.0}
+DURATION = {".mp4": 10.0, ".gif": 6.0}
+"""Seconds that a movie lasts where neither duration nor speed is given."""
+
+ROOM = {".mp4": (1280, 720), ".gif": (640, 480), ".png": (640, 480)}
+"""Pixels that a frame may take where no size is given."""
+
+TRAIL = 1.0
+"""Seconds of the movie that a trail reaches back."""
+
+MOMENTS = 6
+PALETTE_FRAMES = 8
+"""Frames, spread over a movie, from which the 256 colours of a gif are taken."""
+
+Progress = Callable[[float | None, int, float], None]
+"""Called for each frame with the fraction done, the events so far and the time on the scene's clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """Which part of a run a movie shows, and how fast.
+
+    fps: frames per second. speed: time of the scene per second; or duration: seconds that the movie lasts. begin, end:
+    times on the scene's clock. moments: pictures in a strip.
+    """
+
+    fps: float | None = None
+    speed: float | None = None
+    duration: float | None = None
+    begin: float | None = None
+    end: float | None = None
+    moments: int = MOMENTS
+
+
+def animate(
+    log: EventLog,
+    path: str | PathLike[str],
+    film: Film | None = None,
+    look: Look | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Write an animation of a log to `path`: .mp4, .gif, .png (a strip of moments) or .html (a page that plays the log).
+
+    The file appears only when whole. Raises EventsimError where an option does not fit the log, the suffix is unknown,
+    ffmpeg is missing or the file cannot be written.
+    """
+    file, film, look = Path(path), film or Film(), look or Look()
+    suffix = suffix_of(file, SUFFIXES, "an animation")
+    if suffix == ".html":
+        with whole_file(file) as part:
+            write_page(part, log, dark=look.dark, color=look.color, trails=look.trails)
+        return
+    replay = Replay(log)
+    timing = _timing(replay, suffix, film)
+    if suffix == ".mp4":
+        ffmpeg()  # missing: say so before any work is done
+    trail_frames = round(TRAIL * timing.fps)
+    picture = Picture(replay, look, ROOM[suffix], timing.times, trail_frames)
+    with whole_file(file) as part:
+        drawn = _drawn(picture, replay, timing, progress)
+        if suffix == ".mp4":
+            write_mp4(part, drawn, picture.layout.size, timing.fps)
+        elif suffix == ".gif":
+            write_gif(part, drawn, palette_of(_samples(picture, replay, timing)), len(timing.times), timing.fps)
+        else:
+            write_strip(part, drawn, len(timing.times), picture.layout.size)
+
+
+def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
+    if suffix != ".png":
+        return frame_timing(
+            replay.span, film.fps or FPS[suffix], DURATION[suffix], film.speed, film.duration, film.begin, film.end
+        )
+    if film.moments < 1:
+        raise EventsimError(f"moments = {film.moments}: must be at least 1")
+    times = moments(replay.span, film.moments, film.begin, film.end)
+    return Timing(times, FPS[".mp4"], float(times[-1] - times[0]) / DURATION[".mp4"])
+
+
+def _drawn(
+    picture: Picture, replay: Replay, timing: Timing, progress: Progress | None
+) -> Iterator[NDArray[np.uint8]]:
+    count = len(timing.times)
+    for place, frame in enumerate(frames_at(replay, timing.times, GLOW * timing.speed)):
+        yield picture.draw(frame)
+        if progress is not None:
+            progress((place + 1) / count, frame.events, frame.state.time)
+
+
+def _samples(picture: Picture, replay: Replay, timing: Timing) -> Iterator[NDArray[np.uint8]]:
+    chosen = timing.times[np.unique(np.linspace(0, len(timing.times) - 1, PALETTE_FRAMES).astype(int))]
+    for frame in frames_at(replay, chosen, GLOW * timing.speed):
+        yield picture.draw(frame).copy()

@@ -1,0 +1,133 @@
+"""Colouring: what the colour of a disk says, and the key that tells a reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_rgba
+
+from eventsim.errors import EventsimError
+from eventsim.record.events import Floats
+from eventsim.record.replay import Replay
+from eventsim.scene import Disks
+from eventsim.show.frames import Frame
+from eventsim.show.palette import AMOUNTS, KINDS
+
+MODES = ("mass", "speed", "species", "contacts", "index")
+
+FASTEST_SHARE = 0.98
+"""The colour map of speeds ends where this share of all flights is slower: one fast disk must not darken the rest."""
+
+Paint = Callable[[Frame], Floats]
+"""The colours (N, 4) of all disks in a frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """The key of a colour map: what it shows, from `low` to `high`."""
+
+    title: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Kinds:
+    """The key of separate colours: (label, colour) of each."""
+
+    labels: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Colouring:
+    """How disks are painted, and the key to it; None where the colour only tells disks apart."""
+
+    paint: Paint
+    key: Scale | Kinds | None
+
+
+def colouring_of(mode: str | None, replay: Replay) -> Colouring:
+    """Return the colouring of a mode; None: by species where there are a few of them, else by speed.
+
+    Raises EventsimError for a mode that does not exist or does not fit the scene.
+    """
+    disks = replay.log.scene.disks
+    if mode is None:
+        mode = "species" if 1 < species_of(disks)[1].shape[0] <= len(KINDS) else "speed"
+    if mode == "speed":
+        return _by_speed(replay)
+    if mode == "contacts":
+        return _by_contacts(replay)
+    if mode == "mass":
+        return _by_mass(disks)
+    if mode == "species":
+        return _by_species(disks)
+    if mode == "index":
+        rank = np.arange(len(disks)) / max(len(disks) - 1, 1)
+        return _fixed(colormaps[AMOUNTS](rank), Scale("disk", 0.0, len(disks) - 1.0) if len(disks) > 1 else None)
+    raise EventsimError(f"there is no colouring {mode!r}; there are {', '.join(MODES)}")
+
+
+def species_of(disks: Disks) -> tuple[Floats, Floats]:
+    """Return the species of each disk (N,), and radius and mass of each species (S, 2), the largest first."""
+    kinds, species = np.unique(np.column_stack([-disks.radius, -disks.mass]), axis=0, return_inverse=True)
+    return species.reshape(-1), -kinds
+
+
+def _fixed(colours: Floats, key: Scale | Kinds | None) -> Colouring:
+    return Colouring(lambda frame: colours, key)
+
+
+def _mapped(amount: Callable[[Frame], Floats], scale: Scale) -> Colouring:
+    colours = colormaps[AMOUNTS]
+    return Colouring(lambda frame: colours((amount(frame) - scale.low) / (scale.high - scale.low)), scale)
+
+
+def _by_speed(replay: Replay) -> Colouring:
+    log, disks = replay.log, replay.log.scene.disks
+    pairs = log.b >= 0
+    flights = [disks.velocity.T, (log.vxa, log.vya), (log.vxb[pairs], log.vyb[pairs])]
+    speeds = np.concatenate([np.hypot(vx, vy) for vx, vy in flights])
+    high = float(np.quantile(speeds, FASTEST_SHARE)) or float(speeds.max()) or 1.0
+    return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, high))
+
+
+def _by_contacts(replay: Replay) -> Colouring:
+    log = replay.log
+    most = np.bincount(np.concatenate([log.a, log.b[log.b >= 0]]), minlength=1).max()
+    return _mapped(lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(max(most, 1))))
+
+
+def _by_mass(disks: Disks) -> Colouring:
+    finite = np.isfinite(disks.mass)
+    masses = disks.mass[finite]
+    if len(masses) == 0 or masses.min() == masses.max():
+        values = np.unique(disks.mass)
+        labels = tuple((f"mass {value:g}", KINDS[place]) for place, value in enumerate(values.tolist()))
+        return _fixed(_of_kinds(np.searchsorted(values, disks.mass)), Kinds(labels))
+    low, high = float(masses.min()), float(masses.max())
+    colours = colormaps[AMOUNTS]((np.where(finite, disks.mass, high) - low) / (high - low))
+    colours[~finite] = to_rgba(KINDS[6])
+    return _fixed(colours, Scale("mass", low, high))
+
+
+def _by_species(disks: Disks) -> Colouring:
+    species, kinds = species_of(disks)
+    if len(kinds) > len(KINDS):
+        raise EventsimError(
+            f"there are {len(kinds)} species (pairs of radius and mass), and colours for {len(KINDS)}: "
+            "colour by mass, speed, contacts or index"
+        )
+    by_mass = len(np.unique(kinds[:, 1])) > 1
+    labels = tuple(
+        (f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}", KINDS[place])
+        for place, (radius, mass) in enumerate(kinds.tolist())
+    )
+    return _fixed(_of_kinds(species), Kinds(labels))
+
+
+def _of_kinds(species: Floats) -> Floats:
+    return np.array([to_rgba(colour) for colour in KINDS])[species]

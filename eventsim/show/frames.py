@@ -1,0 +1,134 @@
+"""Frames: which times of a run a movie shows, and what there is to be seen at each of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.errors import EventsimError
+from eventsim.record.events import Floats, Kind, Rows, State
+from eventsim.record.log import EventLog
+from eventsim.record.replay import Replay
+
+GLOW = 0.2
+"""Seconds of the movie for which a contact lights up its disks."""
+
+MOST_FRAMES = 1_000_000
+"""More frames than anybody watches: beyond it the speed or the span was mistyped."""
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """The times of a movie: frames (F,) on the scene's clock; fps; speed, scene time per second of the movie."""
+
+    times: Floats
+    fps: float
+    speed: float
+
+
+def frame_timing(
+    span: tuple[float, float],
+    fps: float,
+    default_duration: float,
+    speed: float | None = None,
+    duration: float | None = None,
+    begin: float | None = None,
+    end: float | None = None,
+) -> Timing:
+    """Return the times of a movie of a log that covers `span`.
+
+    With a speed the frames are 1 / fps seconds apart at that speed; else they are spread over the span from its
+    beginning to its end. Raises EventsimError where an option does not fit the log.
+    """
+    first, last = shown_span(span, begin, end)
+    if speed is not None and duration is not None:
+        raise EventsimError("speed and duration exclude each other: the one follows from the other")
+    for name, value in (("fps", fps), ("speed", speed), ("duration", duration)):
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise EventsimError(f"{name} = {value}: must be finite and above 0")
+    seconds = (last - first) / speed if speed is not None else duration or default_duration
+    if not seconds * fps <= MOST_FRAMES:
+        raise EventsimError(f"this movie would have {seconds * fps:.3g} frames: give a higher speed or a shorter span")
+    if speed is None:
+        count = max(round(seconds * fps), 2)
+        return Timing(np.linspace(first, last, count), fps, (last - first) / seconds)
+    count = math.floor(seconds * fps * (1.0 + 1e-12)) + 1  # the last frame is kept where fps * seconds rounds down
+    return Timing(np.minimum(first + np.arange(count) * (speed / fps), last), fps, speed)
+
+
+def moments(span: tuple[float, float], count: int, begin: float | None = None, end: float | None = None) -> Floats:
+    """Return `count` times, evenly spread over the part of the span that is shown."""
+    return np.linspace(*shown_span(span, begin, end), count)
+
+
+def shown_span(span: tuple[float, float], begin: float | None, end: float | None) -> tuple[float, float]:
+    """Return the times between which to show a log; raise EventsimError where it does not cover them."""
+    first, last = (span[0] if begin is None else begin), (span[1] if end is None else end)
+    for name, value in (("from", first), ("to", last)):
+        if not span[0] <= value <= span[1]:
+            raise EventsimError(f"{name} = {value!r}: the log tells the time from {span[0]!r} to {span[1]!r}")
+    if span[0] == span[1]:
+        raise EventsimError(f"there is nothing to show: the log ends where it begins, at {span[0]!r}")
+    if not first < last:
+        raise EventsimError(f"from = {first!r}, to = {last!r}: the beginning must be before the end")
+    return first, last
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What is to be seen at one time.
+
+    state: all disks, exactly at that time. events: rows of the log so far. contacts: (N,) contacts of each disk so
+    far. glow: (N,) 1 at a contact, fading to 0. energy: kinetic, and potential in a scene with gravity, of the disks
+    of finite mass. recent: the rows since the previous frame.
+    """
+
+    state: State
+    events: int
+    contacts: NDArray[np.int64]
+    glow: Floats
+    energy: float
+    recent: Rows
+
+
+def frames_at(replay: Replay, times: Floats, glow_time: float) -> Iterator[Frame]:
+    """Yield the frame at each of the ascending times; glow_time: how long a contact is seen, on the scene's clock."""
+    log = replay.log
+    clock = np.maximum.accumulate(log.time) if len(log) else log.time  # logged times may step back by an ulp
+    contacts = np.zeros(replay.stage.n, dtype=np.int64)
+    seen = 0
+    for time in times.tolist():
+        events = int(np.searchsorted(clock, time, side="right"))
+        recent = log.rows[seen:events]
+        is_contact = recent["kind"] != Kind.KICK
+        np.add.at(contacts, recent["a"][is_contact], 1)
+        np.add.at(contacts, recent["b"][recent["b"] >= 0], 1)
+        state = replay.state_at(time)
+        glow = _glow(log, clock, events, time, glow_time, replay.stage.n)
+        yield Frame(state, events, contacts.copy(), glow, energy_of(log, state), recent)
+        seen = events
+
+
+def _glow(log: EventLog, clock: Floats, events: int, time: float, glow_time: float, n: int) -> Floats:
+    """Return how brightly each disk shows its last contact."""
+    glow = np.zeros(n)
+    first = int(np.searchsorted(clock, time - glow_time, side="right"))
+    rows = log.rows[first:events]
+    light = 1.0 - (time - clock[first:events]) / glow_time
+    np.maximum.at(glow, rows["a"], light)
+    pairs = rows["b"] >= 0
+    np.maximum.at(glow, rows["b"][pairs], light[pairs])
+    return glow
+
+
+def energy_of(log: EventLog, state: State) -> float:
+    """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes."""
+    mass = np.where(np.isfinite(log.scene.disks.mass), log.scene.disks.mass, 0.0)
+    energy = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
+    if log.scene.gravity is not None:
+        energy -= float(mass @ (state.position @ np.array(log.scene.gravity)))
+    return energy

@@ -1,0 +1,103 @@
+"""Outlines: the walls and the domain of a scene as lines to draw, and the rectangle that a picture shows."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+
+from eventsim.record.events import Floats
+from eventsim.record.log import EventLog
+from eventsim.scene import Scene
+from eventsim.scene.outlines import circle_through
+from eventsim.scene.walls import Arc, Circle, Segment, features
+
+Rectangle: TypeAlias = tuple[float, float, float, float]
+"""x0, y0, x1, y1 on the scene's axes."""
+
+FULL_TURN_POINTS = 240
+"""Points on a whole circle: on a picture 1000 pixels wide the chords are off by less than a tenth of a pixel."""
+
+MARGIN = 0.02
+"""Share of the larger side that is left free around hard boundaries and open scenes."""
+
+FAR = 0.5
+"""An open scene's picture grows by at most this share of its size on each side to follow disks that fly away."""
+
+
+def wall_lines(scene: Scene) -> list[Floats]:
+    """Return every wall as a line of points (K, 2)."""
+    return [_line(feature) for feature in features(scene.walls)]
+
+
+def _line(feature: Segment | Arc | Circle) -> Floats:
+    if isinstance(feature, Segment):
+        return np.array([feature.start, feature.end])
+    if isinstance(feature, Circle):
+        return _round(feature.center, feature.radius, 0.0, 2.0 * math.pi)
+    center, radius = circle_through(feature.start, feature.through, feature.end)
+    if math.isinf(radius):
+        return np.array([feature.start, feature.end])
+    begin, middle, end = (
+        math.atan2(p[1] - center[1], p[0] - center[0]) for p in (feature.start, feature.through, feature.end)
+    )
+    turn = (end - begin) % (2.0 * math.pi)
+    if (middle - begin) % (2.0 * math.pi) > turn:  # `through` is passed on the way round the other side
+        turn -= 2.0 * math.pi
+    return _round(center, radius, begin, turn)
+
+
+def _round(center: tuple[float, float], radius: float, begin: float, turn: float) -> Floats:
+    count = max(math.ceil(FULL_TURN_POINTS * abs(turn) / (2.0 * math.pi)), 2) + 1
+    angle = begin + np.linspace(0.0, turn, count)
+    return np.column_stack([center[0] + radius * np.cos(angle), center[1] + radius * np.sin(angle)])
+
+
+def boundary_lines(scene: Scene) -> tuple[list[Floats], list[Floats]]:
+    """Return the boundaries of the domain, hard ones and periodic ones, as lines of points (2, 2)."""
+    if scene.domain.size is None:
+        return [], []
+    (x0, y0), (width, height) = scene.domain.origin, scene.domain.size
+    x1, y1 = x0 + width, y0 + height
+    sides = (
+        [np.array([(x, y0), (x, y1)]) for x in (x0, x1)],
+        [np.array([(x0, y), (x1, y)]) for y in (y0, y1)],
+    )
+    hard: list[Floats] = []
+    open_: list[Floats] = []
+    for lines, periodic in zip(sides, scene.domain.periodic, strict=True):
+        (open_ if periodic else hard).extend(lines)
+    return hard, open_
+
+
+def period_of(scene: Scene) -> tuple[float | None, float | None]:
+    """Return the period along x and y, None along an axis without one."""
+    size, periodic = scene.domain.size, scene.domain.periodic
+    if size is None:
+        return None, None
+    return size[0] if periodic[0] else None, size[1] if periodic[1] else None
+
+
+def shown_rectangle(log: EventLog, corner: tuple[float, float], visited: Floats) -> Rectangle:
+    """Return what a picture shows: the domain; where it is open, walls, contacts and the visited places (K, 2).
+
+    corner: what the positions of the rows are relative to.
+    """
+    scene = log.scene
+    if scene.domain.size is not None:
+        (x0, y0), (width, height) = scene.domain.origin, scene.domain.size
+        margin = MARGIN * max(width, height)
+        free = [0.0 if periodic else margin for periodic in scene.domain.periodic]
+        return x0 - free[0], y0 - free[1], x0 + width + free[0], y0 + height + free[1]
+    reach = float(scene.disks.radius.max())
+    contacts = np.column_stack([log.xa, log.ya]) + corner
+    points = [*wall_lines(scene), *(near + side * reach for near in (scene.disks.position, contacts) for side in (-1, 1))]
+    places = np.concatenate(points)
+    low, high = places.min(axis=0), places.max(axis=0)
+    extent = float((high - low).max()) or 1.0
+    if len(visited):
+        low = np.maximum(np.minimum(low, visited.min(axis=0) - reach), low - FAR * extent)
+        high = np.minimum(np.maximum(high, visited.max(axis=0) + reach), high + FAR * extent)
+    margin = MARGIN * float((high - low).max() or 1.0)
+    return float(low[0] - margin), float(low[1] - margin), float(high[0] + margin), float(high[1] + margin)

@@ -1,0 +1,58 @@
+"""Palettes: what is drawn in which colour, on light paper and on dark; all safe for the colour-blind.
+
+Source: M. Okabe, K. Ito, Color universal design (2008), for kinds; cividis of J. R. Nunez, C. R. Anderton, R. S. Renslow,
+PLoS ONE 13, e0199239 (2018), doi:10.1371/journal.pone.0199239, and viridis for amounts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+KINDS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#999999", "#F0E442")
+"""Colours that tell kinds apart; there are no more kinds than these in one picture."""
+
+AMOUNTS = "viridis"
+"""The colour map of speeds, masses and counts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Palette:
+    """The colours of everything that is not a disk.
+
+    paper: outside the domain. inside: within it. ink: text. faint: less important text. wall: hard lines. edge:
+    around disks. glow: a disk at its contact. trail: where disks have been. arrow: velocities.
+    """
+
+    paper: str
+    inside: str
+    ink: str
+    faint: str
+    wall: str
+    edge: str
+    glow: str
+    trail: str
+    arrow: str
+
+
+LIGHT = Palette(
+    paper="#ffffff",
+    inside="#f6f7f9",
+    ink="#1b1f24",
+    faint="#5b6570",
+    wall="#39424e",
+    edge="#1b1f24",
+    glow="#ff3d2e",
+    trail="#55606e",
+    arrow="#c0183a",
+)
+DARK = Palette(
+    paper="#0d1117",
+    inside="#151b23",
+    ink="#e6edf3",
+    faint="#97a3b0",
+    wall="#aab4c0",
+    edge="#0d1117",
+    glow="#ffffff",
+    trail="#9fb0c3",
+    arrow="#ff7b72",
+)

@@ -1,0 +1,166 @@
+"""A picture: one frame after another on one canvas, of which only what moves is drawn anew."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import CircleCollection, LineCollection
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from eventsim.record.events import Floats
+from eventsim.record.replay import Replay
+from eventsim.show import outlines
+from eventsim.show.colouring import colouring_of
+from eventsim.show.frames import Frame
+from eventsim.show.images import disks_with_images, lines_with_images
+from eventsim.show.layout import DPI, Bars, layout
+from eventsim.show.palette import DARK, LIGHT
+from eventsim.show.strokes import Trails, arrows
+
+SMALLEST = 1.5
+"""Pixels: the radius at which points, and disks too small to be seen, are drawn."""
+
+EDGED = 4.0
+"""Pixels: disks of a larger radius get an edge, that neighbours of one colour can be told apart."""
+
+LONGEST_ARROW = 0.08
+"""The arrow of the fastest flight is this share of the picture's larger side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a picture shows besides the disks.
+
+    size: pixels (width, height), None: what suits the scene. color: a mode of `colouring`, None: what suits the scene.
+    """
+
+    size: tuple[int, int] | None = None
+    color: str | None = None
+    trails: bool = False
+    velocities: bool = False
+    flash: bool = False
+    dark: bool = False
+
+
+class Picture:
+    """A canvas for the frames of one log. The background (walls, domain, key) is drawn once.
+
+    Disks are circles of their true radius, one collection; a disk across a periodic boundary is drawn on both sides.
+    """
+
+    def __init__(
+        self, replay: Replay, look: Look, room: tuple[int, int], times: Floats, trail_frames: int = 1
+    ) -> None:
+        """room: pixels that a picture may take where the look gives no size. times: of the frames to come."""
+        self._replay, self._look = replay, look
+        self._palette = DARK if look.dark else LIGHT
+        self._radius = replay.log.scene.disks.radius
+        self._colouring = colouring_of(look.color, replay)
+        visited = np.concatenate([replay.state_at(time).position for time in (times[0], times[-1])])
+        shown = outlines.shown_rectangle(replay.log, replay.stage.corner, visited)
+        self.layout = layout(shown, look.size, room)
+        width, height = self.layout.size
+        self._figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=self._palette.paper)
+        self._canvas = FigureCanvasAgg(self._figure)
+        self._axes = self._figure.add_axes(self.layout.axes)
+        self._axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]))
+        self._axes.axis("off")
+        self._draw_background(shown)
+        self._disks = self._disk_artist()
+        self._trails = Trails(replay, trail_frames) if look.trails else None
+        self._trail = self._path_artist(self._palette.trail)
+        self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
+        self._bars = Bars(self._figure, self.layout, self._palette, replay.log.scene.name or "")
+        self._bars.draw_key(self._colouring.key)
+        self._clock_format = _clock_format(times)
+        self._canvas.draw()
+        self._background = self._canvas.copy_from_bbox(self._figure.bbox)
+
+    def draw(self, frame: Frame) -> NDArray[np.uint8]:
+        """Draw a frame; return its pixels (height, width, 4), red green blue alpha, valid until the next one."""
+        self._canvas.restore_region(self._background)
+        if self._trails is not None:
+            for path, alpha in self._trails.follow(frame):
+                self._trail.set(path=path, alpha=alpha)
+                self._axes.draw_artist(self._trail)
+        self._place_disks(frame)
+        self._axes.draw_artist(self._disks)
+        if self._look.velocities:
+            self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
+            self._axes.draw_artist(self._arrows)
+        self._bars.clock.set_text(f"t = {frame.state.time:{self._clock_format}}")
+        self._bars.counter.set_text(f"{frame.events:,} events   energy {frame.energy:.4g}")
+        for text in (self._bars.clock, self._bars.counter):
+            self._figure.draw_artist(text)
+        return np.asarray(self._canvas.buffer_rgba())
+
+    def _place_disks(self, frame: Frame) -> None:
+        colours = self._colouring.paint(frame)
+        if self._look.flash:
+            glow = frame.glow[:, None]
+            colours = colours * (1.0 - glow) + np.array(to_rgba(self._palette.glow)) * glow
+        place, disk = disks_with_images(frame.state.position, self._radius, self._replay.log.scene)
+        self._disks.set_offsets(place)
+        self._disks.set_sizes(self._areas[disk], DPI)
+        self._disks.set_facecolors(colours[disk])
+
+    def _disk_artist(self) -> CircleCollection:
+        radius = np.maximum(self._radius * self.layout.scale, SMALLEST)
+        self._areas = np.pi * (radius * 72.0 / DPI) ** 2  # CircleCollection takes areas, in square points
+        width = 0.6 if float(np.median(radius)) > EDGED else 0.0
+        disks = CircleCollection(
+            self._areas,
+            offsets=self._replay.log.scene.disks.position,
+            offset_transform=self._axes.transData,
+            edgecolors=self._palette.edge if width else "none",
+            # Two equal widths: with one, Agg would draw a lone disk as a marker, snapped to whole pixels.
+            linewidths=[width, width],
+        )
+        disks.set_animated(True)
+        self._axes.add_collection(disks, autolim=False)
+        return disks
+
+    def _path_artist(self, colour: str) -> PathPatch:
+        width = 1.1 * self.layout.unit
+        patch = PathPatch(Path(np.zeros((1, 2))), fill=False, edgecolor=colour, linewidth=width, capstyle="round")
+        patch.set_animated(True)
+        self._axes.add_patch(patch)
+        return patch
+
+    def _time_of_arrows(self, shown: outlines.Rectangle) -> float:
+        """Return the time of flight that an arrow shows."""
+        log = self._replay.log
+        speeds = np.concatenate([np.hypot(*log.scene.disks.velocity.T), np.hypot(log.vxa, log.vya)])
+        return LONGEST_ARROW * max(shown[2] - shown[0], shown[3] - shown[1]) / (float(speeds.max()) or 1.0)
+
+    def _draw_background(self, shown: outlines.Rectangle) -> None:
+        scene = self._replay.log.scene
+        corner, size = (shown[0], shown[1]), (shown[2] - shown[0], shown[3] - shown[1])
+        if scene.domain.size is not None:
+            corner, size = scene.domain.origin, scene.domain.size
+        self._axes.add_patch(Rectangle(corner, *size, facecolor=self._palette.inside, edgecolor="none", zorder=0))
+        hard, periodic = outlines.boundary_lines(scene)
+        self._add_lines([*lines_with_images(outlines.wall_lines(scene), scene), *hard], 2.0, "solid")
+        self._add_lines(periodic, 1.2, "dashed")
+
+    def _add_lines(self, lines: Sequence[Floats], width: float, style: str) -> None:
+        artist = LineCollection(
+            list(lines), colors=self._palette.wall, linewidths=width * self.layout.unit, linestyles=style, zorder=1
+        )
+        artist.set_capstyle("round")
+        self._axes.add_collection(artist, autolim=False)
+
+
+def _clock_format(times: Floats) -> str:
+    """Return a format that tells neighbouring frames apart."""
+    step = float(times[-1] - times[0]) / max(len(times) - 1, 1)
+    digits = math.ceil(-math.log10(step)) if step > 0.0 else 3
+    return f",.{max(digits, 0)}f" if digits < 12 else ".6e"
