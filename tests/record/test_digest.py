@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from eventsim.record.digest import Digester, digest_of
 from eventsim.record.events import blank_rows
-from logs import random_rows
+from tests.record.logs import random_rows
 
 
 @given(st.lists(st.integers(0, 60), max_size=5))

@@ -18,7 +18,7 @@ from eventsim.errors import LogError
 from eventsim.record import EventLog, load_log
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, ROW
 from eventsim.record.files import SUFFIXES, open_sink
-from logs import FLOATS, any_float, provenance, random_log, random_rows
+from tests.record.logs import FLOATS, any_float, provenance, random_log, random_rows
 
 TEXT = (".csv", ".jsonl")
 

@@ -29,7 +29,7 @@ class ParquetSink(FileSink):
     """Writes parquet; kind and wall are dictionaries of text, missing is null."""
 
     def _open(self) -> None:
-        self._writer = pq.ParquetWriter(self.part, _schema(self.columns))
+        self._writer = pq.ParquetWriter(self.part, _schema(self.columns), store_schema=False)
         self._waiting: list[Rows] = []
 
     def _append(self, rows: Rows) -> None:
