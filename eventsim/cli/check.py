@@ -26,8 +26,8 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bo
     \b
     Keys of --json:
       scene, name                 as typed; the name inside the scene (null without)
-      disks, moving, immovable, tracers
-                                  numbers of disks: all, with a speed, of mass inf, of mass 0
+      disks, moving, immovable, obstacles, tracers
+                                  numbers of disks: all, with a speed, of mass inf, both, of mass 0
       species, species_count      the commonest {count, radius, mass}; how many there are
       radii, masses               [least, largest]
       fastest, temperature        largest speed; mean m v^2/2 (null without a finite positive mass)
@@ -49,15 +49,14 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bo
     from dataclasses import asdict
 
     from eventsim.cli.choose import chosen_scene
-    from eventsim.cli.explain import explanation
+    from eventsim.cli.explain import explanation, page
     from eventsim.cli.needs import needs_of
-    from eventsim.cli.words import as_json_text, paragraphs
+    from eventsim.cli.words import as_json_text
 
     chosen = chosen_scene(scene, settings, seed)
     needs = needs_of(chosen)
-    topics = list(explanation(needs))
     if as_json:
-        click.echo(as_json_text({"scene": scene, "name": chosen.name, **asdict(needs), "explanation": dict(topics)}))
+        words = dict(explanation(needs))
+        click.echo(as_json_text({"scene": scene, "name": chosen.name, **asdict(needs), "explanation": words}))
     elif not quiet:
-        title = scene if chosen.name in (None, scene) else f"{scene} ({chosen.name})"
-        click.echo(f"{title}: a valid scene\n{paragraphs(topics)}")
+        click.echo(page(scene, chosen.name, needs))

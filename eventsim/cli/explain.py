@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from eventsim.cli.words import plural, point, short
+from eventsim.cli.words import paragraphs, plural, point, short, title
 from eventsim.engines.reference.cells import ENOUGH_DISKS
 
 if TYPE_CHECKING:
@@ -21,6 +21,11 @@ MANY = 10
 """Moving disks from which on a temperature is worth a word."""
 
 SHAPES = {"face": "straight face", "post": "post", "arc": "arc", "container": "container"}
+
+
+def page(asked: str, name: str | None, needs: Needs) -> str:
+    """Return the whole page that `eventsim check` prints."""
+    return f"{title(asked, name)}: a valid scene\n{paragraphs(list(explanation(needs)))}"
 
 
 def explanation(needs: Needs) -> Iterator[tuple[str, str]]:
@@ -99,6 +104,8 @@ def _flights(needs: Needs) -> str:
 
 def _contacts(needs: Needs) -> str:
     if needs.restitution is None:
+        if needs.obstacles:
+            return "elastic; but a moving disk of mass inf does work, so energy is not conserved"
         return "elastic: energy is conserved; the run says in the end how far rounding changed it"
     pair, wall = needs.restitution
     text = f"restitution {short(pair)} between disks, {short(wall)} at walls: energy is lost"
@@ -126,6 +133,7 @@ def _search(needs: Needs) -> str:
         text = f"all pairs: each disk is tried against every other; {_why_all_pairs(needs)}"
     else:
         count = "" if search.columns is None else f", {search.columns} x {search.rows} of them"
+        count += f" (they pay from {ENOUGH_DISKS} disks on)"
         text = (
             f"cells of {short(search.side[0])} x {short(search.side[1])}{count}: a disk is tried against those "
             "in its own cell and in those next to it"
@@ -148,7 +156,7 @@ def _why_all_pairs(needs: Needs) -> str:
 def _clock(needs: Needs) -> str:
     exponent = math.frexp(needs.epoch_length)[1] - 1
     start = "" if needs.start_time == 0.0 else f"starts at {short(needs.start_time)}; "
-    return f"{start}counts epochs of 2^{exponent} = {short(needs.epoch_length)} and a remainder, so it keeps its digits"
+    return f"{start}counts epochs of 2^{exponent} = {short(needs.epoch_length)} and a remainder, so late times keep their digits"
 
 
 def _engine(needs: Needs) -> str:

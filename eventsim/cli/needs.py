@@ -49,7 +49,8 @@ class Needs:
     """The facts about a scene.
 
     Attributes:
-        disks: their number; moving, immovable (mass inf) and tracers (mass 0) count some of them.
+        disks: their number; moving, immovable (mass inf), obstacles (mass inf, moving) and tracers
+            (mass 0) count some of them.
         species: the commonest radius-mass combinations, at most SPECIES_SHOWN; species_count: how many there are.
         radii, masses: (least, largest).
         fastest: largest speed at the start, length / time.
@@ -71,6 +72,7 @@ class Needs:
     disks: int
     moving: int
     immovable: int
+    obstacles: int
     tracers: int
     species: tuple[Species, ...]
     species_count: int
@@ -109,6 +111,7 @@ def needs_of(scene: Scene) -> Needs:
         disks=len(disks),
         moving=int(np.count_nonzero(speed)),
         immovable=int(np.count_nonzero(np.isinf(disks.mass))),
+        obstacles=int(np.count_nonzero(np.isinf(disks.mass) & (speed > 0.0))),
         tracers=int(np.count_nonzero(disks.mass == 0.0)),
         species=species,
         species_count=species_count,

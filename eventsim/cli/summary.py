@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventsim import __version__
-from eventsim.cli.words import aligned, plural, scene_line, short
+from eventsim.cli.words import aligned, plural, scene_line, short, title
 
 if TYPE_CHECKING:
     from eventsim.engines.base import Run
@@ -43,13 +43,12 @@ def summary_data(asked: str, run: Run, log: Path | None, state: Path | None) -> 
 def summary_text(asked: str, run: Run, log: Path | None, state: Path | None) -> str:
     """Return the summary as aligned lines."""
     counters, residuals = run.counters, run.residuals
-    title = asked if run.scene.name in (None, asked) else f"{asked} ({run.scene.name})"
     rows = [
         ("engine", f"{run.engine}, {_seconds(run.elapsed_s)}{_apart(run)}"),
         ("time", f"{short(run.start_time)} to {short(run.time)}"),
         ("events", _events(run)),
         ("energy", _energy(residuals.energy)),
-        ("momentum", f"{residuals.momentum:.1e} of sum m |v| is not booked at a wall"),
+        ("momentum", _momentum(residuals.momentum)),
         ("overlap", _overlap(residuals.max_overlap)),
         ("stopped", _stop(run)),
     ]
@@ -61,7 +60,7 @@ def summary_text(asked: str, run: Run, log: Path | None, state: Path | None) -> 
         rows.append(("log", f"{log}: {plural(counters.events, 'row')}"))
     if state is not None:
         rows.append(("state", str(state)))
-    return f"{title}: {scene_line(run.scene)}\n{aligned(rows)}"
+    return f"{title(asked, run.scene.name)}: {scene_line(run.scene)}\n{aligned(rows)}"
 
 
 def _rate(run: Run) -> float | None:
@@ -88,7 +87,13 @@ def _apart(run: Run) -> str:
 
 
 def _energy(change: float | None) -> str:
-    return "not conserved in this scene" if change is None else f"changed by {change:.1e} of itself"
+    if change is None:
+        return "not conserved in this scene"
+    return f"changed by {change:.1e} of itself" if change else "conserved to the last bit"
+
+
+def _momentum(left: float) -> str:
+    return f"{left:.1e} of sum m |v| is unaccounted for" if left else "accounted for to the last bit"
 
 
 def _overlap(deepest: float) -> str:

@@ -27,6 +27,12 @@ def point(x: float, y: float) -> str:
     return f"({short(x)}, {short(y)})"
 
 
+def title(asked: str, name: str | None) -> str:
+    """Return what was asked for, and the scene's own name where that says more."""
+    plain = asked.replace("-", " ").lower()
+    return asked if name is None or name.replace("-", " ").lower() == plain else f"{asked} ({name})"
+
+
 def scene_line(scene: Scene) -> str:
     """Return what a scene is in half a line: "16 disks in a box 2.54 x 1.27"."""
     disks = plural(len(scene.disks), "disk")

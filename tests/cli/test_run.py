@@ -88,7 +88,12 @@ def test_set_overrides_a_key_of_the_scene(eventsim, scene_file):
 def test_set_reaches_parameters_of_a_built_in_scene_first(eventsim):
     summary = json.loads(eventsim("run", "galperin", "--set", "mass_ratio=10000", "--json").stdout)
     assert summary["events"] == 314
+
+
+def test_a_run_ends_where_no_event_is_ahead(eventsim):
+    summary = json.loads(eventsim("run", "galperin", "--until", "1e9", "--json").stdout)
     assert summary["stopped"] == "quiet"
+    assert summary["events"] == 31
 
 
 def test_set_reaches_keys_of_a_built_in_scene_too(eventsim):
