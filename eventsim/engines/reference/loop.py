@@ -67,13 +67,13 @@ class ReferenceSession:
             if event is None:
                 self._pass_to(until)
                 return "quiet"
-            if due > until:
-                self._pass_to(until)
-                return "until"
             if self.is_stale(event):
                 calendar.pop()
                 counters.stale += 1
                 continue
+            if due > until:
+                self._pass_to(until)
+                return "until"
             state.now = due
             if event.rank == WRAP:
                 calendar.pop()
