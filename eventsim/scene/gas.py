@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from eventsim.scene.domain import Domain
+from eventsim.scene.numbers import LONGEST, is_place
 
 Region: TypeAlias = tuple[float, float, float, float]
 
@@ -78,8 +79,8 @@ def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -
         yield f"{where}.count = {gas.count}: must be at most {MOST_DISKS}"
     if (gas.radius is None) == (gas.packing_fraction is None):
         yield f"{where}: must have either radius or packing_fraction" + (", not both" if gas.radius else "")
-    if gas.radius is not None and not 0.0 <= gas.radius < math.inf:
-        yield f"{where}.radius = {gas.radius}: must be finite and at least 0"
+    if gas.radius is not None and not 0.0 <= gas.radius <= LONGEST:
+        yield f"{where}.radius = {gas.radius}: must be at least 0 and at most {LONGEST}"
     if gas.packing_fraction is not None and not 0.0 < gas.packing_fraction <= CLOSE_PACKING:
         rule = f"must be above 0 and at most {CLOSE_PACKING:.7f}..., the densest packing of equal disks"
         yield f"{where}.packing_fraction = {gas.packing_fraction}: {rule}"
@@ -105,7 +106,7 @@ def _region_problems(gas: Gas, domain: Domain | None, where: str) -> Iterator[st
             yield f"{where}.region is missing: an open domain has no size that a gas could fill"
         return
     x0, y0, x1, y1 = gas.region
-    if not (all(map(math.isfinite, gas.region)) and x0 < x1 and y0 < y1):
+    if not (is_place(gas.region) and x0 < x1 and y0 < y1):
         yield f"{where}.region = {list(gas.region)}: must be finite numbers [x0, y0, x1, y1], x0 < x1 and y0 < y1"
     elif domain is not None and domain.size is not None:
         (x, y), (width, height) = domain.origin, domain.size

@@ -10,6 +10,14 @@ from eventsim.errors import SceneError
 
 Point: TypeAlias = tuple[float, float]
 
+# Squares of lengths must be numbers too.
+LONGEST = 1e150
+
+
+def is_place(numbers: Iterable[float]) -> bool:
+    """Whether lengths are finite and small enough to be squared."""
+    return all(abs(value) <= LONGEST for value in numbers)
+
 
 def number(value: object, key: str) -> float:
     """The value as a float.

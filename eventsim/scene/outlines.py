@@ -18,11 +18,14 @@ def circle_through(start: Point, through: Point, end: Point) -> tuple[Point, flo
     """Centre and radius of the circle through three points; the radius is inf where they lie on a line."""
     ax, ay = through[0] - start[0], through[1] - start[1]
     bx, by = end[0] - start[0], end[1] - start[1]
+    # In units of the largest of them, products neither overflow nor vanish.
+    unit = max(abs(ax), abs(ay), abs(bx), abs(by)) or 1.0
+    ax, ay, bx, by = ax / unit, ay / unit, bx / unit, by / unit
     twice_area = 2.0 * (ax * by - ay * bx)
     if twice_area == 0.0:
         return start, math.inf
     a2, b2 = ax * ax + ay * ay, bx * bx + by * by
-    cx, cy = (by * a2 - ay * b2) / twice_area, (ax * b2 - bx * a2) / twice_area
+    cx, cy = unit * ((by * a2 - ay * b2) / twice_area), unit * ((ax * b2 - bx * a2) / twice_area)
     return (start[0] + cx, start[1] + cy), math.hypot(cx, cy)
 
 

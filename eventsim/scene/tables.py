@@ -30,6 +30,8 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Sce
         SceneError: with all problems. Gases are placed only when nothing else is wrong.
     """
     problems: list[str] = []
+    if seed is not None and seed < 0:
+        problems.append(f"seed = {seed}: must be at least 0")
     found = _read_parts(data, base_dir, problems)
     gases = _read_gases(data, found.domain, seed, problems)
     disks = join(found.disks)

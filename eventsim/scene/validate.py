@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.names import DiskNames, SelectedNames
+from eventsim.scene.numbers import LONGEST, is_place
 from eventsim.scene.overlaps import (
     ENOUGH,
     Found,
@@ -99,19 +100,25 @@ def _domain_problems(domain: Domain) -> Iterator[str]:
     """Rules for size and origin."""
     if isinstance(domain, Open):
         return
-    if not all(0.0 < length < math.inf for length in domain.size):
-        yield f"domain.size = {list(domain.size)}: both lengths must be finite and above 0"
-    if not all(map(math.isfinite, domain.origin)):
-        yield f"domain.origin = {list(domain.origin)}: must be two finite numbers"
+    if not is_place(domain.size) or min(domain.size) <= 0.0:
+        yield f"domain.size = {list(domain.size)}: both lengths must be above 0 and at most {LONGEST}"
+    if not is_place(domain.origin):
+        yield f"domain.origin = {list(domain.origin)}: must be two finite numbers, at most {LONGEST}"
 
 
 def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -> list[str]:
     """Rules for the single numbers of each disk; marks in `sound` (N,) the disks that break one."""
     with np.errstate(invalid="ignore"):
         rules = {
-            "position": (np.isfinite(disks.position).all(axis=1), "must be two finite numbers"),
+            "position": (
+                (np.abs(disks.position) <= LONGEST).all(axis=1),
+                f"must be two finite numbers, at most {LONGEST}",
+            ),
             "velocity": (np.isfinite(disks.velocity).all(axis=1), "must be two finite numbers"),
-            "radius": (np.isfinite(disks.radius) & (disks.radius >= 0.0), "must be finite and at least 0"),
+            "radius": (
+                (disks.radius >= 0.0) & (disks.radius <= LONGEST),
+                f"must be at least 0 and at most {LONGEST}",
+            ),
             "mass": (disks.mass >= 0.0, "must be at least 0 (inf: cannot be deflected)"),
         }
     problems: list[str] = []

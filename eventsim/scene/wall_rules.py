@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
+from eventsim.scene.numbers import LONGEST, is_place
 from eventsim.scene.outlines import circle_through
 from eventsim.scene.walls import Arc, Circle, Polygon, Polyline, Segment, Wall, wall_names
 
@@ -47,12 +47,14 @@ def shape_problems(wall: Wall) -> Iterator[str]:
         keys = {".start": wall.start, ".through": wall.through, ".end": wall.end}
     elif isinstance(wall, Circle):
         keys = {".center": wall.center}
-        if not 0.0 < wall.radius < math.inf:
-            yield f".radius = {wall.radius}: must be finite and above 0"
+        if not 0.0 < wall.radius <= LONGEST:
+            yield f".radius = {wall.radius}: must be above 0 and at most {LONGEST}"
     else:
         keys = {f".points[{k}]": p for k, p in enumerate(wall.points)}
-    infinite = [key for key, p in keys.items() if not all(map(math.isfinite, p))]
-    yield from (f"{key} = {list(keys[key])}: must be two finite numbers" for key in infinite)
+    infinite = [key for key, p in keys.items() if not is_place(p)]
+    yield from (
+        f"{key} = {list(keys[key])}: must be two finite numbers, at most {LONGEST}" for key in infinite
+    )
     if infinite:
         return
     if isinstance(wall, Segment) and wall.start == wall.end:
@@ -76,9 +78,7 @@ def shape_problems(wall: Wall) -> Iterator[str]:
 def _is_round(arc: Arc) -> bool:
     """Whether three points determine a circle that floats can hold."""
     (x, y), radius = circle_through(arc.start, arc.through, arc.end)
-    return (
-        all(map(math.isfinite, (x, y, radius))) and radius > 0.0 and arc.through not in (arc.start, arc.end)
-    )
+    return is_place((x, y, radius)) and radius > 0.0 and arc.through not in (arc.start, arc.end)
 
 
 def _container_problems(wall: Wall, domain: Domain) -> Iterator[str]:
