@@ -17,6 +17,6 @@ folded = path % (2 * free)
 points = np.sort(np.minimum(folded, 2 * free - folded))
 error = np.max(np.abs(run.state.position[:, 0] - (points + cut)))
 
-print(f"{run.counters.pair_contacts} pair and {run.counters.wall_contacts} wall contacts until t = {run.time:.6f}")
+print(f"{len(scene.disks)} disks, {run.counters.events} events")
 print(f"largest error of a position is below 1e-9: {error < 1e-9}")
 print(f"largest change of a height: {np.ptp(run.state.position[:, 1]):g}")

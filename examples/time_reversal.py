@@ -6,18 +6,17 @@ import eventsim as es
 
 scene = es.gallery("gas", n=16, seed=3)
 
-print("events out   events back   distance from the start")
-for events in (20, 50, 100):
+print("events out and back   the start is reached within 1e-9")
+for events in (50, 100, 600):
     sim = es.Simulation(scene)
-    while len(sim.log) < events:
+    while sim.counters.events < events:
         sim.step()
+    sim.advance_to(sim.time + 1e-9)  # a little later than the last contact
     turn = sim.time
-    sim.advance_to(turn * (1 + 1e-9))  # a little later than the last contact
-    half = sim.time
     for disk, velocity in enumerate(sim.state.velocity):
         sim.set_velocity(disk, -velocity)
-    out = len(sim.log)
-    sim.advance_to(2 * half)
+    sim.advance_to(2 * turn)
     error = np.max(np.abs(sim.state.position - scene.disks.position))
-    back = len(sim.log) - out
-    print(f"{events:10d}   {back:11d}   below 1e{int(np.ceil(np.log10(error))):+d}")
+    print(f"{events:19d}   {error < 1e-9}")
+
+# Each contact multiplies an error; after some 400 of them nothing is left of the 53 bits.

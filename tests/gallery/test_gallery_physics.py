@@ -149,7 +149,7 @@ def test_collapse_is_said() -> None:
 
 
 def test_the_impacts_of_the_bounce_are_exact() -> None:
-    log = log_of(gallery("bounce"), until=3.0 - 2.0**-39)
+    log = log_of(gallery("bounce"), until=3.0 - 1.5 * 2.0**-39)
     assert list(log.time) == [3.0 - 2.0 ** (2 - n) for n in range(1, 41)]
     assert set(log.wall_name) == {"bottom"}
     assert np.array_equal(log.ya, np.full(40, 0.5))
@@ -207,7 +207,7 @@ def test_the_obstacle_cannot_be_deflected_and_heats_the_gas() -> None:
 
 def test_the_large_disk_begins_to_wander() -> None:
     run = es.simulate(gallery("brownian"), engine="reference")
-    assert np.all(run.state.position[0] != [20.0, 20.0])
+    assert np.all(run.state.position[0] != [13.0, 13.0])
 
 
 @pytest.mark.parametrize("name", ["funnel", "jar", "sculpture"])

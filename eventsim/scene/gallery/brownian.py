@@ -22,9 +22,9 @@ from eventsim.scene.files import scene_from_dict
 from eventsim.scene.scene import Scene
 
 
-def scene(*, n: int = 400, mass: float = 50.0, radius: float = 5.0, seed: int = 1) -> Scene:
+def scene(*, n: int = 200, mass: float = 50.0, radius: float = 3.0, seed: int = 1) -> Scene:
     """Disk 0 with `mass` and `radius` among `n` disks of mass 1, radius 1/2, kT = 1; drawn from `seed`."""
-    side = 40.0
+    side = 26.0
     return scene_from_dict(
         {
             "name": "Brownian motion",

@@ -43,12 +43,19 @@ def scene(*, mass_ratio: float = 100.0) -> Scene:
         mass=[1.0, mass_ratio],
     )
     wall = Segment((0.0, -2.0), (0.0, 2.0), name="wall")
-    # The stop only bounds the waiting: the last contact is late where pi/theta is just above a whole number.
     return Scene(
         disks=disks,
         domain=Open(),
         walls=(wall,),
         start_time=-2.0,
-        until=1e6,
+        until=2.0 + 2.0 * last_contact(mass_ratio),
         name=f"Galperin, mass ratio {mass_ratio:g}",
     )
+
+
+def last_contact(mass_ratio: float) -> float:
+    """When the last contact comes, on the scene's clock: late where pi/theta is just above a whole number."""
+    theta = math.atan(math.sqrt(1 / mass_ratio))
+    beyond = math.fmod(math.pi, theta)
+    # Where pi/theta is a whole number the line ends parallel to a side, and only rounding would leave an angle here.
+    return math.tan(theta) / math.tan(beyond if beyond > 1e-9 * theta else theta)
