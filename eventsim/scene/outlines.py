@@ -54,7 +54,7 @@ def wall_overlaps(
     groups = [_by_x(members, position) for members in _octaves(radius)]
     largest = float(radius.max())
     for index, feature in enumerate(features):
-        low, high = _bounds(feature)
+        low, high = bounds(feature)
         if isinstance(feature, Circle):
             shifts = [(0.0, 0.0)]
         else:
@@ -94,7 +94,7 @@ def _by_x(members: Indices, position: Floats) -> tuple[Indices, Floats]:
     return order, position[order, 0]
 
 
-def _bounds(feature: Feature) -> tuple[Point, Point]:
+def bounds(feature: Feature) -> tuple[Point, Point]:
     """A rectangle (lower-left, upper-right) outside of which no disk centre can touch, but for its radius."""
     if isinstance(feature, Circle):
         # A disk anywhere outside the container is across it.

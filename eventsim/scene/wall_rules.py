@@ -7,18 +7,21 @@ from typing import TYPE_CHECKING
 
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.numbers import LONGEST, is_place
-from eventsim.scene.outlines import circle_through
-from eventsim.scene.walls import Arc, Circle, Polygon, Polyline, Segment, Wall, wall_names
+from eventsim.scene.outlines import bounds, circle_through
+from eventsim.scene.walls import Arc, Circle, Polygon, Polyline, Segment, Wall, features, wall_names
 
 if TYPE_CHECKING:
     from eventsim.scene.scene import Scene
+
+# Each period that a wall stretches over is one more image to look at.
+MOST_PERIODS = 1000
 
 
 def wall_problems(scene: Scene) -> list[str]:
     """Every rule that the walls of a scene break, one sentence each."""
     problems = list(_name_problems(scene.walls))
     for i, wall in enumerate(scene.walls):
-        broken = list(shape_problems(wall)) or list(_container_problems(wall, scene.domain))
+        broken = list(shape_problems(wall)) or list(_period_problems(wall, scene.domain))
         problems += [f"wall[{i}]{key}" for key in broken]
     return problems
 
@@ -81,12 +84,22 @@ def _is_round(arc: Arc) -> bool:
     return is_place((x, y, radius)) and radius > 0.0 and arc.through not in (arc.start, arc.end)
 
 
-def _container_problems(wall: Wall, domain: Domain) -> Iterator[str]:
-    """A container must not stick out of a period: disks cannot be inside it and inside its image."""
-    if not isinstance(wall, Circle) or isinstance(domain, Open):
+def _period_problems(wall: Wall, domain: Domain) -> Iterator[str]:
+    """Rules of a wall in a domain that repeats: a bounded number of images, and none of a container.
+
+    Disks cannot be inside a container and inside its image, so it must not stick out of a period.
+    """
+    if isinstance(domain, Open) or not is_place((*domain.size, *domain.origin)) or min(domain.size) <= 0.0:
         return
-    for axis, letter in enumerate("xy"):
-        low = wall.center[axis] - wall.radius - domain.origin[axis]
-        if domain.periodic[axis] and (low < 0.0 or low + 2.0 * wall.radius > domain.size[axis]):
-            rule = "it must fit inside the domain"
-            yield f".radius = {wall.radius}: the circle reaches beyond the period in {letter}: {rule}"
+    for axis in (0, 1):
+        if not domain.periodic[axis]:
+            continue
+        length, letter = domain.size[axis], "xy"[axis]
+        if isinstance(wall, Circle):
+            low = wall.center[axis] - wall.radius - domain.origin[axis]
+            if low < 0.0 or low + 2.0 * wall.radius > length:
+                yield f".radius = {wall.radius}: the circle must not reach beyond the period in {letter}"
+            continue
+        extents = [bounds(feature) for feature in features([wall])]
+        if max(high[axis] - low[axis] for low, high in extents) > MOST_PERIODS * length:
+            yield f": must not stretch over more than {MOST_PERIODS} periods in {letter} (an arc: its whole circle)"

@@ -175,5 +175,10 @@ def test_only_the_drawn_part_of_a_circle_is_an_arc(center, clear):
 
 
 def test_a_container_must_fit_into_the_period():
-    with pytest.raises(SceneError, match="beyond the period in x"):
+    with pytest.raises(SceneError, match="reach beyond the period in x"):
         Scene(ONE, Channel((2, 4)), [Circle((1, 2), 1.5)])
+
+
+def test_a_wall_must_not_stretch_over_too_many_periods():
+    with pytest.raises(SceneError, match="more than 1000 periods in x"):
+        Scene(ONE, Periodic((2, 4)), [Segment((-1e6, 3), (1e6, 3))])
