@@ -37,8 +37,8 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bo
       gravity, restitution, contact_duration
                                   null without; restitution [pair, wall]
       start_time, epoch_length    of the clock
-      search                      {kind, side, columns, rows}: "all pairs" or "cells"
-      images                      whether several periodic images of a pair are tried
+      search                      {kind, side, columns, rows, giants}: "all pairs" or "cells"
+      images                      periodic images in which a disk can be met: 1, 3 or 9
       touching_pairs              pairs at contact at the start
       touching_notes              starting overlaps so small that they count as touching
       until, events, engine       the stop of the scene; what auto chooses

@@ -138,12 +138,14 @@ def _search(needs: Needs) -> str:
             f"cells of {short(search.side[0])} x {short(search.side[1])}{count}: a disk is tried against those "
             "in its own cell and in those next to it"
         )
-    if needs.domain in ("periodic", "channel") and needs.disks > 1:
-        text += (
-            "; the largest reach is more than half the period, so several images of a pair are tried"
-            if needs.images
-            else "; only the nearest image of a pair can be next"
-        )
+        if search.giants:
+            giants = "1 giant disk is" if search.giants == 1 else f"{search.giants:,} giant disks are"
+            text += f"; {giants} in no cell and tried against every other"
+    if needs.images > 1 and needs.disks > 1:
+        if search.side is None:
+            text += f"; in each of the {needs.images} periodic images that can be met from inside the domain"
+        else:
+            text += "; at a periodic boundary the next cell is one of the other side"
     return text
 
 

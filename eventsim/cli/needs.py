@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eventsim.engines.reference.cells import plan
+from eventsim.engines.reference.cells import images_of, plan
 from eventsim.scene.disks import Disks
 from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.stage import stage_of
@@ -36,12 +36,16 @@ class Species:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """How the neighbours of a disk are found: among all others (no grid), or in cells of a side (x, y), length."""
+    """How the neighbours of a disk are found: among all others, or in cells of a side (x, y), length.
+
+    giants: disks that are in no cell, because they would make every cell as large as they are.
+    """
 
     kind: Literal["all pairs", "cells"]
     side: tuple[float, float] | None = None
     columns: int | None = None
     rows: int | None = None
+    giants: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +66,7 @@ class Needs:
         gravity, restitution, contact_duration: None without; restitution (pair, wall).
         epoch_length: time, a power of two.
         search: all pairs or cells.
-        images: whether a pair of disks can meet through several periodic images at once.
+        images: in how many periodic images a disk can be met from inside the domain: 1, 3 or 9.
         touching_pairs: pairs of disks at contact at the start, exactly or but for rounding.
         touching_notes: sentences on starting overlaps so small that they count as touching.
         until, events: the stop that the scene carries.
@@ -92,7 +96,7 @@ class Needs:
     start_time: float
     epoch_length: float
     search: Search
-    images: bool
+    images: int
     touching_pairs: int
     touching_notes: tuple[str, ...]
     until: float | None
@@ -131,7 +135,7 @@ def needs_of(scene: Scene) -> Needs:
         start_time=scene.start_time,
         epoch_length=stage.epoch_length,
         search=_search(stage),
-        images=_several_images(stage),
+        images=len(images_of(stage)),
         touching_pairs=_touching_pairs(scene),
         touching_notes=tuple(touching_by_rounding(scene)),
         until=scene.until,
@@ -171,11 +175,4 @@ def _search(stage: Stage) -> Search:
     grid = plan(stage)
     if grid is None:
         return Search("all pairs")
-    return Search("cells", grid.side, grid.columns, grid.rows)
-
-
-def _several_images(stage: Stage) -> bool:
-    """Whether the largest reach is more than half a period, so that the nearest image is not always the next."""
-    largest = np.sort(stage.radius)[-2:]
-    reach = float(largest.sum()) if len(largest) == 2 else 0.0
-    return any(length is not None and 2.0 * reach > length for length in stage.period)
+    return Search("cells", grid.side, grid.columns, grid.rows, len(grid.giants))
