@@ -70,8 +70,10 @@ def test_galperin_contacts_are_the_digits_of_pi(k: int) -> None:
     angle = 2 * theta * ((contacts + 1) // 2)
     light = math.sqrt(ratio) * math.sin(angle) * (-1 if contacts % 2 else 1)
     heavy = -math.cos(angle)
-    assert run.state.velocity[1, 0] == pytest.approx(heavy, rel=1e-9)
-    assert run.state.velocity[0, 0] == pytest.approx(light, rel=1e-9, abs=1e-9)
+    assert run.state.velocity[1, 0] == pytest.approx(heavy, rel=1e-10)
+    # The rounding of each rotation is relative to the light disk's speed in the middle of the story, sqrt(M/m), not to what
+    # is left of it in the end: measured 2e-14 of it after 314159 contacts.
+    assert run.state.velocity[0, 0] == pytest.approx(light, abs=1e-12 * math.sqrt(ratio))
 
 
 @pytest.mark.parametrize(("ratio", "contacts"), [(1 / 3, 2), (1.0, 3), (3.0, 5)])
