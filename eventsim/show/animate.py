@@ -18,7 +18,7 @@ from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4
 from eventsim.show.output import suffix_of, whole_file
 from eventsim.show.picture import Look, Picture
-from eventsim.show.player.page import write_page
+from eventsim.show.player.page import page, write_page
 from eventsim.show.strip import write_strip
 
 SUFFIXES = (".mp4", ".gif", ".html", ".png")
@@ -26,7 +26,7 @@ FPS = {".mp4": 30.0, ".gif": 20.0}
 DURATION = {".mp4": 10.0, ".gif": 6.0}
 """Seconds that a movie lasts where neither duration nor speed is given."""
 
-ROOM = {".mp4": (1280, 720), ".gif": (640, 480), ".png": (640, 480)}
+ROOM = {".mp4": (1280, 720), ".gif": (640, 480), ".png": (520, 440)}
 """Pixels that a frame may take where no size is given."""
 
 TRAIL = 1.0
@@ -71,8 +71,17 @@ def animate(
     file, film, look = Path(path), film or Film(), look or Look()
     suffix = suffix_of(file, SUFFIXES, "an animation")
     if suffix == ".html":
+        text = page(
+            log,
+            color=look.color,
+            dark=look.dark,
+            trails=look.trails,
+            velocities=look.velocities,
+            flash=look.flash,
+            seconds=film.duration,
+        )
         with whole_file(file) as part:
-            write_page(part, log, dark=look.dark, color=look.color, trails=look.trails)
+            write_page(part, text)
         return
     replay = Replay(log)
     timing = _timing(replay, suffix, film)

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.colors import to_rgba
+from matplotlib.colors import Colormap, ListedColormap, to_rgba
 
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
+from eventsim.record.log import EventLog
 from eventsim.record.replay import Replay
 from eventsim.scene import Disks
 from eventsim.show.frames import Frame
-from eventsim.show.palette import AMOUNTS, KINDS
+from eventsim.show.palette import AMOUNTS, AMOUNTS_FROM, AMOUNTS_TO, KINDS
 
 MODES = ("mass", "speed", "species", "contacts", "index")
 
@@ -55,8 +56,7 @@ def colouring_of(mode: str | None, replay: Replay) -> Colouring:
     Raises EventsimError for a mode that does not exist or does not fit the scene.
     """
     disks = replay.log.scene.disks
-    if mode is None:
-        mode = "species" if 1 < species_of(disks)[1].shape[0] <= len(KINDS) else "speed"
+    mode = mode_named(mode) or default_mode(disks)
     if mode == "speed":
         return _by_speed(replay)
     if mode == "contacts":
@@ -65,10 +65,33 @@ def colouring_of(mode: str | None, replay: Replay) -> Colouring:
         return _by_mass(disks)
     if mode == "species":
         return _by_species(disks)
-    if mode == "index":
-        rank = np.arange(len(disks)) / max(len(disks) - 1, 1)
-        return _fixed(colormaps[AMOUNTS](rank), Scale("disk", 0.0, len(disks) - 1.0) if len(disks) > 1 else None)
-    raise EventsimError(f"there is no colouring {mode!r}; there are {', '.join(MODES)}")
+    rank = np.arange(len(disks)) / max(len(disks) - 1, 1)
+    return _fixed(amounts()(rank), Scale("disk", 0.0, len(disks) - 1.0) if len(disks) > 1 else None)
+
+
+def mode_named(mode: str | None) -> str | None:
+    """Return the mode; raise EventsimError where there is none of that name."""
+    if mode is not None and mode not in MODES:
+        raise EventsimError(f"there is no colouring {mode!r}; there are {', '.join(MODES)}")
+    return mode
+
+
+def default_mode(disks: Disks) -> str:
+    """Return the mode that suits: species where there are a few of them, else speed."""
+    return "species" if 1 < len(species_of(disks)[1]) <= len(KINDS) else "speed"
+
+
+def amounts() -> Colormap:
+    """Return the colour map of amounts, from 0 to 1."""
+    return ListedColormap(colormaps[AMOUNTS](np.linspace(AMOUNTS_FROM, AMOUNTS_TO, 256)))
+
+
+def fastest_flight(log: EventLog) -> float:
+    """Return the speed at the end of the scale: `FASTEST_SHARE` of the flights are slower; above 0."""
+    pairs = log.b >= 0
+    flights = [log.scene.disks.velocity.T, (log.vxa, log.vya), (log.vxb[pairs], log.vyb[pairs])]
+    speeds = np.concatenate([np.hypot(vx, vy) for vx, vy in flights])
+    return float(np.quantile(speeds, FASTEST_SHARE)) or float(speeds.max()) or 1.0
 
 
 def species_of(disks: Disks) -> tuple[Floats, Floats]:
@@ -82,17 +105,12 @@ def _fixed(colours: Floats, key: Scale | Kinds | None) -> Colouring:
 
 
 def _mapped(amount: Callable[[Frame], Floats], scale: Scale) -> Colouring:
-    colours = colormaps[AMOUNTS]
+    colours = amounts()
     return Colouring(lambda frame: colours((amount(frame) - scale.low) / (scale.high - scale.low)), scale)
 
 
 def _by_speed(replay: Replay) -> Colouring:
-    log, disks = replay.log, replay.log.scene.disks
-    pairs = log.b >= 0
-    flights = [disks.velocity.T, (log.vxa, log.vya), (log.vxb[pairs], log.vyb[pairs])]
-    speeds = np.concatenate([np.hypot(vx, vy) for vx, vy in flights])
-    high = float(np.quantile(speeds, FASTEST_SHARE)) or float(speeds.max()) or 1.0
-    return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, high))
+    return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, fastest_flight(replay.log)))
 
 
 def _by_contacts(replay: Replay) -> Colouring:
@@ -109,7 +127,7 @@ def _by_mass(disks: Disks) -> Colouring:
         labels = tuple((f"mass {value:g}", KINDS[place]) for place, value in enumerate(values.tolist()))
         return _fixed(_of_kinds(np.searchsorted(values, disks.mass)), Kinds(labels))
     low, high = float(masses.min()), float(masses.max())
-    colours = colormaps[AMOUNTS]((np.where(finite, disks.mass, high) - low) / (high - low))
+    colours = amounts()((np.where(finite, disks.mass, high) - low) / (high - low))
     colours[~finite] = to_rgba(KINDS[6])
     return _fixed(colours, Scale("mass", low, high))
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from eventsim.errors import EventsimError
-from eventsim.show.colouring import Kinds, Scale
+from eventsim.show.colouring import Kinds, Scale, amounts
 from eventsim.show.outlines import Rectangle
-from eventsim.show.palette import AMOUNTS, Palette
+from eventsim.show.palette import Palette
 
 DPI = 100
 BAR, PAD = 34, 12
@@ -20,6 +19,9 @@ BAR, PAD = 34, 12
 USUAL = 640
 NARROWEST = 440
 """Pixels below which the bars of text would not have their room."""
+
+SMALLEST_UNIT = 0.9
+"""Text of 12 pixels, the smallest that reads well."""
 
 SMALLEST_SIZE, LARGEST_SIZE = 160, 8192
 
@@ -51,7 +53,7 @@ def layout(shown: Rectangle, size: tuple[int, int] | None, room: tuple[int, int]
     if size is not None and not all(SMALLEST_SIZE <= side <= LARGEST_SIZE for side in size):
         raise EventsimError(f"size {size[0]}x{size[1]}: each side must be from {SMALLEST_SIZE} to {LARGEST_SIZE} pixels")
     width, height = shown[2] - shown[0], shown[3] - shown[1]
-    unit = min(max(min(size or room) / USUAL, 0.7), 2.5)
+    unit = min(max(min(size or room) / USUAL, SMALLEST_UNIT), 2.5)
     bar, pad = BAR * unit, PAD * unit
     space = size or room
     scale = min((space[0] - 2 * pad) / width, (space[1] - 2 * bar) / height)
@@ -88,7 +90,7 @@ class Bars:
         strip = self._figure.add_axes(
             (1 - (right + length) * unit / width, (BAR / 2 - 5) * unit / height, length * unit / width, 10 * unit / height)
         )
-        strip.imshow(colormaps[AMOUNTS](np.linspace(0, 1, 256))[None], aspect="auto", interpolation="bilinear")
+        strip.imshow(amounts()(np.linspace(0, 1, 256))[None], aspect="auto", interpolation="bilinear")
         strip.axis("off")
         self._text(-(right + length + 6), BAR / 2, f"{key.title}  {key.low:.3g}", "right", faint)
 

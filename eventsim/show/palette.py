@@ -1,7 +1,7 @@
 """Palettes: what is drawn in which colour, on light paper and on dark; all safe for the colour-blind.
 
-Source: M. Okabe, K. Ito, Color universal design (2008), for kinds; cividis of J. R. Nunez, C. R. Anderton, R. S. Renslow,
-PLoS ONE 13, e0199239 (2018), doi:10.1371/journal.pone.0199239, and viridis for amounts.
+Source: M. Okabe, K. Ito, Color universal design (2008), for kinds;
+plasma of S. van der Walt, N. Smith (matplotlib 1.5, 2015) for amounts.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from dataclasses import dataclass
 KINDS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#999999", "#F0E442")
 """Colours that tell kinds apart; there are no more kinds than these in one picture."""
 
-AMOUNTS = "viridis"
-"""The colour map of speeds, masses and counts."""
+AMOUNTS, AMOUNTS_FROM, AMOUNTS_TO = "plasma", 0.08, 0.93
+"""The colour map of speeds, masses and counts, and the part of it that stands out on light and on dark."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,93 @@
+"""Packing: a scene and its log as a description in JSON and one string of numbers, as the player reads them.
+
+The numbers are little-endian columns, one after the other, in base64. Positions are relative to the corner of the domain,
+lines on the scene's axes. Rows have no positions: the player flies each disk from row to row, which is exact to some ulp.
+"""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_hex
+
+from eventsim.record.events import Column
+from eventsim.record.log import EventLog
+from eventsim.record.replay import Replay
+from eventsim.show import outlines
+from eventsim.show.colouring import amounts, default_mode, fastest_flight, mode_named, species_of
+from eventsim.show.frames import shown_span
+from eventsim.show.images import lines_with_images
+from eventsim.show.palette import DARK, KINDS, LIGHT
+
+SECONDS = 10.0
+"""How long a log plays at the speed that the player begins with."""
+
+SHADES = 64
+"""Colours on the scale of amounts: more cannot be told apart, and fewer are drawn faster."""
+
+ROW_COLUMNS = (
+    ("epoch", "f8"), ("remainder", "f8"), ("vxa", "f8"), ("vya", "f8"), ("vxb", "f8"), ("vyb", "f8"),
+    ("a", "i4"), ("b", "i4"), ("wall", "i4"), ("kind", "i1"),
+)  # fmt: skip
+
+
+def packed(log: EventLog, color: str | None = None, seconds: float | None = None) -> tuple[dict[str, Any], str]:
+    """Return the description of a log for the player, and its numbers in base64.
+
+    seconds: how long it plays at the speed that it begins with. Raises EventsimError where the log has no time to
+    play or the colouring does not exist.
+    """
+    replay = Replay(log)
+    first, last = shown_span(replay.span, None, None)
+    columns = _columns(replay)
+    description = {
+        "startTime": first,
+        "duration": last - first,
+        "seconds": seconds or SECONDS,
+        "colour": mode_named(color) or default_mode(log.scene.disks),
+        "columns": [{"name": name, "type": kind, "length": len(column)} for name, kind, column in columns],
+        "scene": {
+            "count": replay.stage.n,
+            "epochLength": replay.stage.epoch_length,
+            "period": replay.stage.period,
+            "gravity": replay.stage.gravity,
+        },
+        "stage": _stage(replay, last),
+    }
+    data = b"".join(column.astype(f"<{kind}").tobytes() for _, kind, column in columns)
+    return description, base64.b64encode(data).decode("ascii")
+
+
+def _columns(replay: Replay) -> list[tuple[str, str, Column]]:
+    """Return name, type and numbers of each column: the disks at the start, then the rows."""
+    stage, disks, rows = replay.stage, replay.log.scene.disks, replay.log.rows
+    start = {"x": stage.x, "y": stage.y, "vx": stage.vx, "vy": stage.vy, "radius": disks.radius, "mass": disks.mass}
+    columns: list[tuple[str, str, Column]] = [(name, "f8", column) for name, column in start.items()]
+    columns.append(("species", "i4", species_of(disks)[0]))
+    columns.extend((name, kind, rows[name]) for name, kind in ROW_COLUMNS)
+    return columns
+
+
+def _stage(replay: Replay, last: float) -> dict[str, Any]:
+    """Return what the player's drawing needs to know besides the disks."""
+    log, scene, stage = replay.log, replay.log.scene, replay.stage
+    masses = scene.disks.mass[np.isfinite(scene.disks.mass)]
+    hard, open_ = outlines.boundary_lines(scene)
+    lines = {"walls": lines_with_images(outlines.wall_lines(scene), scene), "hard": hard, "open": open_}
+    shades = amounts()(np.linspace(0.0, 1.0, SHADES))
+    return {
+        "shown": outlines.shown_rectangle(log, stage.corner, replay.state_at(last).position),
+        "corner": stage.corner,
+        "size": scene.domain.size,
+        "period": stage.period,
+        **{name: [line.tolist() for line in of_kind] for name, of_kind in lines.items()},
+        "usualRadius": float(np.median(scene.disks.radius)),
+        "fastest": fastest_flight(log),
+        "masses": [float(masses.min()), float(masses.max())] if len(masses) else [1.0, 1.0],
+        "kinds": KINDS,
+        "amounts": [to_hex(shade) for shade in shades],
+        "palettes": {"light": asdict(LIGHT), "dark": asdict(DARK)},
+    }

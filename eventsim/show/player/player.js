@@ -1,0 +1,187 @@
+"use strict";
+/* The player: time that passes, forwards or backwards, and what the user does to it. */
+
+const COLOURS = ["speed", "species", "mass", "contacts", "index"];
+const FASTEST_CHANGE = 64;
+
+class Player {
+  /* root: the element with the player's markup. description: see page.py. */
+  constructor(root, world, description) {
+    this.root = root;
+    this.world = world;
+    this.start = description.startTime;
+    this.duration = description.duration;
+    this.usualSpeed = description.duration / description.seconds;
+    this.view = { time: 0, speed: this.usualSpeed, colour: description.colour, dark: description.dark,
+                  trails: description.trails, flash: description.flash, arrows: description.arrows, marked: -1 };
+    this.direction = 1;
+    this.playing = false;
+    this.part = (name) => root.querySelector(`[data-part="${name}"]`);
+    this.canvas = this.part("canvas");
+    this.drawing = new Drawing(this.canvas, world, description.stage);
+    this.disks = description.stage;
+    this._connect();
+    this._show();
+    new ResizeObserver(() => { this.drawing.resize(); this._show(); }).observe(this.canvas);
+  }
+
+  /* The state at the time that is shown, on the scene's axes: {time, x, y, vx, vy}. */
+  state() {
+    const now = this.world.state(this.view.time), [cx, cy] = this.disks.corner;
+    return { time: this.start + this.view.time, x: Array.from(now.x, (x) => x + cx), y: Array.from(now.y, (y) => y + cy),
+             vx: Array.from(now.vx), vy: Array.from(now.vy) };
+  }
+
+  /* Go to a time, counted from the start of the run. */
+  seek(time) {
+    this.view.time = Math.min(Math.max(time, 0), this.duration);
+    this._show();
+  }
+
+  play() {
+    if (this.playing) return;
+    if (this.direction > 0 && this.view.time >= this.duration) this.view.time = 0;
+    if (this.direction < 0 && this.view.time <= 0) this.view.time = this.duration;
+    this.playing = true;
+    this.before = null;
+    requestAnimationFrame((now) => this._tick(now));
+    this._label();
+  }
+
+  pause() {
+    this.playing = false;
+    this._label();
+  }
+
+  toggle() {
+    if (this.playing) this.pause(); else this.play();
+  }
+
+  reverse() {
+    this.direction = -this.direction;
+    this._label();
+  }
+
+  /* Go to the next event, +1, or to the one before, -1; to the end or the beginning where there is none. */
+  step(direction) {
+    this.pause();
+    const event = direction > 0 ? this.world.nextEvent(this.view.time) : this.world.previousEvent(this.view.time);
+    this.seek(event !== null ? event : direction > 0 ? this.duration : 0);
+  }
+
+  setSpeed(factor) {
+    const bounded = Math.min(Math.max(factor, 1 / FASTEST_CHANGE), FASTEST_CHANGE);
+    this.view.speed = this.usualSpeed * bounded;
+    this.part("speed").value = String(Math.log2(bounded));
+    this._label();
+    this._show();
+  }
+
+  _tick(now) {
+    if (!this.playing) return;
+    if (this.before !== null) {
+      const time = this.view.time + (this.direction * this.view.speed * (now - this.before)) / 1000;
+      this.view.time = Math.min(Math.max(time, 0), this.duration);
+      if (this.view.time !== time) this.pause();
+    }
+    this.before = now;
+    this._show();
+    if (this.playing) requestAnimationFrame((next) => this._tick(next));
+  }
+
+  _show() {
+    const events = this.world.eventsUntil(this.view.time);
+    this.drawing.draw(this.view);
+    this.part("scrub").value = String(this.view.time);
+    this.part("clock").textContent = `t = ${digits(this.start + this.view.time, this.duration)}`;
+    this.part("events").textContent = `${events.toLocaleString("en")} of ${this.world.event.time.length.toLocaleString("en")} events`;
+    if (this.view.marked >= 0) this._tell();
+  }
+
+  _label() {
+    this.part("play").textContent = this.playing ? "❚❚" : this.direction > 0 ? "▶" : "◀";
+    this.part("play").title = this.playing ? "Pause (space)" : "Play (space)";
+    this.part("reverse").setAttribute("aria-pressed", String(this.direction < 0));
+    this.part("rate").textContent = `× ${Number((this.view.speed / this.usualSpeed).toPrecision(2))}`;
+  }
+
+  _connect() {
+    const on = (name, event, action) => this.part(name).addEventListener(event, action);
+    this.part("scrub").max = String(this.duration);
+    on("play", "click", () => this.toggle());
+    on("reverse", "click", () => this.reverse());
+    on("back", "click", () => this.step(-1));
+    on("forward", "click", () => this.step(1));
+    on("scrub", "input", () => this.seek(Number(this.part("scrub").value)));
+    on("speed", "input", () => this.setSpeed(2 ** Number(this.part("speed").value)));
+    const colour = this.part("colour");
+    for (const name of COLOURS) colour.append(new Option(name, name, false, name === this.view.colour));
+    on("colour", "change", () => { this.view.colour = colour.value; this._show(); });
+    for (const name of ["trails", "flash", "arrows", "dark"]) {
+      this.part(name).checked = this.view[name];
+      on(name, "change", () => this._switch(name, this.part(name).checked));
+    }
+    this._switch("dark", this.view.dark);
+    on("canvas", "pointermove", (event) => this._hover(event));
+    on("canvas", "pointerleave", () => { this.pointer = null; this._mark(-1); });
+    on("canvas", "click", () => this.toggle());
+    window.addEventListener("keydown", (event) => this._key(event));
+    this._label();
+  }
+
+  _switch(name, value) {
+    this.view[name] = value;
+    if (name === "dark") this.root.classList.toggle("dark", value);
+    this._show();
+  }
+
+  _key(event) {
+    const actions = {
+      " ": () => this.toggle(),
+      ArrowRight: () => this.step(1),
+      ArrowLeft: () => this.step(-1),
+      ArrowUp: () => this.setSpeed((2 * this.view.speed) / this.usualSpeed),
+      ArrowDown: () => this.setSpeed((0.5 * this.view.speed) / this.usualSpeed),
+      Home: () => this.seek(0),
+      End: () => this.seek(this.duration),
+      r: () => this.reverse(),
+    };
+    if (!(event.key in actions) || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
+    event.preventDefault();
+    actions[event.key]();
+  }
+
+  _hover(event) {
+    this.pointer = { x: event.clientX, y: event.clientY };
+    this._mark(this.drawing.diskAt(event.clientX, event.clientY, this.view.time));
+  }
+
+  _mark(disk) {
+    this.part("tip").hidden = disk < 0;
+    if (disk < 0 && this.view.marked < 0) return;
+    this.view.marked = disk;
+    this._show();
+  }
+
+  /* Write what is known of the marked disk beside the pointer. */
+  _tell() {
+    const i = this.view.marked, now = this.world.now, disks = this.world.disks, [cx, cy] = this.disks.corner;
+    const number = (value) => Number(value.toPrecision(6));
+    const tip = this.part("tip"), box = this.root.getBoundingClientRect();
+    tip.textContent = [
+      `disk ${i}   radius ${number(disks.radius[i])}   mass ${number(disks.mass[i])}`,
+      `position  ${number(now.x[i] + cx)}, ${number(now.y[i] + cy)}`,
+      `velocity  ${number(now.vx[i])}, ${number(now.vy[i])}`,
+      `speed  ${number(Math.hypot(now.vx[i], now.vy[i]))}   events ${this.world.anchorBefore(i, this.view.time)}`,
+    ].join("\n");
+    if (!this.pointer) return;
+    const left = this.pointer.x - box.left, top = this.pointer.y - box.top;
+    tip.style.left = `${left + 16 + tip.offsetWidth < box.width ? left + 16 : Math.max(left - 16 - tip.offsetWidth, 0)}px`;
+    tip.style.top = `${Math.min(top + 12, box.height - tip.offsetHeight)}px`;
+  }
+}
+
+/* A time with as many digits as tell apart the steps of a thousandth of a duration. */
+function digits(time, duration) {
+  return time.toFixed(Math.min(Math.max(3 - Math.floor(Math.log10(duration)), 0), 12));
+}

@@ -1,0 +1,174 @@
+"use strict";
+/* The world: where all disks are at any time, from their starts and the rows of an event log.
+
+   It knows nothing of drawing. A disk flies free between its anchors, so every state is a function of the time alone:
+   forwards, backwards and in leaps give the same numbers. Rows may be appended at any time, in the order of the log.
+
+   Times are counted from the start of the run. The clock of an anchor keeps whole epochs apart from the remainder, as
+   the log does, so a late event has as many digits as an early one. Positions are relative to the domain's corner. */
+
+class Column {
+  /* A growing array of numbers. */
+  constructor() {
+    this.values = new Float64Array(1024);
+    this.length = 0;
+  }
+
+  push(value) {
+    if (this.length === this.values.length) {
+      const longer = new Float64Array(2 * this.length);
+      longer.set(this.values);
+      this.values = longer;
+    }
+    this.values[this.length++] = value;
+  }
+}
+
+class World {
+  /* scene: {count, epochLength, period: [number | null, ...], gravity: [gx, gy] | null, disks: {x, y, vx, vy, radius, mass}}. */
+  constructor(scene) {
+    this.count = scene.count;
+    this.epochLength = scene.epochLength;
+    this.period = scene.period;
+    this.gravity = scene.gravity;
+    this.disks = scene.disks;
+    this.anchor = {};
+    for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy"]) this.anchor[name] = new Column();
+    this.event = {};
+    for (const name of ["time", "a", "b", "kind", "wall"]) this.event[name] = new Column();
+    this.anchorsOf = [];
+    for (let i = 0; i < this.count; i++) {
+      this.anchorsOf.push([]);
+      this._anchor(i, 0, 0, scene.disks.x[i], scene.disks.y[i], scene.disks.vx[i], scene.disks.vy[i]);
+    }
+    this.now = { x: new Float64Array(this.count), y: new Float64Array(this.count),
+                 vx: new Float64Array(this.count), vy: new Float64Array(this.count) };
+  }
+
+  /* Take up rows of the log, given as columns: epoch, remainder, a, b (-1: none), kind, wall, vxa, vya, vxb, vyb. */
+  append(rows) {
+    for (let k = 0; k < rows.a.length; k++) {
+      const epoch = rows.epoch[k], remainder = rows.remainder[k];
+      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k]);
+      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k]);
+      const last = this.event.time.length ? this.event.time.values[this.event.time.length - 1] : 0;
+      this.event.time.push(Math.max(epoch * this.epochLength + remainder, last));
+      for (const name of ["a", "b", "kind", "wall"]) this.event[name].push(rows[name][k]);
+    }
+  }
+
+  /* All disks at a time: {x, y, vx, vy}, arrays that the next call overwrites. At the time of an event, after it. */
+  state(time) {
+    const { x, y, vx, vy } = this.now;
+    for (let i = 0; i < this.count; i++) {
+      const k = this.anchorsOf[i][this.anchorBefore(i, time)];
+      const lag = this._lag(k, time);
+      x[i] = wrapped(this._place("x", 0, i, k, lag), this.period[0]);
+      y[i] = wrapped(this._place("y", 1, i, k, lag), this.period[1]);
+      vx[i] = this._velocity("vx", 0, i, k, lag);
+      vy[i] = this._velocity("vy", 1, i, k, lag);
+    }
+    return this.now;
+  }
+
+  /* Which of a disk's anchors holds at a time; it is also the number of events that the disk has had. */
+  anchorBefore(i, time) {
+    const list = this.anchorsOf[i], times = this.anchor.time.values;
+    let low = 0, high = list.length;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (times[list[middle]] <= time) low = middle; else high = middle;
+    }
+    return low;
+  }
+
+  /* The time of a disk's last event, -Infinity before the first. */
+  lastEvent(i, time) {
+    const place = this.anchorBefore(i, time);
+    return place ? this.anchor.time.values[this.anchorsOf[i][place]] : -Infinity;
+  }
+
+  /* How many events have happened at a time, its own included. */
+  eventsUntil(time) {
+    return bisect(this.event.time, (other) => other <= time);
+  }
+
+  /* The time of the next event after a time, of the last one before it; null where there is none. */
+  nextEvent(time) {
+    const k = this.eventsUntil(time);
+    return k < this.event.time.length ? this.event.time.values[k] : null;
+  }
+
+  previousEvent(time) {
+    const k = bisect(this.event.time, (other) => other < time);
+    return k > 0 ? this.event.time.values[k - 1] : null;
+  }
+
+  /* Tell the way of disk i from one time to another as straight pieces: piece(x0, y0, x1, y1), not wrapped. */
+  trace(i, from, to, piece) {
+    const list = this.anchorsOf[i], times = this.anchor.time.values;
+    for (let place = this.anchorBefore(i, from); place < list.length && times[list[place]] < to; place++) {
+      const k = list[place], until = place + 1 < list.length ? Math.min(times[list[place + 1]], to) : to;
+      const begin = Math.max(times[k], from), parts = this.gravity ? PARABOLA_PIECES : 1;
+      let x0 = this._place("x", 0, i, k, begin - times[k]), y0 = this._place("y", 1, i, k, begin - times[k]);
+      for (let part = 1; part <= parts; part++) {
+        const lag = begin - times[k] + ((until - begin) * part) / parts;
+        const x1 = this._place("x", 0, i, k, lag), y1 = this._place("y", 1, i, k, lag);
+        piece(x0, y0, x1, y1);
+        x0 = x1; y0 = y1;
+      }
+    }
+  }
+
+  _turn(i, epoch, remainder, vx, vy) {
+    const k = this.anchorsOf[i][this.anchorsOf[i].length - 1];
+    const lag = (epoch - this.anchor.epoch.values[k]) * this.epochLength + (remainder - this.anchor.remainder.values[k]);
+    const x = wrapped(this._place("x", 0, i, k, lag), this.period[0]);
+    const y = wrapped(this._place("y", 1, i, k, lag), this.period[1]);
+    this._anchor(i, epoch, remainder, x, y, vx, vy);
+  }
+
+  _anchor(i, epoch, remainder, x, y, vx, vy) {
+    const anchor = this.anchor;
+    this.anchorsOf[i].push(anchor.time.length);
+    anchor.epoch.push(epoch);
+    anchor.remainder.push(remainder);
+    anchor.time.push(epoch * this.epochLength + remainder);
+    anchor.x.push(x); anchor.y.push(y);
+    anchor.vx.push(vx); anchor.vy.push(vy);
+  }
+
+  _lag(k, time) {
+    return time - this.anchor.epoch.values[k] * this.epochLength - this.anchor.remainder.values[k];
+  }
+
+  _pull(axis, i) {
+    return this.gravity && this.disks.mass[i] < Infinity ? this.gravity[axis] : 0;
+  }
+
+  _place(name, axis, i, k, lag) {
+    return this.anchor[name].values[k] + lag * (this.anchor["v" + name].values[k] + 0.5 * this._pull(axis, i) * lag);
+  }
+
+  _velocity(name, axis, i, k, lag) {
+    return this.anchor[name].values[k] + this._pull(axis, i) * lag;
+  }
+}
+
+const PARABOLA_PIECES = 8;
+
+function wrapped(x, period) {
+  if (period === null) return x;
+  const inside = x - period * Math.floor(x / period);
+  return inside < period ? inside : 0;
+}
+
+/* How many leading values of an ascending column satisfy a condition. */
+function bisect(column, holds) {
+  let low = 0, high = column.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (holds(column.values[middle])) low = middle + 1; else high = middle;
+  }
+  return low;
+}
