@@ -6,10 +6,10 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from eventsim.scene.files import scene_to_dict
 
 from eventsim.errors import SceneError
 from eventsim.scene import gallery as gallery_package
+from eventsim.scene.files import scene_to_dict
 from eventsim.scene.gallery import describe, gallery, names
 
 FOLDER = Path(gallery_package.__path__[0])

@@ -20,9 +20,9 @@ Source
     901, ... are the long sides).
 
 A question
-    How long does the picture stay symmetric? Disks 1 and 2 are mirror images: find the event from which
-    their speeds differ, and say where that difference comes from. Then set aim to one bit,
-    6.103515625e-05.
+    How long does the picture stay symmetric? Disks 2 and 3 are mirror images: find the event from which
+    their speeds differ, and say where that difference comes from. Then set aim to one unit of length,
+    2^-14 = 6.103515625e-05.
 """
 
 from eventsim.scene.disks import Disks
