@@ -161,11 +161,10 @@ class Expansion:
         before = [self._disks[i].speed(t) for i in disks]
         joint = [self._joint_contact(contact, number, places, t) for contact in found]
         outcome = resolve_together(joint, before, [self._mass[i] for i in disks])
-        active = sorted((contact, k) for k, contact in enumerate(found) if outcome.active[k])
-        if [self._row_of(contact) for contact, _ in active] != [(entry.a, entry.b, entry.wall) for entry in cluster]:
-            raise self._unfit(cluster[0], "its cluster of simultaneous contacts has other members")
-        for i in sorted({i for contact, _ in active for i in (contact.a, contact.b) if i >= 0}):
-            own = [contact for contact, _ in active if i in (contact.a, contact.b)]
+        active = [k for k, taken in enumerate(outcome.active) if taken]
+        rows = self._matched(cluster, [found[k] for k in active])
+        for i in sorted({i for contact in rows for i in (contact.a, contact.b) if i >= 0}):
+            own = [contact for contact in rows if i in (contact.a, contact.b)]
             for contact in own:
                 if contact.b < 0:
                     places[i] = self._contacts.on_boundary(contact, places[i])
@@ -173,7 +172,19 @@ class Expansion:
             disk.anchor(t, places[i], outcome.velocities[number[i]])
             disk.met = tuple(self._contacts.met(contact, i) for contact in own)
             disk.contact_time = t
-        return [outcome.impulses[k] for _, k in active]
+        impulse = {found[k]: outcome.impulses[k] for k in active}
+        return [impulse[contact] for contact in rows]
+
+    def _matched(self, cluster: list[Entry], active: list[Contact]) -> list[Contact]:
+        """Return the contact that each row stands for; those of the same pair or wall by image or shape."""
+        waiting: dict[tuple[int, int, int], list[Contact]] = {}
+        for contact in sorted(active, key=lambda contact: (-contact.b, contact.image), reverse=True):
+            key = (contact.a, max(contact.b, -1), self._contacts.wall_of(contact) if contact.b < 0 else -1)
+            waiting.setdefault(key, []).append(contact)
+        rows = [waiting[key].pop() for entry in cluster if waiting.get(key := (entry.a, entry.b, entry.wall))]
+        if len(rows) != len(cluster) or any(waiting.values()):
+            raise self._unfit(cluster[0], "its cluster of simultaneous contacts has other members")
+        return rows
 
     def _joint_contact(
         self, contact: Contact, number: dict[int, int], places: dict[int, tuple[float, float]], t: float
@@ -203,11 +214,6 @@ class Expansion:
     def _restitution(self, restitution: float, t: float, a: int, b: int) -> float:
         since = t - self._disks[a].contact_time, t - self._disks[b].contact_time
         return float(contact_restitution(restitution, self.stage.contact_duration, *since))
-
-    def _row_of(self, contact: Contact) -> tuple[int, int, int]:
-        if contact.b >= 0:
-            return contact.a, contact.b, -1
-        return contact.a, -1, self._contacts.wall_of(contact)
 
     def _only(self, entry: Entry, found: list[Contact]) -> Contact:
         if len(found) != 1:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import struct
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ def test_the_cut_into_blocks_does_not_matter(cuts: list[int]) -> None:
     rows = random_rows(60)
     digester = Digester()
     edges = [0, *sorted(cuts), 60]
-    for first, last in zip(edges, edges[1:], strict=False):
+    for first, last in pairwise(edges):
         digester.update(rows[first:last])
     assert digester.hexdigest() == digest_of(rows)
 

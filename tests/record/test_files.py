@@ -164,7 +164,9 @@ def test_parquet_and_npz_hold_the_columns_by_their_names(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-@pytest.mark.parametrize("content", [b"", b"hello\n", b"\x00\xff\xfe\x80" * 40, b"# {}\n", b"{}\n", b"PK\x03\x04", b"PAR1"])
+@pytest.mark.parametrize(
+    "content", [b"", b"hello\n", b"\x00\xff\xfe\x80" * 40, b"# {}\n", b"{}\n", b"PK\x03\x04", b"PAR1"]
+)
 def test_what_is_no_log_is_refused_with_a_sentence(tmp_path: Path, suffix: str, content: bytes) -> None:
     path = tmp_path / f"log{suffix}"
     path.write_bytes(content)
