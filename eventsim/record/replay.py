@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from eventsim.errors import LogError
 from eventsim.formulas.clock import clock_time
-from eventsim.record.events import Column, Floats, Rows, State
+from eventsim.record.events import Column, Rows, State
 from eventsim.record.flight import Flights, fly, start_flights
 from eventsim.record.log import EventLog
+from eventsim.record.places import on_scene_axes
 from eventsim.record.windows import Windows
 from eventsim.scene.stage import Stage, stage_of
 
@@ -39,6 +40,7 @@ class Replay:
 
         O(log rows) per disk. Raises LogError for a time that the log does not cover.
         """
+        time = float(time)
         if not math.isfinite(time):
             raise LogError(f"there is no state at time {time}: the time must be a finite number")
         if time < self.stage.start_time:
@@ -83,8 +85,9 @@ class Replay:
     def _state(self, window: int, remainder: float, time: float) -> State:
         flights = self._anchors(window, remainder)
         fly(flights, self.stage, self.windows, window, remainder)
-        places = np.column_stack([self._shown(flights.x, 0), self._shown(flights.y, 1)])
-        return State(time, places, np.column_stack([flights.vx, flights.vy]))
+        corner, period = self.stage.corner, self.stage.period
+        x, y = on_scene_axes(flights.x, corner[0], period[0]), on_scene_axes(flights.y, corner[1], period[1])
+        return State(time, np.column_stack([x, y]), np.column_stack([flights.vx, flights.vy]))
 
     def _anchors(self, window: int, remainder: float) -> Flights:
         """Return the flight of each disk that was valid at (window, remainder)."""
@@ -114,15 +117,6 @@ class Replay:
         last = np.full(self.stage.n, -1, dtype=np.int64)
         last[found] = self._rows[low[found] - 1]
         return last
-
-    def _shown(self, x: Floats, axis: int) -> Floats:
-        """Return a coordinate on the scene's axes; along a period it lies in [corner, corner + period)."""
-        corner, length = self.stage.corner[axis], self.stage.period[axis]
-        if length is None:
-            return x + corner
-        inside = np.where(x < 0.0, x + length, np.where(x >= length, x - length, x))
-        shown = inside + corner
-        return np.where(shown - corner < length, shown, corner)  # rounding may reach the far end
 
 
 def _rows_of_disks(rows: Rows, n: int) -> tuple[Column, Column]:

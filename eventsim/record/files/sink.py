@@ -19,14 +19,14 @@ class FileSink(ABC):
     A format supplies `_open`, `_append`, `_finish` and `_discard`. OSError becomes LogError.
     """
 
-    def __init__(self, path: Path, provenance: Provenance, kicks: tuple[Kick, ...]) -> None:
-        """Open `NAME.part`; kicks: those already known, where the rows to come are compact themselves."""
+    def __init__(self, path: Path, provenance: Provenance, kicks: tuple[Kick, ...] | None) -> None:
+        """Open `NAME.part`; kicks: None where they are to be taken from the rows, which then are full."""
         self.path = path
         self.part = path.with_name(path.name + PART)
         self.provenance = provenance
         self.columns = COMPACT_COLUMNS if provenance.compact else COLUMNS
-        self._known_kicks = bool(kicks)
-        self._kicks = list(kicks)
+        self._kicks_come_with_rows = kicks is None
+        self._kicks = list(kicks or ())
         self._count = 0
         if path.is_dir():
             raise LogError(f"{path}: is a directory, so no log can be written there")
@@ -39,7 +39,7 @@ class FileSink(ABC):
 
     def write(self, rows: Rows) -> None:
         """Append a block of rows."""
-        if not self._known_kicks:
+        if self._kicks_come_with_rows:
             self._kicks += kicks_of(rows)
         self._count += len(rows)
         try:
