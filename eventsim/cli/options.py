@@ -13,14 +13,14 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON o
 quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print no summary and no progress.")
 
 
-def scene_options(required: bool) -> Callable[[Verb], Verb]:
+def scene_options(required: bool, metavar: str = "SCENE") -> Callable[[Verb], Verb]:
     """Add the argument SCENE and the options --set and --seed that shape it."""
 
     def decorate(verb: Verb) -> Verb:
         for add in (
             click.option("--seed", type=click.IntRange(min=0), metavar="S", help=SEED_HELP),
             click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=SET_HELP),
-            click.argument("scene", required=required),
+            click.argument("scene", required=required, metavar=metavar if required else f"[{metavar}]"),
         ):
             verb = add(verb)
         return verb

@@ -19,6 +19,8 @@ VERBS = {
     "check": "Validate a scene; explain what it needs and what will be used.",
     "gallery": "List, show or copy the built-in scenes.",
     "state": "Positions and velocities at any times, from a log.",
+    "animate": "Draw a run as a movie, a strip of moments, or a page that plays it.",
+    "figure": "Draw what a log says: trajectories, speeds, free paths, residuals, ...",
 }
 
 BEGIN = """\

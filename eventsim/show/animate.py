@@ -94,7 +94,9 @@ def animate(
         if suffix == ".mp4":
             write_mp4(part, drawn, picture.layout.size, timing.fps)
         elif suffix == ".gif":
-            write_gif(part, drawn, palette_of(_samples(picture, replay, timing)), len(timing.times), timing.fps)
+            write_gif(
+                part, drawn, palette_of(_samples(picture, replay, timing)), len(timing.times), timing.fps
+            )
         else:
             write_strip(part, drawn, len(timing.times), picture.layout.size)
 
@@ -102,7 +104,13 @@ def animate(
 def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
     if suffix != ".png":
         return frame_timing(
-            replay.span, film.fps or FPS[suffix], DURATION[suffix], film.speed, film.duration, film.begin, film.end
+            replay.span,
+            film.fps or FPS[suffix],
+            DURATION[suffix],
+            film.speed,
+            film.duration,
+            film.begin,
+            film.end,
         )
     if film.moments < 1:
         raise EventsimError(f"moments = {film.moments}: must be at least 1")

@@ -110,13 +110,17 @@ def _mapped(amount: Callable[[Frame], Floats], scale: Scale) -> Colouring:
 
 
 def _by_speed(replay: Replay) -> Colouring:
-    return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, fastest_flight(replay.log)))
+    return _mapped(
+        lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, fastest_flight(replay.log))
+    )
 
 
 def _by_contacts(replay: Replay) -> Colouring:
     log = replay.log
     most = np.bincount(np.concatenate([log.a, log.b[log.b >= 0]]), minlength=1).max()
-    return _mapped(lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(max(most, 1))))
+    return _mapped(
+        lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(max(most, 1)))
+    )
 
 
 def _by_mass(disks: Disks) -> Colouring:

@@ -51,14 +51,19 @@ def layout(shown: Rectangle, size: tuple[int, int] | None, room: tuple[int, int]
     Sizes are made even, as movies need it. Raises EventsimError for a size that no picture can have.
     """
     if size is not None and not all(SMALLEST_SIZE <= side <= LARGEST_SIZE for side in size):
-        raise EventsimError(f"size {size[0]}x{size[1]}: each side must be from {SMALLEST_SIZE} to {LARGEST_SIZE} pixels")
+        raise EventsimError(
+            f"size {size[0]}x{size[1]}: each side must be from {SMALLEST_SIZE} to {LARGEST_SIZE} pixels"
+        )
     width, height = shown[2] - shown[0], shown[3] - shown[1]
     unit = min(max(min(size or room) / USUAL, SMALLEST_UNIT), 2.5)
     bar, pad = BAR * unit, PAD * unit
     space = size or room
     scale = min((space[0] - 2 * pad) / width, (space[1] - 2 * bar) / height)
     if size is None:
-        size = max(round(width * scale + 2 * pad), round(NARROWEST * unit)), max(round(height * scale + 2 * bar), 120)
+        size = (
+            max(round(width * scale + 2 * pad), round(NARROWEST * unit)),
+            max(round(height * scale + 2 * bar), 120),
+        )
     size = size[0] + size[0] % 2, size[1] + size[1] % 2
     w, h = width * scale, height * scale
     return Layout(size, ((size[0] - w) / 2, (size[1] - h) / 2, w, h), unit, scale)
@@ -88,7 +93,12 @@ class Bars:
         right += self._width(high) + 6
         unit, (width, height) = self._place.unit, self._place.size
         strip = self._figure.add_axes(
-            (1 - (right + length) * unit / width, (BAR / 2 - 5) * unit / height, length * unit / width, 10 * unit / height)
+            (
+                1 - (right + length) * unit / width,
+                (BAR / 2 - 5) * unit / height,
+                length * unit / width,
+                10 * unit / height,
+            )
         )
         strip.imshow(amounts()(np.linspace(0, 1, 256))[None], aspect="auto", interpolation="bilinear")
         strip.axis("off")

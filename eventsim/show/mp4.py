@@ -27,7 +27,9 @@ def ffmpeg() -> str:
     except (ImportError, RuntimeError):
         found = shutil.which("ffmpeg")
     if found is None:
-        raise EventsimError("an mp4 needs ffmpeg, and there is none: pip install 'eventsim-disks[video]' (or write .gif, .html)")
+        raise EventsimError(
+            "an mp4 needs ffmpeg, and there is none: pip install 'eventsim-disks[video]' (or write .gif, .html)"
+        )
     return found
 
 
@@ -36,10 +38,36 @@ def write_mp4(part: Path, frames: Iterable[NDArray[np.uint8]], size: tuple[int, 
 
     An error or an interrupt ends ffmpeg; what it had written is left to the caller.
     """
-    command = [ffmpeg(), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}"]
-    command += ["-r", repr(fps), "-i", "-", "-an", "-c:v", "libx264", *QUALITY, "-movflags", "+faststart", "-f", "mp4"]
+    command = [
+        ffmpeg(),
+        "-y",
+        "-loglevel",
+        "error",
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgba",
+        "-s",
+        f"{size[0]}x{size[1]}",
+    ]
+    command += [
+        "-r",
+        repr(fps),
+        "-i",
+        "-",
+        "-an",
+        "-c:v",
+        "libx264",
+        *QUALITY,
+        "-movflags",
+        "+faststart",
+        "-f",
+        "mp4",
+    ]
     with tempfile.TemporaryFile() as complaints:
-        process = subprocess.Popen([*command, str(part)], stdin=subprocess.PIPE, stdout=complaints, stderr=complaints)
+        process = subprocess.Popen(
+            [*command, str(part)], stdin=subprocess.PIPE, stdout=complaints, stderr=complaints
+        )
         assert process.stdin is not None
         try:
             _feed(process.stdin, frames)
@@ -51,7 +79,9 @@ def write_mp4(part: Path, frames: Iterable[NDArray[np.uint8]], size: tuple[int, 
         if process.returncode != 0:
             complaints.seek(0)
             last = complaints.read().decode(errors="replace").strip().splitlines()[-1:]
-            raise EventsimError(f"ffmpeg could not write the movie: {' '.join(last) or f'code {process.returncode}'}")
+            raise EventsimError(
+                f"ffmpeg could not write the movie: {' '.join(last) or f'code {process.returncode}'}"
+            )
 
 
 def _feed(pipe: IO[bytes], frames: Iterable[NDArray[np.uint8]]) -> None:

@@ -92,7 +92,10 @@ def shown_rectangle(log: EventLog, corner: tuple[float, float], visited: Floats)
         return x0 - free[0], y0 - free[1], x0 + width + free[0], y0 + height + free[1]
     reach = float(scene.disks.radius.max())
     contacts = np.column_stack([log.xa, log.ya]) + corner
-    points = [*wall_lines(scene), *(near + side * reach for near in (scene.disks.position, contacts) for side in (-1, 1))]
+    points = [
+        *wall_lines(scene),
+        *(near + side * reach for near in (scene.disks.position, contacts) for side in (-1, 1)),
+    ]
     places = np.concatenate(points)
     low, high = places.min(axis=0), places.max(axis=0)
     extent = float((high - low).max()) or 1.0

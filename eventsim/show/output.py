@@ -15,7 +15,9 @@ def suffix_of(path: Path, suffixes: Sequence[str], what: str) -> str:
     """Return the suffix of a file's name; raise EventsimError where it is not one of those that can be written."""
     suffix = path.suffix.lower()
     if suffix not in suffixes:
-        raise EventsimError(f"{path}: {what} is written as {', '.join(suffixes)}; the file's name must end in one of them")
+        raise EventsimError(
+            f"{path}: {what} is written as {', '.join(suffixes)}; the file's name must end in one of them"
+        )
     return suffix
 
 

@@ -41,7 +41,7 @@ LIGHT = Palette(
     faint="#5b6570",
     wall="#39424e",
     edge="#1b1f24",
-    glow="#ff3d2e",
+    glow="#00a9d6",
     trail="#55606e",
     arrow="#c0183a",
 )

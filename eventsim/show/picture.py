@@ -130,7 +130,9 @@ class Picture:
 
     def _path_artist(self, colour: str) -> PathPatch:
         width = 1.1 * self.layout.unit
-        patch = PathPatch(Path(np.zeros((1, 2))), fill=False, edgecolor=colour, linewidth=width, capstyle="round")
+        patch = PathPatch(
+            Path(np.zeros((1, 2))), fill=False, edgecolor=colour, linewidth=width, capstyle="round"
+        )
         patch.set_animated(True)
         self._axes.add_patch(patch)
         return patch
@@ -146,14 +148,20 @@ class Picture:
         corner, size = (shown[0], shown[1]), (shown[2] - shown[0], shown[3] - shown[1])
         if scene.domain.size is not None:
             corner, size = scene.domain.origin, scene.domain.size
-        self._axes.add_patch(Rectangle(corner, *size, facecolor=self._palette.inside, edgecolor="none", zorder=0))
+        self._axes.add_patch(
+            Rectangle(corner, *size, facecolor=self._palette.inside, edgecolor="none", zorder=0)
+        )
         hard, periodic = outlines.boundary_lines(scene)
         self._add_lines([*lines_with_images(outlines.wall_lines(scene), scene), *hard], 2.0, "solid")
         self._add_lines(periodic, 1.2, "dashed")
 
     def _add_lines(self, lines: Sequence[Floats], width: float, style: str) -> None:
         artist = LineCollection(
-            list(lines), colors=self._palette.wall, linewidths=width * self.layout.unit, linestyles=style, zorder=1
+            list(lines),
+            colors=self._palette.wall,
+            linewidths=width * self.layout.unit,
+            linestyles=style,
+            zorder=1,
         )
         artist.set_capstyle("round")
         self._axes.add_collection(artist, autolim=False)

@@ -26,7 +26,9 @@ def arrows(tail: Floats, along: Floats) -> Path:
     beside = np.column_stack([-along[:, 1], along[:, 0]])
     left, right = tip - HEAD * (along - 0.5 * beside), tip - HEAD * (along + 0.5 * beside)
     points = np.stack([tail, tip, left, tip, right], axis=1).reshape(-1, 2)
-    codes = np.tile(np.array([Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO], dtype=np.uint8), len(tail))
+    codes = np.tile(
+        np.array([Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO], dtype=np.uint8), len(tail)
+    )
     return Path(points, codes)
 
 

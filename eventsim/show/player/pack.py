@@ -34,7 +34,9 @@ ROW_COLUMNS = (
 )  # fmt: skip
 
 
-def packed(log: EventLog, color: str | None = None, seconds: float | None = None) -> tuple[dict[str, Any], str]:
+def packed(
+    log: EventLog, color: str | None = None, seconds: float | None = None
+) -> tuple[dict[str, Any], str]:
     """Return the description of a log for the player, and its numbers in base64.
 
     seconds: how long it plays at the speed that it begins with. Raises EventsimError where the log has no time to
@@ -64,7 +66,14 @@ def packed(log: EventLog, color: str | None = None, seconds: float | None = None
 def _columns(replay: Replay) -> list[tuple[str, str, Column]]:
     """Return name, type and numbers of each column: the disks at the start, then the rows."""
     stage, disks, rows = replay.stage, replay.log.scene.disks, replay.log.rows
-    start = {"x": stage.x, "y": stage.y, "vx": stage.vx, "vy": stage.vy, "radius": disks.radius, "mass": disks.mass}
+    start = {
+        "x": stage.x,
+        "y": stage.y,
+        "vx": stage.vx,
+        "vy": stage.vy,
+        "radius": disks.radius,
+        "mass": disks.mass,
+    }
     columns: list[tuple[str, str, Column]] = [(name, "f8", column) for name, column in start.items()]
     columns.append(("species", "i4", species_of(disks)[0]))
     columns.extend((name, kind, rows[name]) for name, kind in ROW_COLUMNS)

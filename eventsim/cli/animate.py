@@ -1,0 +1,128 @@
+"""`eventsim animate`: a scene or a log as a movie, a strip of moments, or a page that plays it."""
+
+from __future__ import annotations
+
+import re
+
+import click
+
+from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.source import stop_options
+from eventsim.cli.target import writable
+
+PICTURE_SUFFIXES = (".mp4", ".gif", ".html", ".png")
+COLORS = ("mass", "speed", "species", "contacts", "index")
+
+
+class Size(click.ParamType[tuple[int, int]]):
+    """WIDTHxHEIGHT in pixels."""
+
+    name = "size"
+
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        """Read 1280x720 as (1280, 720)."""
+        match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", str(value))
+        if match is None:
+            self.fail(f"{value!r} is not a size: write WIDTHxHEIGHT in pixels, as 1280x720", param, ctx)
+        return int(match[1]), int(match[2])
+
+
+@click.command()
+@scene_options(required=True, metavar="SCENE|LOG")
+@click.option(
+    "--out", required=True, metavar="FILE", help="FILE.mp4, .gif, .png (a strip of moments) or .html."
+)
+@stop_options
+@click.option("--fps", type=float, metavar="F", help="Frames per second; 30, of a gif 20.")
+@click.option(
+    "--speed", type=float, metavar="S", help="Time of the scene that passes in a second of the movie."
+)
+@click.option("--duration", type=float, metavar="D", help="Seconds that the movie lasts; 10, of a gif 6.")
+@click.option("--from", "begin", type=float, metavar="T", help="Begin at this time on the scene's clock.")
+@click.option("--to", "end", type=float, metavar="T", help="End at this time on the scene's clock.")
+@click.option("--moments", type=click.IntRange(min=1), metavar="N", help="Pictures in a png; 6.")
+@click.option("--size", type=Size(), metavar="WxH", help="Pixels, as 1280x720; of a png, of each moment.")
+@click.option(
+    "--color",
+    type=click.Choice(COLORS),
+    help="What the colour of a disk says; the scene decides if not given.",
+)
+@click.option("--trails", is_flag=True, help="Draw where disks have been in the last second.")
+@click.option("--velocities", is_flag=True, help="Draw velocities as arrows.")
+@click.option("--flash", is_flag=True, help="Light up disks at their contacts.")
+@click.option("--dark", is_flag=True, help="Draw on a dark ground.")
+@json_option
+@quiet_option
+def command(
+    scene: str,
+    settings: tuple[str, ...],
+    seed: int | None,
+    out: str,
+    until: float | None,
+    events: int | None,
+    fps: float | None,
+    speed: float | None,
+    duration: float | None,
+    begin: float | None,
+    end: float | None,
+    moments: int | None,
+    size: tuple[int, int] | None,
+    color: str | None,
+    trails: bool,
+    velocities: bool,
+    flash: bool,
+    dark: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Draw a run: simulates SCENE, or reads LOG, and writes what happened to a file that shows it.
+
+    Frames are exact at their times, at any rate: they come from the log, not from a clock that ticks along. A movie
+    shows the whole run in 10 seconds unless told otherwise. The html file is a player with a play button, a time
+    line and steps from event to event; it needs no network and nothing else.
+
+    \b
+    Examples:
+      eventsim animate break --out break.mp4
+      eventsim animate break.csv --out slow.gif --from 0.3 --to 0.6 --trails --flash
+      eventsim animate gas --out gas.html --dark
+      eventsim animate funnel --out funnel.png --moments 4 --size 400x600
+
+    \b
+    Keys of --json:
+      scene, out, format       as typed; the file written; its suffix without the dot
+      events                   rows of the log
+      bytes, elapsed_s         the size of the file; seconds of drawing and writing
+
+    Exit codes: 0 done; 2 bad usage, scene or file, or no ffmpeg for an mp4; 130 interrupted, no file left.
+    """
+    target = writable(out, "--out", PICTURE_SUFFIXES)
+    assert target is not None
+    if speed is not None and duration is not None:
+        raise click.UsageError("--speed and --duration exclude each other: the one follows from the other")
+    for option, value, suffixes in (("--moments", moments, (".png",)), ("--fps", fps, (".mp4", ".gif"))):
+        if value is not None and target.suffix.lower() not in suffixes:
+            raise click.UsageError(f"{option} is for {' and '.join(suffixes)} files, and --out is {target}")
+
+    from time import perf_counter
+
+    from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.source import log_of
+    from eventsim.cli.words import as_json_text, file_size, plural
+    from eventsim.show.animate import MOMENTS, Film, animate
+    from eventsim.show.picture import Look
+
+    film = Film(fps, speed, duration, begin, end, moments or MOMENTS)
+    look = Look(size, color, trails, velocities, flash, dark)
+    log = log_of(scene, settings, seed, until, events, quiet)
+    began = perf_counter()
+    with ProgressBar(quiet=quiet) as progress:
+        animate(log, target, film, look, progress)
+    elapsed = perf_counter() - began
+    if as_json:
+        data = {"scene": scene, "out": str(target), "format": target.suffix[1:].lower(), "events": len(log)}
+        click.echo(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
+    elif not quiet:
+        click.echo(f"{plural(len(log), 'event')} drawn to {target} ({file_size(target)}) in {elapsed:.2g} s")

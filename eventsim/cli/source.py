@@ -1,0 +1,67 @@
+"""From what was typed to a log: a file, or a scene that is simulated now."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from eventsim.cli.options import Verb
+from eventsim.cli.target import LOG_SUFFIXES
+
+if TYPE_CHECKING:
+    from eventsim.record.log import EventLog
+
+GROWING = ".part"
+
+
+def stop_options(verb: Verb) -> Verb:
+    """Add --until and --events, for a scene."""
+    events = click.option(
+        "--events", type=click.IntRange(min=0), metavar="N", help="Of a scene: stop after N events."
+    )
+    until = click.option("--until", type=float, metavar="T", help="Of a scene: simulate until this time.")
+    return until(events(verb))
+
+
+def log_of(
+    source: str,
+    settings: Sequence[str],
+    seed: int | None,
+    until: float | None,
+    events: int | None,
+    quiet: bool,
+) -> EventLog:
+    """Return the log that is meant: one read from a file, or that of a scene simulated now.
+
+    Raises click.UsageError where options of a scene are given with a log, or nothing says when a scene stops.
+    """
+    if Path(source).suffix.lower() in LOG_SUFFIXES or source.endswith(GROWING):
+        if settings or seed is not None or until is not None or events is not None:
+            raise click.UsageError(f"{source} is a log: --set, --seed, --until and --events are for scenes")
+        from eventsim.record.log import load_log
+
+        return load_log(source)
+
+    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.exits import INTERRUPTED
+    from eventsim.cli.progress import ProgressBar
+    from eventsim.simulate import simulate
+
+    chosen = chosen_scene(source, settings, seed)
+    if until is None and events is None and chosen.until is None and chosen.events is None:
+        raise click.UsageError(
+            f"nothing says when to stop {source}: give --until T or --events N, or a key until or events in the scene"
+        )
+    with ProgressBar(quiet=quiet) as progress:
+        run = simulate(chosen, until=until, events=events, log=True, progress=progress)
+    if run.stopped == "interrupted":
+        click.echo("interrupted", err=True)
+        click.get_current_context().exit(INTERRUPTED)
+    if run.reason is not None and not quiet:
+        click.echo(f"stopped early: {run.reason}", err=True)
+    log = run.log
+    assert log is not None
+    return log

@@ -1,0 +1,78 @@
+"""Mean squared displacement: ballistic at first, then diffusive, in a box at last bounded.
+
+Source for the diffusive line: Enskog's D = kT / (m rate), rate = contacts of a disk per time; S. Chapman, T. G. Cowling,
+The Mathematical Theory of Non-uniform Gases (1970), chapter 16; good at low density.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from eventsim.errors import LogError
+from eventsim.record.events import Floats
+from eventsim.record.log import EventLog
+from eventsim.show.figures.flights import FlightTable, flight_table, replay_with_time
+from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of
+
+SAMPLES, LAGS = 600, 40
+"""Times at which displacements are read; lags shown, evenly spread on a logarithmic scale."""
+
+
+def draw(figure: Figure, log: EventLog) -> None:
+    """Draw the displacement of finite masses against the lag, averaged over disks and starting times."""
+    replay = replay_with_time(log)
+    mass = log.scene.disks.mass
+    moving = np.flatnonzero(np.isfinite(mass))
+    start, end = replay.span
+    times = np.linspace(start, end, SAMPLES)
+    table = flight_table(replay)
+    way = np.stack([displacements(table, disk, times) for disk in moving.tolist()], axis=1)  # (T, M, 2)
+    lags = np.unique(np.geomspace(1, SAMPLES // 2, LAGS).astype(int))
+    squared = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2) for lag in lags.tolist()]
+    mean = np.array([part.mean() for part in squared])
+    if not mean.any():
+        raise LogError("msd: nothing moves in this run")
+    error = np.array(
+        [part.mean(axis=0).std(ddof=1) if len(moving) > 1 else 0.0 for part in squared]
+    ) / np.sqrt(len(moving))
+    tau = lags * (times[1] - times[0])
+    axes = figure.add_subplot()
+    axes.errorbar(
+        tau, mean, error, fmt="o", ms=3.5, lw=1, color=BLUE, label="measured, standard error over disks"
+    )
+    weight = table.duration * np.isin(table.disk, moving)
+    velocity2 = float(np.average((table.velocity**2).sum(axis=1), weights=weight))
+    axes.plot(tau, velocity2 * tau**2, color=ORANGE, lw=1.3, label=r"ballistic, $\langle v^2\rangle\,\tau^2$")
+    pairs = int((log.b >= 0).sum())
+    verdict = ""
+    if pairs and len(np.unique(mass)) == 1 and log.scene.gravity is None:
+        rate = 2.0 * pairs / (len(mass) * (end - start))
+        diffusion = 0.5 * velocity2 / rate
+        axes.plot(
+            tau,
+            4.0 * diffusion * tau,
+            color=GREEN,
+            lw=1.3,
+            label=r"Enskog, $4 D \tau$, $D = kT / (m \cdot$ rate)",
+        )
+        verdict = f", Enskog's D = {diffusion:.3g} {LENGTH}$^2$ / {TIME}"
+    axes.set(xscale="log", yscale="log", ylim=(0.5 * mean.min(), 4.0 * mean.max()))
+    label(
+        axes, f"lag [{TIME}]", f"mean squared displacement [{LENGTH}$^2$]",
+        f"{name_of(log.scene.name)}: {len(moving):,} disks{verdict}",
+    )  # fmt: skip
+    axes.legend(frameon=False)
+
+
+def displacements(table: FlightTable, disk: int, times: Floats) -> Floats:
+    """Return how far a disk has come since the start (T, 2) at ascending times, wraps not taken back."""
+    low, high = np.searchsorted(table.disk, [disk, disk + 1])
+    time, duration = table.time[low:high], table.duration[low:high, None]
+    velocity, pull = table.velocity[low:high], table.pull[low:high]
+    gone = np.zeros_like(velocity)
+    gone[1:] = np.cumsum(duration * (velocity + 0.5 * duration * pull), axis=0)[:-1]
+    flight = np.maximum(np.searchsorted(time, times, side="right") - 1, 0)
+    lag = (times - time[flight])[:, None]
+    result: Floats = gone[flight] + lag * (velocity[flight] + 0.5 * lag * pull[flight])
+    return result

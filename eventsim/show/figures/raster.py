@@ -1,0 +1,50 @@
+"""Raster: a mark for every event of every disk, against time."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from eventsim.record.events import Kind
+from eventsim.record.log import EventLog
+from eventsim.show.figures.flights import replay_with_time, with_events
+from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, name_of
+
+MARKS = {
+    Kind.PAIR: (BLUE, "|"),
+    Kind.WALL: (ORANGE, "|"),
+    Kind.REST: (GREEN, "o"),
+    Kind.KICK: ("#D55E00", "^"),
+}
+MOST_VECTORS = 20_000
+"""More marks than these are put into an svg or pdf as pixels."""
+
+
+def draw(figure: Figure, log: EventLog) -> None:
+    """Draw the raster, and above it how many events there were in each hundredth of the time."""
+    with_events(log)
+    span = replay_with_time(log).span
+    n = len(log.scene.disks)
+    over, axes = figure.subplots(2, 1, sharex=True, height_ratios=[1, 4])
+    height = min(max(200.0 / n, 0.8), 12.0)
+    for kind in Kind:
+        rows = log.rows[log.kind == kind]
+        if len(rows) == 0:
+            continue
+        pairs = rows["b"] >= 0
+        time = np.concatenate([rows["time"], rows["time"][pairs]])
+        disk = np.concatenate([rows["a"], rows["b"][pairs]])
+        colour, marker = MARKS[kind]
+        axes.plot(
+            time, disk, marker, color=colour, markersize=height, markeredgewidth=0.9, linestyle="none",
+            label=f"{kind.label}: {len(rows):,}", rasterized=len(time) > MOST_VECTORS,
+        )  # fmt: skip
+    counts, edges = np.histogram(log.time, bins=100, range=span)
+    over.stairs(counts / (edges[1] - edges[0]), edges, color="#39424e", fill=True, alpha=0.35)
+    label(over, "", f"events / {TIME}", f"{name_of(log.scene.name)}: {len(log):,} events of {n:,} disks")
+    label(axes, f"time [{TIME}]", "disk", "")
+    axes.set(xlim=span, ylim=(-0.7, n - 0.3))
+    axes.grid(visible=False)
+    if n <= 20:
+        axes.set_yticks(range(n))
+    figure.legend(loc="outside lower right", ncols=4, frameon=False, fontsize=9)

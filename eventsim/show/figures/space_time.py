@@ -1,0 +1,48 @@
+"""Space-time: where along a line every disk is, against time."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from eventsim.record.events import Kind
+from eventsim.record.log import EventLog
+from eventsim.show import outlines
+from eventsim.show.colouring import amounts
+from eventsim.show.figures.flights import flight_table, replay_with_time
+from eventsim.show.figures.style import LENGTH, TIME, label, name_of
+from eventsim.show.figures.trajectories import wrapped_pieces
+
+MOST_VECTORS = 20_000
+
+
+def draw(figure: Figure, log: EventLog) -> None:
+    """Draw the coordinate along which the disks spread most; dots are contacts of two disks."""
+    replay = replay_with_time(log)
+    scene, table = log.scene, flight_table(replay)
+    spread = np.ptp(table.place, axis=0)
+    axis = int(spread[1] > spread[0])
+    time, ends = table.pieces()
+    lines = np.stack([time, ends[:, :, axis]], axis=2)
+    disk = np.repeat(table.disk, len(lines) // len(table.disk))
+    period = outlines.period_of(scene)[axis]
+    lines, disk = wrapped_pieces(lines, disk, (None, period), (0.0, scene.domain.origin[axis]))
+    axes = figure.add_subplot()
+    shades = amounts()(disk / max(replay.stage.n - 1, 1))
+    axes.add_collection(
+        LineCollection(list(lines), colors=shades, linewidths=1.0, rasterized=len(lines) > MOST_VECTORS),
+        autolim=False,
+    )
+    axes.plot(table.time[table.pair], table.place[table.pair, axis], ".", ms=2.5, color="#1b1f24")
+    shown = outlines.shown_rectangle(log, replay.stage.corner, table.place)
+    axes.set(xlim=replay.span, ylim=(shown[axis], shown[axis + 2]))
+    if scene.domain.size is not None:
+        for edge in (scene.domain.origin[axis], scene.domain.origin[axis] + scene.domain.size[axis]):
+            axes.axhline(edge, color="#39424e", lw=1.2, ls="--" if scene.domain.periodic[axis] else "-")
+    pairs = int((log.kind == Kind.PAIR).sum())
+    label(
+        axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
+        f"{name_of(scene.name)}: {replay.stage.n:,} disks, {pairs:,} contacts between them (dots)",
+    )  # fmt: skip
+    axes.grid(visible=False)

@@ -1,0 +1,36 @@
+"""The style that all figures share: size, colours, labels with units."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from eventsim.show.palette import KINDS, LIGHT
+
+SIZE, DPI = (7.2, 4.4), 150
+"""Inches; 1080 by 660 pixels: text reads well at the width of a README."""
+
+BLUE, ORANGE, GREEN, PINK = KINDS[0], KINDS[1], KINDS[2], KINDS[3]
+RED = KINDS[5]
+TIME, LENGTH, SPEED = "time", "length", "length / time"
+"""Units: those of the scene."""
+
+
+def new_figure() -> Figure:
+    """Return an empty figure that keeps labels from overlapping."""
+    return Figure(figsize=SIZE, dpi=DPI, facecolor="white", layout="constrained")
+
+
+def label(axes: Axes, x: str, y: str, title: str) -> None:
+    """Put labels and a title on axes, and take away what only makes noise."""
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    axes.set_title(title, loc="left", fontsize=11, color=LIGHT.ink, wrap=True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(visible=True, color="#e3e6ea", linewidth=0.7)
+    axes.set_axisbelow(True)
+
+
+def name_of(name: str | None) -> str:
+    """Return how a title calls a scene."""
+    return name or "this scene"

@@ -1,0 +1,88 @@
+"""Trajectories: the ways of the disks through the scene, their contacts marked."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from matplotlib.patches import Rectangle as Box
+
+from eventsim.record.events import Floats
+from eventsim.record.log import EventLog
+from eventsim.show import outlines
+from eventsim.show.figures.flights import flight_table, replay_with_time
+from eventsim.show.figures.style import LENGTH, label, name_of
+from eventsim.show.images import lines_with_images
+from eventsim.show.palette import KINDS, LIGHT
+
+MOST_DISKS = 16
+"""More ways than these cannot be told apart: of larger scenes the first disks are drawn."""
+
+MOST_COLOURS = 7
+
+
+def draw(figure: Figure, log: EventLog) -> None:
+    """Draw the ways of up to MOST_DISKS disks; dots are contacts, circles the disks at the end."""
+    replay = replay_with_time(log)
+    scene, n = log.scene, replay.stage.n
+    disks = np.arange(min(n, MOST_DISKS))
+    table = flight_table(replay).of(disks)
+    axes = figure.add_subplot(aspect="equal")
+    colours = np.array(KINDS[:MOST_COLOURS] if n <= MOST_COLOURS else [])
+    shades = (
+        colours[disks] if len(colours) else colormaps["turbo"](0.05 + 0.9 * disks / max(len(disks) - 1, 1))
+    )
+    _, ends = table.pieces()
+    disk = np.repeat(table.disk, len(ends) // max(len(table.disk), 1))
+    ends, disk = wrapped_pieces(ends, disk, outlines.period_of(scene), scene.domain.origin)
+    shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
+    axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]))
+    ways = LineCollection(list(ends), colors=shades[disk], linewidths=0.9, alpha=0.75)
+    axes.add_collection(ways, autolim=False)
+    if scene.domain.size is not None:
+        inside = Box(scene.domain.origin, *scene.domain.size, transform=axes.transData)
+        ways.set_clip_path(inside)
+    hit = ~table.first
+    axes.scatter(
+        *table.place[hit].T, s=7, c=shades[table.disk[hit]], edgecolors="white", linewidths=0.3, zorder=3
+    )
+    last = replay.final().position[disks]
+    circles = [
+        Circle((x, y), r) for (x, y), r in zip(last.tolist(), scene.disks.radius[disks].tolist(), strict=True)
+    ]
+    axes.add_collection(
+        PatchCollection(circles, facecolor=shades, edgecolor=LIGHT.edge, linewidth=0.6, alpha=0.9, zorder=4)
+    )
+    hard, open_ = outlines.boundary_lines(scene)
+    walls = [*lines_with_images(outlines.wall_lines(scene), scene), *hard]
+    axes.add_collection(LineCollection(walls, colors=LIGHT.wall, linewidths=1.6), autolim=False)
+    axes.add_collection(
+        LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False
+    )
+    which = f"{len(disks)} of {n} disks" if len(disks) < n else "all disks" if n > 1 else "the disk"
+    label(
+        axes,
+        f"x [{LENGTH}]",
+        f"y [{LENGTH}]",
+        f"{name_of(scene.name)}: the ways of {which}, {int(hit.sum()):,} contacts (dots)",
+    )
+    axes.grid(visible=False)
+
+
+def wrapped_pieces(
+    ends: Floats, disk: Floats, period: tuple[float | None, float | None], corner: tuple[float, float]
+) -> tuple[Floats, Floats]:
+    """Return pieces (P, 2, 2), and the disk (P,) of each, repeated in every image of the domain that they pass through."""
+    for axis, length in enumerate(period):
+        if length is None:
+            continue
+        cell = np.floor((ends[:, :, axis] - corner[axis]) / length).astype(np.int64)
+        low, high = cell.min(axis=1), cell.max(axis=1)
+        count = high - low + 1
+        which = np.repeat(np.arange(len(ends)), count)
+        place = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+        ends, disk = ends[which].copy(), disk[which]
+        ends[:, :, axis] -= ((low[which] + place) * length)[:, None]
+    return ends, disk

@@ -1,0 +1,39 @@
+"""Write a figure of a log to a file."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from os import PathLike
+from pathlib import Path
+
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from eventsim.errors import EventsimError
+from eventsim.record.log import EventLog
+from eventsim.show.figures import TITLES
+from eventsim.show.figures.style import new_figure
+from eventsim.show.output import suffix_of, whole_file
+
+SUFFIXES = (".png", ".svg", ".pdf")
+
+
+def write_figure(log: EventLog, kind: str, path: str | PathLike[str]) -> None:
+    """Draw a kind of figure (see `TITLES`) of a log to `path`: .png, .svg or .pdf.
+
+    Raises EventsimError where there is no such kind, the log does not hold what the figure shows, the suffix is unknown
+    or the file cannot be written.
+    """
+    file = Path(path)
+    suffix = suffix_of(file, SUFFIXES, "a figure")
+    if kind not in TITLES:
+        raise EventsimError(f"there is no figure {kind!r}; there are {', '.join(TITLES)}")
+    module = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}")
+    # A file that depends on the log alone: no date, no random names inside an svg.
+    with rc_context({"svg.hashsalt": "eventsim", "svg.fonttype": "path"}):
+        figure = new_figure()
+        FigureCanvasAgg(figure)
+        module.draw(figure, log.expand())
+        dates = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+        with whole_file(file) as part:
+            figure.savefig(part, format=suffix[1:], metadata=dates[suffix])
