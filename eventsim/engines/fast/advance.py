@@ -1,0 +1,83 @@
+"""Time passes without a contact: free flights, wraps around periodic boundaries, the turn of the clock."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.layout import (
+    COUNT,
+    COUNTS,
+    FLAGS,
+    IMMOVABLE,
+    REALS,
+    VX,
+    VY,
+    WORDS,
+    WRAP_DOWN,
+    WRAP_LEFT,
+    WRAP_RIGHT,
+    WRAPS_X,
+    WRAPS_Y,
+    T,
+    X,
+    Y,
+)
+from eventsim.engines.fast.memory import real, store, word
+from eventsim.formulas.motion import position, velocity
+
+
+@inline
+def pull(m, i, g, classes):
+    """A component of the acceleration of disk i; None without gravity."""
+    if g is None:
+        return None
+    if classes is None:
+        return g
+    return 0.0 if word(m.disks, i * WORDS + FLAGS) & IMMOVABLE else g
+
+
+@inline
+def place(m, rules, i, t):
+    """The centre of disk i at time t of its present flight."""
+    f = i * REALS
+    lag = t - real(m.disks, f + T)
+    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    x = position(real(m.disks, f + X), real(m.disks, f + VX), lag, gx)
+    y = position(real(m.disks, f + Y), real(m.disks, f + VY), lag, gy)
+    return x, y
+
+
+@inline
+def speed(m, rules, i, t):
+    """The velocity of disk i at time t of its present flight."""
+    f = i * REALS
+    lag = t - real(m.disks, f + T)
+    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    return velocity(real(m.disks, f + VX), lag, gx), velocity(real(m.disks, f + VY), lag, gy)
+
+
+@inline
+def anchor(m, i, t, x, y, vx, vy):
+    """Begin a new flight of disk i; all predictions that rest on the old one are stale from here on."""
+    f = i * REALS
+    store(m.disks, f + T, t)
+    store(m.disks, f + X, x)
+    store(m.disks, f + Y, y)
+    store(m.disks, f + VX, vx)
+    store(m.disks, f + VY, vy)
+    store(m.disks, i * WORDS + COUNT, (word(m.disks, i * WORDS + COUNT) + 1) & (COUNTS - 1))
+
+
+@inline
+def wrap(m, rules, i, code, t):
+    """Take a disk to the other side of the domain: its coordinate becomes exactly 0 or the period."""
+    x, y = place(m, rules, i, t)
+    vx, vy = speed(m, rules, i, t)
+    if code == WRAP_RIGHT or code == WRAP_LEFT:
+        step = 1 if code == WRAP_RIGHT else -1
+        x = 0.0 if step > 0 else rules.width
+        store(m.disks, i * WORDS + WRAPS_X, word(m.disks, i * WORDS + WRAPS_X) + step)
+    else:
+        step = -1 if code == WRAP_DOWN else 1
+        y = 0.0 if step > 0 else rules.height
+        store(m.disks, i * WORDS + WRAPS_Y, word(m.disks, i * WORDS + WRAPS_Y) + step)
+    anchor(m, i, t, x, y, vx, vy)

@@ -1,0 +1,181 @@
+"""The event calendar: one scheduled event a disk, in a linked list of disks per day; push and take in O(1).
+
+The days are so short that there is less than one event in most of them, so the earliest event is found by walking through
+the list of the present day.
+"""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.layout import (
+    BUCKET,
+    COLUMN,
+    COUNT,
+    COUNTS,
+    DUE,
+    NEXT,
+    NOTHING,
+    PARTNER,
+    PARTNER_COUNT,
+    PREVIOUS,
+    REALS,
+    ROW,
+    WORDS,
+)
+from eventsim.engines.fast.memory import prefetch, real, store, word
+
+
+@inline
+def day_of(grid, time, day):
+    """The day of a time, as seen on `day`: not before it, not beyond the end of the calendar."""
+    last = day + grid.days - 1
+    exact = time * grid.days_per_time
+    if not exact < last:
+        return last
+    due = int(exact)
+    return due if due > day else day
+
+
+@inline
+def push(m, grid, i, day):
+    """Put disk i into the calendar."""
+    bucket = day_of(grid, real(m.disks, i * REALS + DUE), day) & (grid.days - 1)
+    follower = word(m.buckets, bucket)
+    store(m.disks, i * WORDS + BUCKET, bucket)
+    store(m.disks, i * WORDS + NEXT, follower)
+    store(m.disks, i * WORDS + PREVIOUS, -1)
+    store(m.buckets, bucket, i)
+    if follower >= 0:
+        store(m.disks, follower * WORDS + PREVIOUS, i)
+
+
+@inline
+def take(m, i):
+    """Take disk i out of the calendar."""
+    follower, leader = word(m.disks, i * WORDS + NEXT), word(m.disks, i * WORDS + PREVIOUS)
+    if follower >= 0:
+        store(m.disks, follower * WORDS + PREVIOUS, leader)
+    if leader >= 0:
+        store(m.disks, leader * WORDS + NEXT, follower)
+    else:
+        store(m.buckets, word(m.disks, i * WORDS + BUCKET), follower)
+
+
+@inline
+def first(m, grid, day, limit):
+    """(disk, day, others): the earliest event, which stays in the calendar, and how many others have its time.
+
+    disk -1: nothing is due up to `limit`; -2: many days without any event.
+    """
+    quiet = 0
+    while True:
+        bucket = day & (grid.days - 1)
+        head = word(m.buckets, bucket)
+        earliest, others, i = -1, 0, head
+        time = float(day + 1) * grid.day_length
+        while i >= 0:
+            due = real(m.disks, i * REALS + DUE)
+            if due < time:
+                time, earliest, others = due, i, 0
+            elif due == time and earliest >= 0:
+                others += 1
+            i = word(m.disks, i * WORDS + NEXT)
+        if earliest >= 0:
+            return earliest, day, others
+        if float(day - 1) * grid.day_length > limit:  # a day less: the day of a time is rounded
+            return -1, day, 0
+        quiet += 1
+        if quiet > 4 * grid.days:
+            return -2, day, 0
+        store(m.buckets, bucket, -1)
+        day += 1
+        fetch_coming(m, grid, day, grid.look_ahead)
+        i = head
+        while i >= 0:  # due on a later day
+            follower = word(m.disks, i * WORDS + NEXT)
+            push(m, grid, i, day)
+            i = follower
+
+
+@inline
+def is_mutual(m, i):
+    """Whether the contact of disk i is fresh, and its partner expects it as well, and nothing else at that time."""
+    j = word(m.disks, i * WORDS + PARTNER)
+    if j < 0 or word(m.disks, j * WORDS + PARTNER) != i:
+        return False
+    if real(m.disks, j * REALS + DUE) != real(m.disks, i * REALS + DUE):
+        return False
+    fresh = word(m.disks, i * WORDS + PARTNER_COUNT) == word(m.disks, j * WORDS + COUNT)
+    return fresh and word(m.disks, j * WORDS + PARTNER_COUNT) == word(m.disks, i * WORDS + COUNT)
+
+
+@inline
+def is_stale(m, i):
+    """Whether the partner of disk i has begun another flight since the prediction."""
+    j = word(m.disks, i * WORDS + PARTNER)
+    if j < 0:
+        return False
+    return word(m.disks, i * WORDS + PARTNER_COUNT) & (COUNTS - 1) != word(m.disks, j * WORDS + COUNT)
+
+
+@inline
+def unsettled(m, i):
+    """Among the events that have the time of disk i's, one that comes before contacts: a wrap, a crossing, a stale one; or -1."""
+    time = real(m.disks, i * REALS + DUE)
+    k = word(m.buckets, word(m.disks, i * WORDS + BUCKET))
+    while k >= 0:
+        if real(m.disks, k * REALS + DUE) == time:
+            code = word(m.disks, k * WORDS + PARTNER)
+            if NOTHING <= code < 0 or is_stale(m, k):
+                return k
+        k = word(m.disks, k * WORDS + NEXT)
+    return -1
+
+
+@inline
+def fetch_record(m, i):
+    """Ask for both lines of a disk."""
+    if i >= 0:
+        prefetch(m.disks, i * REALS)
+        prefetch(m.disks, i * REALS + 8)
+
+
+@inline
+def fetch_around(m, grid, i, disks):
+    """Ask for the slots of the cells around disk i; or for the first line of each disk in them."""
+    depth, width = grid.depth, grid.columns + 2
+    start = depth * (word(m.disks, i * WORDS + COLUMN) - 1 + width * (word(m.disks, i * WORDS + ROW) - 1))
+    for _ in range(3):
+        if disks:
+            for k in range(3 * depth):
+                prefetch(m.disks, word(m.slots, start + k) * REALS)
+        else:
+            prefetch(m.slots, start // 2)  # two int32 to a float64
+        start += depth * width
+
+
+@inline
+def fetch_coming(m, grid, day, look_ahead):
+    """Ask for what the events of coming days need, in four stages; each reads what the one before it asked for."""
+    if look_ahead is None:
+        return
+    mask = grid.days - 1
+    fetch_record(m, word(m.buckets, (day + look_ahead) & mask))
+    i = word(m.buckets, (day + look_ahead * 3 // 4) & mask)
+    if i >= 0:
+        fetch_record(m, word(m.disks, i * WORDS + PARTNER))
+        fetch_record(m, word(m.disks, i * WORDS + NEXT))
+        fetch_around(m, grid, i, False)
+    i = word(m.buckets, (day + look_ahead // 2) & mask)
+    if i >= 0:
+        fetch_around(m, grid, i, True)
+        j = word(m.disks, i * WORDS + PARTNER)
+        if j >= 0:
+            fetch_around(m, grid, j, False)
+            fetch_record(m, word(m.disks, j * WORDS + NEXT))
+            fetch_record(m, word(m.disks, j * WORDS + PREVIOUS))
+    i = word(m.buckets, (day + look_ahead // 4) & mask)
+    if i >= 0:
+        j = word(m.disks, i * WORDS + PARTNER)
+        if j >= 0:
+            fetch_around(m, grid, j, True)

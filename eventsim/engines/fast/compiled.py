@@ -1,0 +1,85 @@
+"""How Python becomes machine code here: the two decorators, where compiled kernels are kept, the formulas made callable."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from numba import config, njit, types
+from numba.extending import overload, register_jitable
+
+from eventsim.formulas import contact, crossing, impulse, motion, parabola, real
+from eventsim.formulas.walls import face, round
+
+SOURCES = Path(__file__).parent, Path(motion.__file__).parent
+"""The folders whose files a compiled kernel is made from: numba itself would not notice an edit in another file."""
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels are kept: in the user's cache, by a hash of the sources."""
+    if "EVENTSIM_CACHE_DIR" in os.environ:
+        base = Path(os.environ["EVENTSIM_CACHE_DIR"])
+    elif sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA", Path.home())) / "eventsim"
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches" / "eventsim"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "eventsim"
+    return base / f"fast-{_hash_of_sources()}"
+
+
+def _hash_of_sources() -> str:
+    digest = hashlib.sha256()
+    for folder in SOURCES:
+        for path in sorted(folder.rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+inline = njit(forceinline=True, error_model="numpy")
+"""A part of a kernel; without force a small helper stays a real call, which costs a fifth of the rate."""
+
+
+part = njit(error_model="numpy")
+"""A part that is rarely reached, and stays a call of its own."""
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """A compiled function that Python calls; kept on disk where that is possible."""
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(_FOLDER)  # read when the function is decorated; the caller's own setting is left alone
+    try:
+        return njit(error_model="numpy", cache=True)(function)
+    except RuntimeError:  # no folder to write to
+        return njit(error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = before
+
+
+_FOLDER = cache_folder()
+
+
+@overload(real.sqrt, jit_options={"forceinline": True})
+def _sqrt(x):  # without annotations: numba compares them with those of the lambda
+    if isinstance(x, types.Float):
+        return lambda x: math.sqrt(x)
+    return None
+
+
+def _register(module: ModuleType, **options: Any) -> None:
+    for function in vars(module).values():
+        if callable(function) and getattr(function, "__module__", None) == module.__name__:
+            if not isinstance(function, type):
+                register_jitable(**options)(function)
+
+
+for _module in (motion, crossing, contact, impulse):
+    _register(_module, forceinline=True, error_model="numpy")
+for _module in (parabola, face, round):
+    _register(_module, error_model="numpy")

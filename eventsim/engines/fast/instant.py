@@ -1,0 +1,125 @@
+"""Contacts of equal time: found here, all of them, for the reference engine's law of simultaneous contacts."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.advance import place, pull
+from eventsim.engines.fast.compiled import inline, kernel
+from eventsim.engines.fast.layout import (
+    COLUMN,
+    DAY,
+    DUE,
+    NEXT,
+    RADIUS,
+    REALS,
+    ROW,
+    VX,
+    VY,
+    WORDS,
+    T,
+    X,
+    Y,
+)
+from eventsim.engines.fast.loop import pointers
+from eventsim.engines.fast.memory import real, word
+from eventsim.engines.fast.predict import corner_slot, images, pair_is_due, shape_time
+from eventsim.formulas.crossing import crossing_delay
+
+
+@kernel
+def contacts_at(arrays, grid, rules, counts, now, found):
+    """Write all contacts at exactly the time `now` to `found` (M, 4): disk, partner (walls: -1 - place), image or side.
+
+    Returns how many there are, also where `found` is too short.  A contact of two disks may come twice.
+    """
+    m = pointers(arrays)
+    count = 0
+    i = word(m.buckets, counts[DAY] & (grid.days - 1))
+    while i >= 0:
+        if real(m.disks, i * REALS + DUE) == now:
+            count = _pairs_at(m, grid, rules, i, now, found, count, m.slots)
+            count = _shapes_at(m, rules, i, now, found, count, rules.features)
+            count = _walls_at(m, grid, rules, i, now, found, count)
+        i = word(m.disks, i * WORDS + NEXT)
+    return count
+
+
+@kernel
+def due_at(arrays, grid, counts, now, found):
+    """Write the disks that are scheduled at `now` to found[:, 0]; how many there are, also where it is too short."""
+    m = pointers(arrays)
+    count = 0
+    i = word(m.buckets, counts[DAY] & (grid.days - 1))
+    while i >= 0:
+        if real(m.disks, i * REALS + DUE) == now:
+            count = _add(found, count, i, 0, 0, 0)
+        i = word(m.disks, i * WORDS + NEXT)
+    return count
+
+
+@inline
+def _add(found, count, i, partner, kx, ky):
+    if count < len(found):
+        found[count, 0], found[count, 1], found[count, 2], found[count, 3] = i, partner, kx, ky
+    return count + 1
+
+
+@inline
+def _pairs_at(m, grid, rules, i, now, found, count, slots):
+    if slots is None:
+        return _pairs_of_everyone(m, grid, rules, i, now, found, count)
+    x, y = place(m, rules, i, now)
+    start = corner_slot(m, grid, i)
+    for _ in range(3):
+        for k in range(3 * grid.depth):
+            j = word(m.slots, start + k)
+            if j != grid.n and j != i:
+                kx, ky = images(m, rules, i, j, now, x, y)
+                if pair_is_due(m, rules, i, j, kx, ky) == now:
+                    count = _add(found, count, i, j, kx, ky)
+        start += grid.depth * (grid.columns + 2)
+    return count
+
+
+@inline
+def _pairs_of_everyone(m, grid, rules, i, now, found, count):
+    span_x = 0 if rules.length_x is None else 1
+    span_y = 0 if rules.length_y is None else 1
+    for j in range(grid.n):
+        for kx in range(-span_x, span_x + 1):
+            for ky in range(-span_y, span_y + 1):
+                if j != i and pair_is_due(m, rules, i, j, kx, ky) == now:
+                    count = _add(found, count, i, j, kx, ky)
+    return count
+
+
+@inline
+def _shapes_at(m, rules, i, now, found, count, features):
+    if features is None:
+        return count
+    for k in range(features):
+        time, side = shape_time(m, rules, i, k)
+        if time == now:
+            count = _add(found, count, i, -1 - (rules.first_feature + k), side, 0)
+    return count
+
+
+@inline
+def _walls_at(m, grid, rules, i, now, found, count):
+    f = i * REALS
+    t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
+    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    x, u, y, w = real(m.disks, f + X), real(m.disks, f + VX), real(m.disks, f + Y), real(m.disks, f + VY)
+    column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
+    count = _walls_across(x, u, t, r, gx, rules.width, column, grid.columns, now, rules.wall_x, i, found, count)
+    return _walls_across(y, w, t, r, gy, rules.height, row, grid.rows, now, rules.wall_y, i, found, count)
+
+
+@inline
+def _walls_across(x, v, t, r, g, length, k, last, now, wall, i, found, count):
+    if wall is None:
+        return count
+    if k == 1 and t + crossing_delay(x, v, g, r, 1.0) == now:
+        count = _add(found, count, i, -1 - wall, 1, 0)
+    if k == last and t + crossing_delay(x, v, g, length - r, -1.0) == now:
+        count = _add(found, count, i, -2 - wall, -1, 0)
+    return count

@@ -1,0 +1,127 @@
+"""What a disk is in memory: one record of two cache lines, and the numbers that stand for its next event.
+
+Line 0 is all that a neighbour's prediction reads, line 1 the disk's own affairs.  Record n is a sentinel of NaNs that no disk
+ever meets: it fills the empty slots of cells.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+REALS, WORDS = 16, 32
+"""float64 and int32 numbers in a record."""
+
+X, Y, VX, VY, T, RADIUS, DUE, CONTACT_TIME = 0, 1, 2, 3, 4, 5, 8, 9
+"""Places of float64 numbers: the flight (as in the reference engine), the time of the next event, of the last contact."""
+
+MET, COUNT, FLAGS, LABEL = 12, 13, 14, 15
+"""Places of int32 numbers in line 0: whom the disk met last, invalidation count, flags, its number in the scene."""
+
+PARTNER, PARTNER_COUNT, PREVIOUS, NEXT, BUCKET, COLUMN, ROW = 20, 21, 22, 23, 24, 25, 26
+"""In line 1: the next event and its partner's count when it was predicted; the calendar's links; the cell, counted from 1."""
+
+AT_ONCE, WRAPS_X, WRAPS_Y, MET_KX, MET_KY = 27, 28, 29, 30, 31
+"""In line 1: contacts at the time of the last one; wraps; the image in which it was met (of a wall: the side)."""
+
+EDGE, IMMOVABLE, TRACER = 1, 2, 4
+"""Flags: in a cell at the border of the grid; infinite mass; no mass."""
+
+CLASSES = IMMOVABLE | TRACER
+
+NOBODY, SEVERAL = -1, -(2**31)
+"""Values of MET besides a disk and -2 - place of a wall; SEVERAL: MET_KX is the first of a chain in the table `several`."""
+
+RIGHT, LEFT, UP, DOWN = -1, -2, -3, -4
+WRAP_RIGHT, WRAP_LEFT, WRAP_UP, WRAP_DOWN = -5, -6, -7, -8
+NOTHING = -9
+WALL = -16
+"""Values of PARTNER besides a disk: cell crossings, wraps, no event; WALL - 2 place - (1 if the side is -1)."""
+
+COUNTS = 1 << 30
+"""Invalidation counts stay below; the bit itself in PARTNER_COUNT says that two events share the time of this one."""
+
+
+class Arrays(NamedTuple):
+    """The memory of a kernel: arrays where Python makes it, pointers inside; None is what the scene does not need.
+
+    several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  rows: the
+    log's buffer, bytes.
+    """
+
+    disks: object
+    buckets: object
+    slots: object
+    near: object
+    several: object
+    mass: object
+    features: object
+    rows: object
+
+
+class Rules(NamedTuple):
+    """What the scene says; None: it does not have that.
+
+    wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
+    disks or tracers.  features: number of wall shapes; first_feature: the place of the first.  at_once_limit: contacts at one
+    instant that are too many.
+    """
+
+    gx: object
+    gy: object
+    length_x: object
+    length_y: object
+    wall_x: object
+    wall_y: object
+    width: float
+    height: float
+    pair_restitution: float
+    wall_restitution: float
+    duration: object
+    classes: object
+    common_mass: float
+    features: object
+    first_feature: int
+    at_once_limit: int
+
+
+class Grid(NamedTuple):
+    """Disks, cells and the calendar.
+
+    n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell.  low: the corner of the grid.
+    days: buckets, a power of two.  lanes: eight pairs at a time, or None.  look_ahead: days at which memory is prefetched, or None.
+    """
+
+    n: int
+    columns: int
+    rows: int
+    depth: int
+    low_x: float
+    low_y: float
+    side_x: float
+    side_y: float
+    days: int
+    day_length: float
+    days_per_time: float
+    lanes: object
+    look_ahead: object
+
+
+(
+    STATUS_BUDGET,
+    STATUS_LIMIT,
+    STATUS_EVENTS,
+    STATUS_ROWS,
+    STATUS_TIE,
+    STATUS_FULL,
+    STATUS_LEFT,
+    STATUS_STUCK,
+    STATUS_IDLE,
+) = range(9)
+"""Why a kernel returned: its steps are done; no event before the limit; enough events; the row buffer is full; contacts of equal
+time; a full cell; a disk has left the grid; an instant does not end; a long time without events."""
+
+DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, DISK, STEPS = range(11)
+"""Places in `counts`; DISK: the one that a status is about."""
+
+NOW, DEEPEST, OUTER_X, OUTER_Y = range(4)
+"""Places in `sums`: the time, the deepest overlap, momentum from outside."""

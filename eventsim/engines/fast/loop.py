@@ -1,0 +1,216 @@
+"""The loop: take the earliest event, advance, resolve, predict; a kernel that returns whenever Python is needed."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.advance import anchor, place, speed, wrap
+from eventsim.engines.fast.calendar import first, is_mutual, is_stale, push, take, unsettled
+from eventsim.engines.fast.cells import enter, leave
+from eventsim.engines.fast.compiled import inline, kernel
+from eventsim.engines.fast.layout import (
+    AT_ONCE,
+    COLUMN,
+    CONTACT_TIME,
+    CROSSINGS,
+    DAY,
+    DISK,
+    DOWN,
+    DUE,
+    EVENTS,
+    LEFT,
+    NOW,
+    PARTNER,
+    PARTNER_COUNT,
+    COUNTS,
+    REALS,
+    RIGHT,
+    ROW,
+    ROW_COUNT,
+    STALE,
+    STATUS_BUDGET,
+    STATUS_EVENTS,
+    STATUS_FULL,
+    STATUS_IDLE,
+    STATUS_LEFT,
+    STATUS_LIMIT,
+    STATUS_ROWS,
+    STATUS_STUCK,
+    STATUS_TIE,
+    STEPS,
+    UP,
+    WALL,
+    WORDS,
+    WRAP_DOWN,
+    WRAP_LEFT,
+    WRAP_RIGHT,
+    WRAP_UP,
+    WRAPS,
+    Arrays,
+)
+from eventsim.engines.fast.memory import pointer, real, store, word
+from eventsim.engines.fast.predict import predict
+from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
+
+
+@inline
+def pointers(a):
+    """The pointers of the arrays."""
+    return Arrays(
+        pointer(a.disks),
+        pointer(a.buckets),
+        pointer(a.slots),
+        pointer(a.near),
+        pointer(a.several),
+        pointer(a.mass),
+        pointer(a.features),
+        pointer(a.rows),
+    )
+
+
+@inline
+def move(m, grid, rules, i, code, slots):
+    """Move disk i, which is at the edge of its cell, into the next one; True if there is room and the grid goes on there."""
+    if slots is None:
+        return True
+    column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
+    leave(m, grid, rules, i)
+    if code == RIGHT:
+        column += 1
+    elif code == LEFT:
+        column -= 1
+    elif code == UP:
+        row += 1
+    elif code == DOWN:
+        row -= 1
+    elif code == WRAP_RIGHT:
+        column = 1
+    elif code == WRAP_LEFT:
+        column = grid.columns
+    elif code == WRAP_UP:
+        row = 1
+    else:
+        row = grid.rows
+    if column < 1 or row < 1 or column > grid.columns or row > grid.rows:
+        return False
+    return enter(m, grid, rules, i, column, row)
+
+
+@kernel
+def run(arrays, grid, rules, counts, sums, limit, target, budget, room):
+    """Handle events before `limit` (a time) until `target` rows in all, `budget` steps, or no room for a row; the status."""
+    m = pointers(arrays)
+    day, now = counts[DAY], sums[NOW]
+    status = STATUS_BUDGET
+    steps = 0
+    while steps < budget:
+        steps += 1
+        if counts[EVENTS] >= target:
+            status = STATUS_EVENTS
+            break
+        if counts[ROW_COUNT] >= room:
+            status = STATUS_ROWS
+            break
+        i, day, others = first(m, grid, day, limit)
+        if i < 0:
+            status = STATUS_LIMIT if i == -1 else STATUS_IDLE
+            break
+        due = real(m.disks, i * REALS + DUE)
+        if not due < limit:
+            status = STATUS_LIMIT
+            break
+        if others > 0 and not (others == 1 and is_mutual(m, i)):
+            k = unsettled(m, i)
+            if k < 0:
+                now = due
+                status = STATUS_TIE
+                break
+            i = k
+        code = word(m.disks, i * WORDS + PARTNER)
+        now = due
+        if code >= 0:
+            if is_stale(m, i):
+                counts[STALE] += 1
+                take(m, i)
+            elif word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS:
+                status = STATUS_TIE
+                break
+            else:
+                take(m, i)
+                take(m, code)
+                resolve_pair(m, rules, counts, sums, i, code, now)
+                predict(m, grid, rules, code, now, now)
+                push(m, grid, code, day)
+        elif code <= WALL:
+            if word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS:
+                status = STATUS_TIE
+                break
+            take(m, i)
+            resolve_wall(m, rules, counts, sums, i, code, now)
+        else:
+            take(m, i)
+            if code <= WRAP_RIGHT:
+                counts[WRAPS] += 1
+                wrap(m, rules, i, code, now)
+            else:
+                counts[CROSSINGS] += 1
+            if not move(m, grid, rules, i, code, m.slots):
+                status = STATUS_FULL
+                break
+        predict(m, grid, rules, i, now, now)
+        push(m, grid, i, day)
+        if (code >= 0 or code <= WALL) and word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
+            counts[DISK] = i
+            status = STATUS_STUCK
+            break
+    counts[DAY], counts[STEPS], sums[NOW] = day, counts[STEPS] + steps, now
+    return status
+
+
+@kernel
+def fill(arrays, grid, rules, now):
+    """Put every disk into the cell where it is; False if a cell is full."""
+    m = pointers(arrays)
+    for i in range(grid.n):
+        x, y = place(m, rules, i, now)
+        column = min(max(int((x - grid.low_x) / grid.side_x), 0), grid.columns - 1) + 1
+        row = min(max(int((y - grid.low_y) / grid.side_y), 0), grid.rows - 1) + 1
+        if not enter(m, grid, rules, i, column, row):
+            return False
+    return True
+
+
+@kernel
+def predict_all(arrays, grid, rules, counts, now):
+    """Schedule the earliest event of every disk, in an empty calendar."""
+    m = pointers(arrays)
+    for i in range(grid.n):
+        predict(m, grid, rules, i, now, now)
+
+
+@kernel
+def schedule(arrays, grid, counts, now):
+    """Put every disk into an empty calendar."""
+    m = pointers(arrays)
+    day = int(now * grid.days_per_time)
+    counts[DAY] = day
+    for i in range(grid.n):
+        push(m, grid, i, day)
+
+
+@kernel
+def turn_over(arrays, grid, rules, end):
+    """Advance every disk to the end of the window, which becomes time 0."""
+    m = pointers(arrays)
+    for i in range(grid.n):
+        x, y = place(m, rules, i, end)
+        vx, vy = speed(m, rules, i, end)
+        anchor(m, i, end - end, x, y, vx, vy)
+        store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - end)
+
+
+@kernel
+def renew(arrays, grid, rules, counts, i, now, floor):
+    """Predict disk i, which is in the calendar, anew; events before `floor` do not count."""
+    m = pointers(arrays)
+    take(m, i)
+    predict(m, grid, rules, i, now, floor)
+    push(m, grid, i, counts[DAY])

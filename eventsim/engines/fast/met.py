@@ -1,0 +1,71 @@
+"""Whom a disk met last: a pair or a face that met last is not predicted again while both say so and fly straight."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.layout import MET, MET_KX, MET_KY, SEVERAL, WORDS, WRAPS_X, WRAPS_Y
+from eventsim.engines.fast.memory import store, word
+
+
+@inline
+def remember(m, i, partner, kx, ky):
+    """Let disk i remember a contact: a disk and its image, or -2 - place of a wall and the side."""
+    store(m.disks, i * WORDS + MET, partner)
+    store(m.disks, i * WORDS + MET_KX, kx)
+    store(m.disks, i * WORDS + MET_KY, ky)
+
+
+@part
+def _among_several(m, i, partner, kx, ky):
+    row = word(m.disks, i * WORDS + MET_KX)
+    while row >= 0:
+        if word(m.several, 4 * row) == partner:
+            if word(m.several, 4 * row + 1) == kx and word(m.several, 4 * row + 2) == ky:
+                return True
+        row = word(m.several, 4 * row + 3)
+    return False
+
+
+@inline
+def remembers(m, i, partner, kx, ky):
+    """Whether disk i met that disk, in that image between unwrapped disks, last."""
+    met = word(m.disks, i * WORDS + MET)
+    if met == partner:
+        return word(m.disks, i * WORDS + MET_KX) == kx and word(m.disks, i * WORDS + MET_KY) == ky
+    if met == SEVERAL:
+        return _among_several(m, i, partner, kx, ky)
+    return False
+
+
+@inline
+def unwrapped_x(m, i, j, kx):
+    """The image along x between unwrapped disks, from the one between the disks where they are."""
+    return kx + word(m.disks, i * WORDS + WRAPS_X) - word(m.disks, j * WORDS + WRAPS_X)
+
+
+@inline
+def unwrapped_y(m, i, j, ky):
+    """The image along y between unwrapped disks."""
+    return ky + word(m.disks, i * WORDS + WRAPS_Y) - word(m.disks, j * WORDS + WRAPS_Y)
+
+
+@inline
+def just_met(m, i, j, kx, ky):
+    """Whether both remember each other, in this image, as what they met last."""
+    ux, uy = unwrapped_x(m, i, j, kx), unwrapped_y(m, i, j, ky)
+    return remembers(m, i, j, ux, uy) and remembers(m, j, i, -ux, -uy)
+
+
+@part
+def side_met(m, i, place):
+    """The side of a wall that disk i met last, 0 if it met another one since."""
+    met = word(m.disks, i * WORDS + MET)
+    if met == -2 - place:
+        return word(m.disks, i * WORDS + MET_KX)
+    if met == SEVERAL:
+        row = word(m.disks, i * WORDS + MET_KX)
+        while row >= 0:
+            if word(m.several, 4 * row) == -2 - place:
+                return word(m.several, 4 * row + 1)
+            row = word(m.several, 4 * row + 3)
+    return 0

@@ -1,0 +1,404 @@
+"""Predictions: the earliest event that the present flight of a disk can lead to becomes its scheduled event."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.advance import place, pull, speed
+from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.lanes import contact_of_eight, gather_disks
+from eventsim.engines.fast.layout import (
+    CLASSES,
+    COLUMN,
+    COUNT,
+    COUNTS,
+    DOWN,
+    DUE,
+    EDGE,
+    FLAGS,
+    IMMOVABLE,
+    LEFT,
+    MET,
+    NOTHING,
+    PARTNER,
+    PARTNER_COUNT,
+    RADIUS,
+    REALS,
+    RIGHT,
+    ROW,
+    SEVERAL,
+    UP,
+    VX,
+    VY,
+    WALL,
+    WORDS,
+    WRAP_DOWN,
+    WRAP_LEFT,
+    WRAP_RIGHT,
+    WRAP_UP,
+    T,
+    X,
+    Y,
+)
+from eventsim.engines.fast.memory import real, store, word
+from eventsim.engines.fast.met import just_met
+from eventsim.engines.fast.shapes import shape_delay
+from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.motion import position, velocity
+from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.real import NEVER
+
+
+@inline
+def predict(m, grid, rules, i, now, floor):
+    """Schedule the earliest event of disk i that is not before `floor`: a contact, a wrap, or the next cell crossing."""
+    x, y = place(m, rules, i, now)
+    u, w = speed(m, rules, i, now)
+    if word(m.disks, i * WORDS + FLAGS) & EDGE:
+        time, code, shared = _border_events(m, grid, rules, i, now, floor, x, y, u, w)
+    else:
+        time, code = _crossing(m, grid, rules, i, now, x, y, u, w, rules.gx)
+        shared = 0
+    time, code, shared = _shapes(m, rules, i, floor, time, code, shared, rules.features)
+    time, code, shared = _contacts(m, grid, rules, i, now, floor, x, y, time, code, shared, m.slots, grid.lanes)
+    count = 0
+    if code >= 0:
+        count = word(m.disks, code * WORDS + COUNT)
+    store(m.disks, i * REALS + DUE, time)
+    store(m.disks, i * WORDS + PARTNER, code)
+    store(m.disks, i * WORDS + PARTNER_COUNT, count + COUNTS * shared)
+
+
+@inline
+def _is_contact(code):
+    return code >= 0 or code <= WALL
+
+
+@inline
+def _earlier(time, code, shared, new_time, new_code):
+    """The earlier of two events; at one time wraps and crossings come first, and two contacts are noted as `shared`."""
+    if new_time < time:
+        return new_time, new_code, 0
+    if new_time == time and new_time < NEVER and _is_contact(code):
+        if _is_contact(new_code):
+            return time, code, 1
+        return new_time, new_code, 0
+    return time, code, shared
+
+
+@inline
+def _crossing(m, grid, rules, i, now, x, y, u, w, gx):
+    """The next passage into another cell, far from the border of the grid."""
+    low_x = grid.low_x + (word(m.disks, i * WORDS + COLUMN) - 1) * grid.side_x
+    low_y = grid.low_y + (word(m.disks, i * WORDS + ROW) - 1) * grid.side_y
+    if gx is None:
+        delay_x = (low_x + (grid.side_x if u > 0.0 else 0.0) - x) / u
+        delay_y = (low_y + (grid.side_y if w > 0.0 else 0.0) - y) / w
+        delay_x = delay_x if u != 0.0 else NEVER
+        delay_y = delay_y if w != 0.0 else NEVER
+        delay, code = delay_y, (UP if w > 0.0 else DOWN)
+        if delay_x < delay_y:
+            delay, code = delay_x, (RIGHT if u > 0.0 else LEFT)
+        return now + (delay if delay > 0.0 else 0.0), code
+    ax, ay = pull(m, i, gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    delay, code = crossing_delay(x, u, ax, low_x + grid.side_x, -1.0), RIGHT
+    other = crossing_delay(x, u, ax, low_x, 1.0)
+    delay, code = (other, LEFT) if other < delay else (delay, code)
+    other = crossing_delay(y, w, ay, low_y + grid.side_y, -1.0)
+    delay, code = (other, UP) if other < delay else (delay, code)
+    other = crossing_delay(y, w, ay, low_y, 1.0)
+    delay, code = (other, DOWN) if other < delay else (delay, code)
+    return now + delay, code
+
+
+@part
+def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
+    """(time, code, shared) of what disk i, in a cell at the border of the grid, can do alone: cross, wrap, meet a wall."""
+    f = i * REALS
+    t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
+    ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    time, code, shared = NEVER, NOTHING, 0
+    k = word(m.disks, i * WORDS + COLUMN)
+    low = grid.low_x + (k - 1) * grid.side_x
+    if k > 1 or (rules.length_x is None and rules.wall_x is None):
+        new = now + crossing_delay(x, u, ax, low, 1.0)
+        time, code, shared = _earlier(time, code, shared, new, LEFT)
+    else:
+        new, what = _border_event(
+            real(m.disks, f + X), real(m.disks, f + VX), t, r, ax, 0.0, 1.0, rules.length_x, rules.wall_x, WRAP_LEFT, 0
+        )
+        if not new < floor:
+            time, code, shared = _earlier(time, code, shared, new, what)
+    if k < grid.columns or (rules.length_x is None and rules.wall_x is None):
+        new = now + crossing_delay(x, u, ax, low + grid.side_x, -1.0)
+        time, code, shared = _earlier(time, code, shared, new, RIGHT)
+    else:
+        new, what = _border_event(
+            real(m.disks, f + X),
+            real(m.disks, f + VX),
+            t,
+            r,
+            ax,
+            rules.width,
+            -1.0,
+            rules.length_x,
+            rules.wall_x,
+            WRAP_RIGHT,
+            1,
+        )
+        if not new < floor:
+            time, code, shared = _earlier(time, code, shared, new, what)
+    k = word(m.disks, i * WORDS + ROW)
+    low = grid.low_y + (k - 1) * grid.side_y
+    if k > 1 or (rules.length_y is None and rules.wall_y is None):
+        new = now + crossing_delay(y, w, ay, low, 1.0)
+        time, code, shared = _earlier(time, code, shared, new, DOWN)
+    else:
+        new, what = _border_event(
+            real(m.disks, f + Y), real(m.disks, f + VY), t, r, ay, 0.0, 1.0, rules.length_y, rules.wall_y, WRAP_DOWN, 0
+        )
+        if not new < floor:
+            time, code, shared = _earlier(time, code, shared, new, what)
+    if k < grid.rows or (rules.length_y is None and rules.wall_y is None):
+        new = now + crossing_delay(y, w, ay, low + grid.side_y, -1.0)
+        time, code, shared = _earlier(time, code, shared, new, UP)
+    else:
+        new, what = _border_event(
+            real(m.disks, f + Y),
+            real(m.disks, f + VY),
+            t,
+            r,
+            ay,
+            rules.height,
+            -1.0,
+            rules.length_y,
+            rules.wall_y,
+            WRAP_UP,
+            1,
+        )
+        if not new < floor:
+            time, code, shared = _earlier(time, code, shared, new, what)
+    return time, code, shared
+
+
+@inline
+def _border_event(x, v, t, r, g, border, side, length, wall, wrap_code, second):
+    """(time, code) of the wrap through a border of the domain, or of the contact with the hard wall there."""
+    if length is None:
+        if wall is None:
+            return NEVER, NOTHING
+        return t + crossing_delay(x, v, g, border + side * r, side), WALL - 2 * (wall + second) - second
+    return t + crossing_delay(x, v, g, border, side), wrap_code
+
+
+@inline
+def _shapes(m, rules, i, floor, time, code, shared, features):
+    """The earliest contact with a wall shape, if that is before the given event."""
+    if features is None:
+        return time, code, shared
+    for k in range(features):
+        new, side = shape_time(m, rules, i, k)
+        if new >= floor:
+            wall = WALL - 2 * (rules.first_feature + k) - (1 if side < 0 else 0)
+            time, code, shared = _earlier(time, code, shared, new, wall)
+    return time, code, shared
+
+
+@part
+def shape_time(m, rules, i, k):
+    """(time, side) of the next contact of disk i with the k-th wall shape."""
+    f = i * REALS
+    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    delay, side = shape_delay(
+        m,
+        i,
+        k,
+        rules.first_feature + k,
+        real(m.disks, f + X),
+        real(m.disks, f + Y),
+        real(m.disks, f + VX),
+        real(m.disks, f + VY),
+        gx,
+        gy,
+        real(m.disks, f + RADIUS),
+    )
+    return real(m.disks, f + T) + delay, side
+
+
+@inline
+def image(d, length):
+    """-1, 0 or 1: the image that brings a distance along a period below half of it."""
+    if length is None:
+        return 0
+    if d > 0.5 * length:
+        return 1
+    return -1 if d < -(0.5 * length) else 0
+
+
+@inline
+def shift(k, length):
+    """The distance of an image; 0 without a period."""
+    return 0.0 if length is None else k * length
+
+
+@inline
+def images(m, rules, i, j, now, x, y):
+    """The image (kx, ky) of disk j that is nearest to disk i, which is at (x, y)."""
+    if rules.length_x is None and rules.length_y is None:
+        return 0, 0
+    other_x, other_y = place(m, rules, j, now)
+    return image(x - other_x, rules.length_x), image(y - other_y, rules.length_y)
+
+
+@inline
+def pair_time(m, rules, i, j, kx, ky):
+    """The contact time of two disks; symmetric under their exchange, bit for bit."""
+    f, g = i * REALS, j * REALS
+    ti, tj = real(m.disks, f + T), real(m.disks, g + T)
+    begin = ti if ti > tj else tj
+    ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    bx, by = pull(m, j, rules.gx, rules.classes), pull(m, j, rules.gy, rules.classes)
+    lag, other_lag = begin - ti, begin - tj
+    ui, wi, uj, wj = real(m.disks, f + VX), real(m.disks, f + VY), real(m.disks, g + VX), real(m.disks, g + VY)
+    dx = position(real(m.disks, f + X), ui, lag, ax) - position(real(m.disks, g + X), uj, other_lag, bx)
+    dy = position(real(m.disks, f + Y), wi, lag, ay) - position(real(m.disks, g + Y), wj, other_lag, by)
+    dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
+    du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
+    dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
+    reach = real(m.disks, f + RADIUS) + real(m.disks, g + RADIUS)
+    return begin + _pair_delay(dx, dy, du, dw, reach, ax, ay, bx, by)
+
+
+@inline
+def _pair_delay(dx, dy, du, dw, reach, ax, ay, bx, by):
+    if ax is None:
+        return pair_delay(dx, dy, du, dw, reach)
+    if ax != bx or ay != by:
+        return circle_delays(dx, dy, du, dw, ax - bx, ay - by, reach, 1.0)[0]
+    return pair_delay(dx, dy, du, dw, reach)
+
+
+@inline
+def can_meet(m, i, j, classes):
+    """Two immovable disks, or two tracers, do not meet."""
+    if classes is None:
+        return True
+    return word(m.disks, i * WORDS + FLAGS) & word(m.disks, j * WORDS + FLAGS) & CLASSES == 0
+
+
+@inline
+def flies_alike(m, rules, i, j, gx, classes):
+    """Whether the relative flight of two disks is straight."""
+    if gx is None or classes is None:
+        return True
+    return (word(m.disks, i * WORDS + FLAGS) ^ word(m.disks, j * WORDS + FLAGS)) & IMMOVABLE == 0
+
+
+@inline
+def pair_is_due(m, rules, i, j, kx, ky):
+    """The contact time of a pair, NEVER if it has just met or never meets."""
+    if not can_meet(m, i, j, rules.classes):
+        return NEVER
+    time = pair_time(m, rules, i, j, kx, ky)
+    if time < NEVER and flies_alike(m, rules, i, j, rules.gx, rules.classes) and just_met(m, i, j, kx, ky):
+        return NEVER
+    return time
+
+
+@part
+def _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The earliest contact with another disk in the nine cells around, if that is before the given event."""
+    start, width = corner_slot(m, grid, i), grid.depth * (grid.columns + 2)
+    edge = word(m.disks, i * WORDS + FLAGS) & EDGE
+    for _ in range(3):
+        for k in range(3 * grid.depth):
+            j = word(m.slots, start + k)
+            if j == grid.n or j == i:
+                continue
+            kx, ky = 0, 0
+            if edge:
+                kx, ky = images(m, rules, i, j, now, x, y)
+            new = pair_is_due(m, rules, i, j, kx, ky)
+            if new >= floor:
+                time, code, shared = _earlier(time, code, shared, new, j)
+        start += width
+    return time, code, shared
+
+
+@part
+def _contacts_of_everyone(m, grid, rules, i, floor, time, code, shared):
+    """The same where there are no cells: all disks, in all images."""
+    span_x = 0 if rules.length_x is None else 1
+    span_y = 0 if rules.length_y is None else 1
+    for j in range(grid.n):
+        if j == i:
+            continue
+        for kx in range(-span_x, span_x + 1):
+            for ky in range(-span_y, span_y + 1):
+                new = pair_is_due(m, rules, i, j, kx, ky)
+                if new >= floor:
+                    time, code, shared = _earlier(time, code, shared, new, j)
+    return time, code, shared
+
+
+@inline
+def corner_slot(m, grid, i):
+    """The first slot of the lower left one of the nine cells around disk i."""
+    column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
+    return grid.depth * (column - 1 + (grid.columns + 2) * (row - 1))
+
+
+@inline
+def _contacts(m, grid, rules, i, now, floor, x, y, time, code, shared, slots, lanes):
+    if slots is None:
+        return _contacts_of_everyone(m, grid, rules, i, floor, time, code, shared)
+    if lanes is None:
+        return _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    return _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared)
+
+
+@inline
+def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The same as one by one, eight at a time."""
+    f = i * REALS
+    edge = word(m.disks, i * WORDS + FLAGS) & EDGE
+    skip = word(m.disks, i * WORDS + MET)
+    if skip == SEVERAL:
+        return _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    if skip >= 0:
+        kx, ky = 0, 0
+        if edge:
+            kx, ky = images(m, rules, i, skip, now, x, y)
+        if not just_met(m, i, skip, kx, ky):
+            skip = -1
+    start, width, across = corner_slot(m, grid, i), grid.depth * (grid.columns + 2), 3 * grid.depth
+    count = 0
+    for _ in range(3):
+        for k in range(0, across, 16):
+            count = gather_disks(m.slots, start + k, across - k, m.near, count, grid.n, i, skip)
+        start += width
+    x0, y0, u, w = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
+    t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
+    length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
+    periodic = rules.length_x is not None or rules.length_y is not None
+    first = 0
+    while True:
+        if periodic and edge:
+            new, j, many = contact_of_eight(
+                m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 1.0
+            )
+        else:
+            new, j, many = contact_of_eight(
+                m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 0
+            )
+        if new < time:
+            time, code, shared = new, j, many
+        elif new == time and new < NEVER and _is_contact(code):
+            shared = 1
+        first += 8
+        if first >= count:
+            return time, code, shared
+
+
+@inline
+def _or_never(length):
+    return NEVER if length is None else length

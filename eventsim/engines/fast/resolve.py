@@ -1,0 +1,178 @@
+"""Contacts are resolved: one pair, or one disk and a wall.  Contacts that share a time go to the reference engine's rules."""
+
+from __future__ import annotations
+
+import math
+
+from eventsim.engines.fast.advance import anchor, place, speed
+from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.layout import (
+    AT_ONCE,
+    CONTACT_TIME,
+    DEEPEST,
+    LABEL,
+    OUTER_X,
+    OUTER_Y,
+    PAIRS,
+    RADIUS,
+    REALS,
+    WALL,
+    WALLS,
+    WORDS,
+)
+from eventsim.engines.fast.memory import real, store, word
+from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
+from eventsim.engines.fast.predict import image, shift
+from eventsim.engines.fast.rows import note
+from eventsim.engines.fast.shapes import WIDTH, shape_normal
+from eventsim.engines.reference.resolve import AT_ONCE as INSTANT
+from eventsim.formulas.impulse import (
+    contact_restitution,
+    flat_update,
+    mass_fractions,
+    pair_update,
+    reduced_mass,
+    wall_update,
+)
+from eventsim.formulas.real import sqrt
+
+
+@inline
+def mass_of(i, mass, common):
+    """The mass of disk i."""
+    return common if mass is None else real(mass, i)
+
+
+@inline
+def _shares(a, b, mass):
+    if mass is None:
+        return 0.5, 0.5
+    return mass_fractions(real(mass, a), real(mass, b))
+
+
+@inline
+def _reduced(a, b, mass, common):
+    if mass is None:
+        return 0.5 * common
+    return reduced_mass(real(mass, a), real(mass, b))
+
+
+@inline
+def _restitution(m, a, b, t, restitution, duration):
+    if duration is None:
+        return restitution
+    since_a, since_b = t - real(m.disks, a * REALS + CONTACT_TIME), t - real(m.disks, b * REALS + CONTACT_TIME)
+    return contact_restitution(restitution, duration, since_a, since_b)
+
+
+@inline
+def _note_time(m, rules, i, t, idle):
+    """Note a contact of disk i, to see that an instant does not end; idle ones, which change nothing, weigh more."""
+    weight = rules.at_once_limit // 3 + 1 if idle else 1
+    if t - real(m.disks, i * REALS + CONTACT_TIME) <= INSTANT * t:
+        weight += word(m.disks, i * WORDS + AT_ONCE)
+    store(m.disks, i * WORDS + AT_ONCE, weight)
+    store(m.disks, i * REALS + CONTACT_TIME, t)
+
+
+@inline
+def _book_pair(sums, a, b, jx, jy, mass):
+    """Note the momentum that an immovable disk gave to the other one; (jx, jy) is what a received."""
+    if mass is None:
+        return
+    if math.isinf(real(mass, b)):
+        sums[OUTER_X] += jx
+        sums[OUTER_Y] += jy
+    elif math.isinf(real(mass, a)):
+        sums[OUTER_X] -= jx
+        sums[OUTER_Y] -= jy
+
+
+@inline
+def _is_finite(i, mass):
+    if mass is None:
+        return True
+    return 0.0 < real(mass, i) < math.inf
+
+
+@inline
+def resolve_pair(m, rules, counts, sums, i, j, t):
+    """Resolve the contact of disks i and j at time t."""
+    swap = word(m.disks, j * WORDS + LABEL) < word(m.disks, i * WORDS + LABEL)
+    a, b = (j, i) if swap else (i, j)
+    xa, ya = place(m, rules, a, t)
+    xb, yb = place(m, rules, b, t)
+    ua, wa = speed(m, rules, a, t)
+    ub, wb = speed(m, rules, b, t)
+    dx, dy = xa - xb, ya - yb
+    kx, ky = image(dx, rules.length_x), image(dy, rules.length_y)
+    dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
+    share_a, share_b = _shares(a, b, m.mass)
+    e = _restitution(m, a, b, t, rules.pair_restitution, rules.duration)
+    ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, e)
+    anchor(m, a, t, xa, ya, ua, wa)
+    anchor(m, b, t, xb, yb, ub, wb)
+    ux, uy = unwrapped_x(m, a, b, kx), unwrapped_y(m, a, b, ky)
+    remember(m, a, b, ux, uy)
+    remember(m, b, a, -ux, -uy)
+    _note_time(m, rules, a, t, q == 0.0)
+    _note_time(m, rules, b, t, q == 0.0)
+    reduced = _reduced(a, b, m.mass, rules.common_mass)
+    distance = sqrt(dx * dx + dy * dy)
+    reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
+    overlap = (reach - distance) / reach
+    if overlap > sums[DEEPEST] and _is_finite(a, m.mass) and _is_finite(b, m.mass):
+        sums[DEEPEST] = overlap
+    _book_pair(sums, a, b, -(q * reduced) * dx, -(q * reduced) * dy, m.mass)
+    counts[PAIRS] += 1
+    note(m, counts, a, b, -1, -(q * reduced) * distance, t, m.rows)
+
+
+@part
+def resolve_wall(m, rules, counts, sums, i, code, t):
+    """Resolve the contact of disk i with the wall that the code of the event stands for."""
+    number = WALL - code
+    place_, side = number // 2, -1 if number % 2 else 1
+    x, y = place(m, rules, i, t)
+    u, w = speed(m, rules, i, t)
+    u0, w0 = u, w
+    e = _restitution(m, i, i, t, rules.wall_restitution, rules.duration)
+    r = real(m.disks, i * REALS + RADIUS)
+    if _is_across(rules.wall_x, place_):
+        x = rules.width - r if side < 0 else r
+        u, _ = flat_update(u, float(side), e)
+        wall = place_
+    elif _is_across(rules.wall_y, place_):
+        y = rules.height - r if side < 0 else r
+        w, _ = flat_update(w, float(side), e)
+        wall = place_
+    else:
+        u, w, wall = _against_shape(m, place_ - rules.first_feature, side, x, y, u, w, e, m.features)
+    anchor(m, i, t, x, y, u, w)
+    remember(m, i, -2 - place_, side, 0)
+    _note_time(m, rules, i, t, u == u0 and w == w0)
+    mass = mass_of(i, m.mass, rules.common_mass)
+    impulse = math.nan
+    if not math.isinf(mass):
+        du, dw = u - u0, w - w0
+        sums[OUTER_X] += mass * du
+        sums[OUTER_Y] += mass * dw
+        impulse = mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))
+    counts[WALLS] += 1
+    note(m, counts, i, -1, wall, impulse, t, m.rows)
+
+
+@inline
+def _is_across(first, place_):
+    if first is None:
+        return False
+    return first <= place_ < first + 2
+
+
+@inline
+def _against_shape(m, k, side, x, y, u, w, e, features):
+    if features is None:
+        return u, w, -1
+    nx, ny = shape_normal(m, k, side, x, y)
+    u, w, _ = wall_update(nx, ny, u, w, e)
+    return u, w, int(real(features, WIDTH * k + 1))

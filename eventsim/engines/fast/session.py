@@ -1,0 +1,439 @@
+"""The fast engine in the middle of a run: kernels do the work, Python does what is rare."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
+from eventsim.engines.fast import layout
+from eventsim.engines.fast.instant import contacts_at, due_at
+from eventsim.engines.fast.lanes import lanes_work
+from eventsim.engines.fast.layout import Arrays, Grid, Rules
+from eventsim.engines.fast.loop import fill, predict_all, renew, run, schedule, turn_over
+from eventsim.engines.fast.order import along_a_curve
+from eventsim.engines.fast.plan import LOOK_AHEAD, MANY_DISKS, Sizes, cell_sizes, day_length, days_of
+from eventsim.engines.fast.shapes import KINDS, WIDTH
+from eventsim.engines.fast.state import FastState, aligned
+from eventsim.engines.reference.calendar import CONTACT, Event
+from eventsim.engines.reference.loop import components, endless, row_order
+from eventsim.engines.reference.resolve import AT_ONCE_ELASTIC, AT_ONCE_INELASTIC, Resolver
+from eventsim.formulas.clock import next_window, remainder_since, window_length
+from eventsim.formulas.motion import position, velocity
+from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.times import clock_times
+from eventsim.scene.stage import Stage
+
+BUFFER = 1 << 15
+"""Rows in the buffer that kernels fill."""
+
+FEW_DISKS = 24
+"""Below it, looking at all disks is as fast as cells."""
+
+FOREVER = 1 << 62
+TOO_FEW_DAYS, TOO_MANY_DAYS = 0.5, 6.0
+"""Days that an event may take; outside, the length of a day is chosen anew."""
+
+
+class FastSession:
+    """The fast engine in the middle of a run.
+
+    stage: what is simulated.  keep_rows: whether the log is wanted.  lanes: predict eight pairs at a time; None: where the
+    processor can.  sizes: the cells, None for none; left out, the engine chooses.
+    """
+
+    name = "fast"
+
+    def __init__(
+        self,
+        stage: Stage,
+        keep_rows: bool = True,
+        lanes: bool | None = None,
+        sizes: Sizes | str | None = "auto",
+        saved: Snapshot | None = None,
+    ) -> None:
+        self.stage = stage
+        self.counters = Counters()
+        self.reason: str | None = None
+        self._keep_rows = keep_rows
+        self._counts = np.zeros(11, np.int64)
+        self._sums = np.zeros(4)
+        self._sizes = sizes
+        self._depth = 4
+        straight = stage.gravity is None
+        plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
+        wanted = lanes_work() if lanes is None else lanes
+        self._lanes = 8 if wanted and straight and plain else None
+        order = along_a_curve(stage.x, stage.y) if stage.n >= MANY_DISKS else np.arange(stage.n)
+        self.state = FastState(stage, order, self._counts)
+        self._rules = _rules(stage)
+        self._features = _features(stage)
+        self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
+        self._buffer = np.zeros(BUFFER if keep_rows else 0, ROW)
+        self._blocks: list[Rows] = []
+        self._found = np.empty((64, 4), np.int64)
+        self._resolver: Resolver | None = None
+        self.restore(saved if saved is not None else start_of(stage))
+
+    def advance(self, stop: Stop, budget: int) -> str | None:
+        """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
+        self._counts[layout.EVENTS] = self.counters.events
+        try:
+            return self._advance(stop, budget)
+        finally:
+            self._flush()
+            self._tell_counters()
+
+    def _advance(self, stop: Stop, budget: int) -> str | None:
+        state, counts = self.state, self._counts
+        target = FOREVER if stop.events is None else stop.events
+        last = int(counts[layout.STEPS]) + budget
+        while counts[layout.STEPS] < last:
+            until = self._remainder(stop.until)
+            turns = state.window_end <= until
+            limit = state.window_end if turns else math.nextafter(until, math.inf)
+            status = self._run(limit, target, last - int(counts[layout.STEPS]))
+            if status == layout.STATUS_EVENTS:
+                return "events"
+            if status == layout.STATUS_ROWS:
+                self._flush()
+            elif status == layout.STATUS_TIE:
+                if (i := self._resolve_instant()) is not None:
+                    return self._give_up(i)
+            elif status == layout.STATUS_STUCK:
+                return self._give_up(int(state.labels[counts[layout.DISK]]))
+            elif status == layout.STATUS_FULL:
+                self._predict_afresh()
+            elif status in (layout.STATUS_LIMIT, layout.STATUS_IDLE):
+                empty = bool(np.all(np.isinf(self._due)))
+                if status == layout.STATUS_IDLE and not empty:
+                    self._schedule()
+                elif turns and not (empty and stop.until is None):
+                    self._turn_over()
+                else:
+                    self._pass_to(until)
+                    return "quiet" if empty else "until"
+        return None
+
+    def _run(self, limit: float, target: int, budget: int) -> int:
+        counts = self._counts
+        day, steps = int(counts[layout.DAY]), int(counts[layout.STEPS])
+        status: int = run(
+            self._arrays, self._grid, self._rules, counts, self._sums, limit, target, budget, max(len(self._buffer), 1)
+        )
+        self.state.now = float(self._sums[layout.NOW])
+        steps = int(counts[layout.STEPS]) - steps
+        if status == layout.STATUS_BUDGET and steps > self.state.n:
+            days = (int(counts[layout.DAY]) - day) / steps
+            if not TOO_FEW_DAYS < days < TOO_MANY_DAYS:
+                self._schedule()
+        return status
+
+    @property
+    def _due(self) -> Floats:
+        return self.state.disks[: self.state.n, layout.DUE]
+
+    def _resolve_instant(self) -> int | None:
+        """Resolve all contacts of the present time that are predicted by now, by the reference engine's rules.
+
+        Returns a disk whose contacts at this instant do not end.
+        """
+        state, now = self.state, self.state.now
+        self._flush()
+        generation = self._generation()
+        resolver = self._opened_resolver()
+        waiting = [int(i) for i in self._find(due_at)[:, 0]]
+        changed: list[int] = []
+        for component in components(generation):
+            changed += resolver.resolve(component)
+        self._keep(resolver)
+        places = {int(state.place_of[i]) for i in changed}
+        for i in places:
+            renew(self._arrays, self._grid, self._rules, self._counts, i, now, now)
+        for i in waiting:
+            if i not in places:  # its contact came to nothing: it flies on
+                renew(self._arrays, self._grid, self._rules, self._counts, i, now, math.nextafter(now, math.inf))
+        return next((i for i in changed if state.at_once[i] >= resolver.at_once_limit), None)
+
+    def _generation(self) -> list[Event]:
+        """All contacts of the present time, each once, in the order of rows."""
+        labels = self.state.labels
+        now = self.state.now
+        events = set()
+        for i, partner, kx, ky in self._find(contacts_at, self._rules).tolist():
+            a = int(labels[i])
+            b = int(labels[partner]) if partner >= 0 else partner
+            if b >= 0 and b < a:
+                a, b, kx, ky = b, a, -kx, -ky
+            events.add(Event(now, CONTACT, a, b, (kx, ky), 0, 0))
+        return sorted(events, key=lambda event: (row_order(event), event.image))
+
+    def _find(self, search: Any, *rules: Any) -> np.ndarray[Any, Any]:
+        """What a search finds, with as much room as it needs."""
+        while True:
+            count = search(self._arrays, self._grid, *rules, self._counts, self.state.now, self._found)
+            if count <= len(self._found):
+                return self._found[:count].copy()
+            self._found = np.empty((2 * count, 4), np.int64)
+
+    def _opened_resolver(self) -> Resolver:
+        """The reference engine's resolver on these records; it keeps its own lists, so only who needs it opens it."""
+        if self._resolver is None:
+            self._resolver = Resolver(self.stage, self.state, self.counters, self._keep_rows)
+        self._tell_counters()
+        return self._resolver
+
+    def _keep(self, resolver: Resolver) -> None:
+        """Take over what the resolver has counted and logged."""
+        rows, resolver.rows = resolver.rows, []
+        if rows:
+            self._blocks.append(rows_from(rows, self.stage.epoch_length, self.stage.start_time))
+        counters = self.counters
+        self._counts[layout.EVENTS] = counters.events
+        self._counts[layout.PAIRS], self._counts[layout.WALLS] = counters.pair_contacts, counters.wall_contacts
+        self._sums[layout.DEEPEST] = counters.deepest_overlap
+        self._sums[layout.OUTER_X], self._sums[layout.OUTER_Y] = counters.outer_momentum
+
+    def _tell_counters(self) -> None:
+        """Let the counters say what the kernels have counted."""
+        counts, counters = self._counts, self.counters
+        counters.events = int(counts[layout.EVENTS])
+        counters.pair_contacts, counters.wall_contacts = int(counts[layout.PAIRS]), int(counts[layout.WALLS])
+        counters.wraps, counters.crossings = int(counts[layout.WRAPS]), int(counts[layout.CROSSINGS])
+        counters.stale = int(counts[layout.STALE])
+        counters.deepest_overlap = float(self._sums[layout.DEEPEST])
+        counters.outer_momentum = [float(self._sums[layout.OUTER_X]), float(self._sums[layout.OUTER_Y])]
+
+    def _flush(self) -> None:
+        """Empty the buffer."""
+        count = int(self._counts[layout.ROW_COUNT])
+        self._counts[layout.ROW_COUNT] = 0
+        if count and self._keep_rows:
+            rows = self._buffer[:count].copy()
+            rows["epoch"] = self.state.epoch
+            rows["time"] = clock_times(rows["epoch"], rows["remainder"], self.stage.epoch_length, self.stage.start_time)
+            self._blocks.append(rows)
+
+    def _turn_over(self) -> None:
+        state = self.state
+        self._flush()
+        self.counters.turnovers += 1
+        end = state.window_end
+        turn_over(self._arrays, self._grid, self._rules, end)
+        state.epoch += 1 << state.window
+        state.window = next_window(state.window, state.window_rows, state.n, state.window_cap)
+        state.window_end = window_length(state.window, state.epoch_length)
+        state.window_rows = 0
+        self._set_now(0.0)
+        predict_all(self._arrays, self._grid, self._rules, self._counts, 0.0)
+        self._schedule()
+
+    def _set_now(self, now: float) -> None:
+        self.state.now = now
+        self._sums[layout.NOW] = now
+
+    def _predict_afresh(self) -> None:
+        """Make cells and calendar anew, with more slots as long as a cell is full."""
+        state, stage, now = self.state, self.stage, self.state.now
+        while True:
+            sizes = self._chosen_sizes(now)
+            slots = None
+            if sizes is not None:
+                slots = aligned(sizes.depth * (sizes.columns + 2) * (sizes.rows + 2) + 16, np.int32)
+                slots[:] = stage.n
+            one = Sizes((0.0, 0.0), 1, 1, stage.size or (1.0, 1.0), 0)
+            cells = one if sizes is None else sizes
+            self._grid = self._grid_of(cells, sizes is not None, 1.0)
+            self._arrays = Arrays(
+                state.disks.reshape(-1),
+                aligned(self._grid.days, np.int32),
+                slots,
+                aligned(9 * cells.depth + 32, np.int32),
+                state.several.reshape(-1),
+                self._mass,
+                self._features,
+                self._buffer.view(np.uint8) if self._keep_rows else None,
+            )
+            if fill(self._arrays, self._grid, self._rules, now):
+                break
+            self._depth = 2 * cells.depth
+        predict_all(self._arrays, self._grid, self._rules, self._counts, now)
+        self._schedule()
+
+    def _chosen_sizes(self, now: float) -> Sizes | None:
+        if not isinstance(self._sizes, str):
+            return self._sizes
+        if self.stage.n < FEW_DISKS:
+            return None
+        motion = self.motion()
+        return cell_sizes(self.stage, motion.x, motion.y, self._depth)
+
+    def _grid_of(self, cells: Sizes, has_slots: bool, day: float) -> Grid:
+        n = self.stage.n
+        ahead = LOOK_AHEAD if n >= MANY_DISKS and has_slots else None
+        return Grid(
+            n,
+            cells.columns,
+            cells.rows,
+            cells.depth,
+            *cells.low,
+            *cells.side,
+            days_of(n),
+            day,
+            1.0 / day,
+            self._lanes,
+            ahead,
+        )
+
+    def _schedule(self) -> None:
+        """Make the calendar anew, with days of a fitting length."""
+        day = day_length(self._due, self.state.now, self.state.window_end, self.state.n)
+        self._grid = self._grid._replace(day_length=day, days_per_time=1.0 / day)
+        self._arrays.buckets[:] = -1
+        self._arrays = self._arrays._replace(several=self.state.several.reshape(-1))
+        schedule(self._arrays, self._grid, self._counts, self.state.now)
+
+    def _pass_to(self, until: float) -> None:
+        if self.state.now < until < math.inf:
+            self._set_now(until)
+
+    def _remainder(self, until: float | None) -> float:
+        if until is None:
+            return math.inf
+        return remainder_since(self.state.epoch, self.stage.epoch_length, until, self.stage.start_time)
+
+    def _give_up(self, i: int) -> str:
+        stopped, self.reason = endless(self.stage, i, self.state.place(i, self.state.now))
+        return stopped
+
+    @property
+    def clock(self) -> tuple[int, float]:
+        """Where the clock stands: (epoch, remainder)."""
+        return self.state.epoch, self.state.now
+
+    def motion(self) -> Motion:
+        """Where all disks are now."""
+        s = self.state
+        lag = s.now - s.t.every()
+        gx, gy = s.gravity_x.every(), s.gravity_y.every()
+        vx, vy = s.vx.every(), s.vy.every()
+        return Motion(
+            position(s.x.every(), vx, lag, gx),
+            position(s.y.every(), vy, lag, gy),
+            velocity(vx, lag, gx),
+            velocity(vy, lag, gy),
+            s.wraps_x.every().astype(np.int64),
+            s.wraps_y.every().astype(np.int64),
+        )
+
+    def kick(self, i: int, vx: float, vy: float) -> None:
+        """Set the velocity of disk i from outside, now."""
+        resolver = self._opened_resolver()
+        resolver.kick(i, vx, vy)
+        self._keep(resolver)
+        place, now = int(self.state.place_of[i]), self.state.now
+        renew(self._arrays, self._grid, self._rules, self._counts, place, now, now)
+
+    def take_rows(self) -> Rows:
+        """The rows since the last call, an array of ROW."""
+        blocks, self._blocks = self._blocks, []
+        if len(blocks) == 1:
+            return blocks[0]
+        return np.concatenate(blocks) if blocks else np.empty(0, ROW)
+
+    def snapshot(self) -> Snapshot:
+        """All that the future depends on."""
+        s = self.state
+        return Snapshot(
+            epoch=s.epoch,
+            window=s.window,
+            window_rows=s.window_rows,
+            now=s.now,
+            t=s.t.every(),
+            x=s.x.every(),
+            y=s.y.every(),
+            vx=s.vx.every(),
+            vy=s.vy.every(),
+            wraps_x=s.wraps_x.every(),
+            wraps_y=s.wraps_y.every(),
+            met=tuple(s.met[i] for i in range(s.n)),
+            contact_time=s.contact_time.every(),
+            at_once=s.at_once.every(),
+        )
+
+    def restore(self, saved: Snapshot) -> None:
+        """Go on from a snapshot, this engine's or another's."""
+        s = self.state
+        s.epoch, s.window, s.window_rows = saved.epoch, saved.window, saved.window_rows
+        s.window_end = window_length(s.window, s.epoch_length)
+        self._set_now(saved.now)
+        for name in ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once"):
+            getattr(s, name).set_all(getattr(saved, name))
+        s.words[:, layout.MET] = layout.NOBODY
+        s.several_used = 0
+        for i, met in enumerate(saved.met):
+            if met:
+                s.met[i] = met
+        self._predict_afresh()
+
+
+def start_of(stage: Stage) -> Snapshot:
+    """The beginning of a run."""
+    zeros = np.zeros(stage.n)
+    none = np.zeros(stage.n, np.int64)
+    from eventsim.formulas.clock import FIRST_WINDOW
+
+    return Snapshot(
+        epoch=0,
+        window=FIRST_WINDOW,
+        window_rows=0,
+        now=0.0,
+        t=zeros,
+        x=stage.x,
+        y=stage.y,
+        vx=stage.vx,
+        vy=stage.vy,
+        wraps_x=none,
+        wraps_y=none,
+        met=(),
+        contact_time=np.full(stage.n, -math.inf),
+        at_once=none,
+    )
+
+
+def _rules(stage: Stage) -> Rules:
+    gx, gy = stage.gravity or (None, None)
+    wall_x = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 0), None)
+    wall_y = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 1), None)
+    classes = stage.mass is not None and bool(np.any(np.isinf(stage.mass) | (stage.mass == 0.0)))
+    width, height = stage.size or (math.inf, math.inf)
+    return Rules(
+        gx,
+        gy,
+        *stage.period,
+        wall_x,
+        wall_y,
+        width,
+        height,
+        stage.pair_restitution,
+        stage.wall_restitution,
+        stage.contact_duration,
+        1 if classes else None,
+        stage.common_mass,
+        len(stage.features) or None,
+        len(stage.boundaries),
+        AT_ONCE_ELASTIC if stage.pair_restitution == stage.wall_restitution == 1.0 else AT_ONCE_INELASTIC,
+    )
+
+
+def _features(stage: Stage) -> Floats | None:
+    """The wall shapes as a table of numbers, in one row of memory."""
+    if not stage.features:
+        return None
+    table = np.zeros((len(stage.features), WIDTH))
+    for row, (shape, wall) in zip(table, stage.features, strict=True):
+        row[0], row[1] = KINDS.index(type(shape)), wall
+        row[2 : 2 + len(shape)] = shape
+    return table.reshape(-1)

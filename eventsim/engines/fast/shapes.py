@@ -1,0 +1,59 @@
+"""Wall shapes as rows of a table of numbers, and the formulas that each kind asks for."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.compiled import part
+from eventsim.engines.fast.memory import real
+from eventsim.engines.fast.met import side_met
+from eventsim.formulas.walls.face import Face, face_delay, face_normal
+from eventsim.formulas.walls.round import Arc, Container, Post, arc_delay, container_delay, post_delay, round_normal
+
+KINDS = (Face, Post, Container, Arc)
+"""The kinds of shapes, by the number that stands for them in the table."""
+
+WIDTH = 11
+"""Numbers in a row: the kind, the number of the wall, then the shape's own."""
+
+FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
+
+
+@part
+def shape_delay(m, i, k, place, x, y, vx, vy, gx, gy, radius):
+    """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
+    met = side_met(m, i, place)
+    row = m.features
+    s = WIDTH * k
+    kind = real(row, s)
+    a, b = real(row, s + 2), real(row, s + 3)
+    if kind == FACE:
+        face = Face(
+            a,
+            b,
+            real(row, s + 4),
+            real(row, s + 5),
+            real(row, s + 6),
+            real(row, s + 7),
+            real(row, s + 8),
+            real(row, s + 9),
+            real(row, s + 10),
+        )
+        return face_delay(face, x, y, vx, vy, gx, gy, radius, met)
+    if kind == POST:
+        return post_delay(Post(a, b), x, y, vx, vy, gx, gy, radius, met)
+    if kind == CONTAINER:
+        return container_delay(Container(a, b, real(row, s + 4)), x, y, vx, vy, gx, gy, radius, met)
+    arc = Arc(
+        a, b, real(row, s + 4), real(row, s + 5), real(row, s + 6), real(row, s + 7), real(row, s + 8), real(row, s + 9)
+    )
+    return arc_delay(arc, x, y, vx, vy, gx, gy, radius, met)
+
+
+@part
+def shape_normal(m, k, side, x, y):
+    """The normal, of any length, of the k-th shape, towards a disk at (x, y)."""
+    row = m.features
+    s = WIDTH * k
+    if real(row, s) == FACE:
+        face = Face(0.0, 0.0, 0.0, 0.0, real(row, s + 6), real(row, s + 7), 0.0, 0.0, 0.0)
+        return face_normal(face, side)
+    return round_normal(Post(real(row, s + 2), real(row, s + 3)), side, x, y)

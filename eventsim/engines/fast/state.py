@@ -1,0 +1,214 @@
+"""What changes, as arrays: the records of all disks, seen from Python by their numbers in the scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.engines.fast.layout import (
+    AT_ONCE,
+    CONTACT_TIME,
+    COUNT,
+    COUNTS,
+    FLAGS,
+    IMMOVABLE,
+    LABEL,
+    MET,
+    MET_KX,
+    MET_KY,
+    NOBODY,
+    RADIUS,
+    REALS,
+    SEVERAL,
+    TRACER,
+    VX,
+    VY,
+    WINDOW_ROWS,
+    WORDS,
+    WRAPS_X,
+    WRAPS_Y,
+    T,
+    X,
+    Y,
+)
+from eventsim.engines.reference.state import EngineState, Met
+from eventsim.record.events import Floats
+from eventsim.scene.stage import Stage
+
+LINE, PAGE = 64, 4096
+Integers = NDArray[np.int32]
+
+
+def aligned(count: int, kind: Any) -> NDArray[Any]:
+    """Zeros that begin with a page, and some to spare behind them: the lanes read a little past the end."""
+    size = count * np.dtype(kind).itemsize
+    raw = np.zeros(size + PAGE + 4 * LINE, np.uint8)
+    start = -raw.ctypes.data % PAGE
+    return raw[start : start + size].view(kind)
+
+
+class Column:
+    """One number of every record, by the disk's number in the scene."""
+
+    def __init__(self, values: NDArray[Any], place_of: Integers) -> None:
+        self._values = values
+        self._place_of = place_of
+
+    def __getitem__(self, i: int) -> Any:
+        return self._values[self._place_of[i]].item()
+
+    def __setitem__(self, i: int, value: Any) -> None:
+        self._values[self._place_of[i]] = value
+
+    def every(self) -> NDArray[Any]:
+        """The numbers of all disks, a copy, in the order of the scene."""
+        return self._values[self._place_of]
+
+    def set_all(self, values: Any) -> None:
+        """Set the numbers of all disks."""
+        self._values[self._place_of] = values
+
+
+class CountColumn(Column):
+    """Invalidation counts, which begin again after the largest."""
+
+    def __setitem__(self, i: int, value: int) -> None:
+        super().__setitem__(i, value & (COUNTS - 1))
+
+
+class AccelerationColumn:
+    """A component of every disk's gravity: None without, 0 for immovable disks."""
+
+    def __init__(self, g: float | None, mass: Floats | None) -> None:
+        self._g = g
+        self._mass = mass
+
+    def __getitem__(self, i: int) -> float | None:
+        if self._g is None or self._mass is None:
+            return self._g
+        return 0.0 if np.isinf(self._mass[i]) else self._g
+
+    def every(self) -> Any:
+        """The components of all disks: one number, or an array (n,)."""
+        if self._g is None or self._mass is None:
+            return self._g
+        return np.where(np.isinf(self._mass), 0.0, self._g)
+
+
+class MetColumn:
+    """Whom every disk met last."""
+
+    def __init__(self, state: FastState) -> None:
+        self._state = state
+
+    def __getitem__(self, i: int) -> Met:
+        state = self._state
+        record = state.words[state.place_of[i]]
+        met = int(record[MET])
+        if met == NOBODY:
+            return ()
+        if met != SEVERAL:
+            return (self._entry(met, int(record[MET_KX]), int(record[MET_KY])),)
+        entries, row = [], int(record[MET_KX])
+        while row >= 0:
+            partner, kx, ky, row = state.several[row].tolist()
+            entries.append(self._entry(partner, kx, ky))
+        return tuple(entries)
+
+    def __setitem__(self, i: int, met: Met) -> None:
+        state = self._state
+        record = state.words[state.place_of[i]]
+        if not met:
+            record[MET] = NOBODY
+        elif len(met) == 1:
+            record[MET], record[MET_KX], record[MET_KY] = self._coded(met[0])
+        else:
+            first = state.room_for(len(met))
+            for k, entry in enumerate(met, first):
+                state.several[k, :3] = self._coded(entry)
+                state.several[k, 3] = k + 1
+            state.several[first + len(met) - 1, 3] = -1
+            record[MET], record[MET_KX] = SEVERAL, first
+
+    def _entry(self, partner: int, kx: int, ky: int) -> tuple[int, int, int]:
+        return (int(self._state.labels[partner]) if partner >= 0 else partner + 1), kx, ky
+
+    def _coded(self, entry: tuple[int, int, int]) -> tuple[int, int, int]:
+        other, kx, ky = entry
+        return (int(self._state.place_of[other]) if other >= 0 else other - 1), kx, ky
+
+
+class FastState(EngineState):
+    """The flights of n disks in records, with the reference engine's names for what is in them.
+
+    disks: (n + 1, REALS), the last one a sentinel.  words: the same memory as int32.  place_of: where a disk is in memory;
+    labels: which disk is at a place.  several: chains of whom disks met in joint contacts.
+    """
+
+    def __init__(self, stage: Stage, order: NDArray[np.int64], counts: NDArray[np.int64]) -> None:
+        n = stage.n
+        self.n = n
+        self._counts = counts
+        self.disks: Floats = aligned((n + 1) * REALS, np.float64).reshape(n + 1, REALS)
+        self.words: Integers = self.disks.view(np.int32).reshape(n + 1, WORDS)
+        self.place_of: Integers = np.empty(n, np.int32)
+        self.place_of[order] = np.arange(n, dtype=np.int32)
+        self.words[:n, LABEL] = order
+        self.disks[n, X : RADIUS + 1] = np.nan
+        self.words[n, MET] = NOBODY
+        self.disks[self.place_of, RADIUS] = stage.radius
+        if stage.mass is not None:
+            self.words[self.place_of, FLAGS] = np.where(
+                np.isinf(stage.mass), IMMOVABLE, np.where(stage.mass == 0.0, TRACER, 0)
+            )
+        self.several: Integers = np.empty((64, 4), np.int32)
+        self.several_used = 0
+        self.x, self.y = self._reals(X), self._reals(Y)  # type: ignore[assignment]
+        self.vx, self.vy = self._reals(VX), self._reals(VY)  # type: ignore[assignment]
+        self.t, self.contact_time = self._reals(T), self._reals(CONTACT_TIME)  # type: ignore[assignment]
+        self.wraps_x, self.wraps_y = self._integers(WRAPS_X), self._integers(WRAPS_Y)  # type: ignore[assignment]
+        self.at_once = self._integers(AT_ONCE)  # type: ignore[assignment]
+        self.count = CountColumn(self.words[:n, COUNT], self.place_of)  # type: ignore[assignment]
+        self.met = MetColumn(self)  # type: ignore[assignment]
+        gx, gy = stage.gravity or (None, None)
+        self.gravity_x = AccelerationColumn(gx, stage.mass)  # type: ignore[assignment]
+        self.gravity_y = AccelerationColumn(gy, stage.mass)  # type: ignore[assignment]
+        self.epoch_length = stage.epoch_length
+        self.window_cap = stage.window_cap
+
+    @property
+    def labels(self) -> Integers:
+        """(n,) the number in the scene of the disk at each place."""
+        return self.words[: self.n, LABEL]
+
+    @property
+    def window_rows(self) -> int:  # type: ignore[override]
+        """Rows logged in the present window."""
+        return int(self._counts[WINDOW_ROWS])
+
+    @window_rows.setter
+    def window_rows(self, rows: int) -> None:
+        self._counts[WINDOW_ROWS] = rows
+
+    def _reals(self, place: int) -> Column:
+        return Column(self.disks[: self.n, place], self.place_of)
+
+    def _integers(self, place: int) -> Column:
+        return Column(self.words[: self.n, place], self.place_of)
+
+    def room_for(self, count: int) -> int:
+        """The first of `count` free rows of the table `several`, which is cleared of forgotten ones, or grows, if it is full."""
+        if self.several_used + count > len(self.several):
+            places = np.flatnonzero(self.words[: self.n, MET] == SEVERAL)
+            kept = [(int(self.labels[k]), self.met[int(self.labels[k])]) for k in places]
+            needed = count + sum(len(met) for _, met in kept)
+            if 2 * needed > len(self.several):
+                self.several = np.empty((4 * needed, 4), np.int32)
+            self.several_used = 0
+            for i, met in kept:
+                self.met[i] = met
+        first = self.several_used
+        self.several_used += count
+        return first
