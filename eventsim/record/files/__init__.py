@@ -31,8 +31,7 @@ def open_sink(path: str | PathLike[str], provenance: Provenance, compact: bool =
     """
     file = Path(path)
     kept = replace(provenance, compact=compact, ending=None, rows=None)
-    source_is_compact = provenance.compact
-    kicks = provenance.kicks if source_is_compact else ()
+    kicks = provenance.kicks if provenance.compact else None
     match _suffix(file):
         case ".csv":
             from eventsim.record.files.csv import CsvSink
