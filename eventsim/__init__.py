@@ -6,7 +6,7 @@ The story, and where each part of it lives::
     formulas   the physics: when two disks meet, what then    eventsim.formulas
     engines    how time passes: from event to event           eventsim.engines
     record     what happened: the event log and its replay    eventsim.record
-    simulate   the way in for Python users                    eventsim.simulate
+    simulation the way in for Python users                    eventsim.simulation
     cli        the way in from a terminal                     eventsim.cli
 
 >>> import eventsim as es
@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from eventsim.scene import Segment as Segment
     from eventsim.scene.files import load_scene as load_scene
     from eventsim.scene.gallery import gallery as gallery
-    from eventsim.simulate import Simulation as Simulation
-    from eventsim.simulate import simulate as simulate
+    from eventsim.simulation import Simulation as Simulation
+    from eventsim.simulation import simulate as simulate
 
 _HOMES = {
     "Scene": "scene",
@@ -63,8 +63,8 @@ _HOMES = {
     "Restitution": "scene",
     "load_scene": "scene.files",
     "gallery": "scene.gallery",
-    "simulate": "simulate",
-    "Simulation": "simulate",
+    "simulate": "simulation",
+    "Simulation": "simulation",
     "Run": "engines.base",
     "State": "record.events",
     "EventLog": "record.log",
@@ -83,10 +83,8 @@ def __getattr__(name: str) -> object:
     """Load a public name from its home on first use (PEP 562)."""
     if name not in _HOMES:
         raise AttributeError(f"module 'eventsim' has no attribute {name!r}")
-    home = import_module(f"eventsim.{_HOMES[name]}")
-    # All names of the home at once: importing eventsim.simulate has just bound `simulate` to the module itself.
-    globals().update({each: getattr(home, each) for each in _HOMES if _HOMES[each] == _HOMES[name]})
-    value: object = globals()[name]
+    value: object = getattr(import_module(f"eventsim.{_HOMES[name]}"), name)
+    globals()[name] = value
     return value
 
 

@@ -83,7 +83,7 @@ def command(
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.summary import summary_data, summary_text
     from eventsim.cli.words import as_json_text
-    from eventsim.simulate import simulate
+    from eventsim.simulation import simulate
 
     asked = scene or FIRST_SCENE
     chosen = chosen_scene(asked, settings, seed)

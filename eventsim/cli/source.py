@@ -48,7 +48,7 @@ def log_of(
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.exits import INTERRUPTED
     from eventsim.cli.progress import ProgressBar
-    from eventsim.simulate import simulate
+    from eventsim.simulation import simulate
 
     chosen = chosen_scene(source, settings, seed)
     if until is None and events is None and chosen.until is None and chosen.events is None:

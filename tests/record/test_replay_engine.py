@@ -11,7 +11,7 @@ from eventsim.record import EventLog, State, load_log
 from eventsim.record.files import SUFFIXES
 from eventsim.record.replay import Replay
 from eventsim.scene import Arc, Box, Channel, Circle, Disks, Domain, Open, Periodic, Polygon, Polyline, Scene, Segment
-from eventsim.simulate import Simulation, simulate
+from eventsim.simulation import Simulation, simulate
 
 POSTS = np.where(np.arange(16) % 5 == 0, np.inf, 1.0 + np.arange(16) % 3)
 
