@@ -14,19 +14,14 @@ PICTURE_SUFFIXES = (".mp4", ".gif", ".html", ".png")
 COLORS = ("mass", "speed", "species", "contacts", "index")
 
 
-class Size(click.ParamType[tuple[int, int]]):
-    """WIDTHxHEIGHT in pixels."""
-
-    name = "size"
-
-    def convert(
-        self, value: object, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        """Read 1280x720 as (1280, 720)."""
-        match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", str(value))
-        if match is None:
-            self.fail(f"{value!r} is not a size: write WIDTHxHEIGHT in pixels, as 1280x720", param, ctx)
-        return int(match[1]), int(match[2])
+def pixels(context: click.Context, option: click.Parameter, value: str | None) -> tuple[int, int] | None:
+    """Read 1280x720 as (1280, 720)."""
+    if value is None:
+        return None
+    match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", value)
+    if match is None:
+        raise click.BadParameter(f"{value!r} is not a size: write WIDTHxHEIGHT in pixels, as 1280x720")
+    return int(match[1]), int(match[2])
 
 
 @click.command()
@@ -43,7 +38,7 @@ class Size(click.ParamType[tuple[int, int]]):
 @click.option("--from", "begin", type=float, metavar="T", help="Begin at this time on the scene's clock.")
 @click.option("--to", "end", type=float, metavar="T", help="End at this time on the scene's clock.")
 @click.option("--moments", type=click.IntRange(min=1), metavar="N", help="Pictures in a png; 6.")
-@click.option("--size", type=Size(), metavar="WxH", help="Pixels, as 1280x720; of a png, of each moment.")
+@click.option("--size", callback=pixels, metavar="WxH", help="Pixels, as 1280x720; of a png, of each moment.")
 @click.option(
     "--color",
     type=click.Choice(COLORS),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
@@ -193,6 +194,25 @@ class Run:
         if self._replay is None:
             self._replay = Replay(log)
         return self._replay.state_at(time)
+
+
+    def animate(self, path: str | PathLike[str], **options: Any) -> None:
+        """Write an animation to `path`: .mp4, .gif, .png (a strip of moments) or .html (a page that plays the run).
+
+        options: those of `eventsim animate` (fps, speed or duration, begin, end, moments, size, color, trails,
+        velocities, flash, dark).  Raises LogError where no log was kept, EventsimError for what does not fit.
+        """
+        from eventsim.show.animate import animate_with  # pictures stand above engines: loaded by who wants one
+
+        if self.log is None:
+            raise LogError("animate needs the log of the run: simulate(..., log=True)")
+        animate_with(self.log, path, **options)
+
+    def _repr_html_(self) -> str | None:
+        """Return the player for a notebook; None, and so the plain text, without a log or with too large a one."""
+        from eventsim.show.player.page import notebook_frame
+
+        return None if self.log is None else notebook_frame(self.log)
 
 
 def rows_from(tuples: list[tuple[Any, ...]], epoch_length: float, start_time: float) -> Rows:

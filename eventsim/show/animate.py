@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from eventsim.show.output import suffix_of, whole_file
 from eventsim.show.picture import Look, Picture
 from eventsim.show.player.page import page, write_page
 from eventsim.show.strip import write_strip
+from eventsim.show.strokes import BANDS
 
 SUFFIXES = (".mp4", ".gif", ".html", ".png")
 FPS = {".mp4": 30.0, ".gif": 20.0}
@@ -87,10 +89,11 @@ def animate(
     timing = _timing(replay, suffix, film)
     if suffix == ".mp4":
         ffmpeg()  # missing: say so before any work is done
-    trail_frames = round(TRAIL * timing.fps)
+    between = BANDS if suffix == ".png" and look.trails else 1
+    trail_frames = BANDS if suffix == ".png" else round(TRAIL * timing.fps)
     picture = Picture(replay, look, ROOM[suffix], timing.times, trail_frames)
     with whole_file(file) as part:
-        drawn = _drawn(picture, replay, timing, progress)
+        drawn = _drawn(picture, replay, timing, between, progress)
         if suffix == ".mp4":
             write_mp4(part, drawn, picture.layout.size, timing.fps)
         elif suffix == ".gif":
@@ -99,6 +102,18 @@ def animate(
             )
         else:
             write_strip(part, drawn, len(timing.times), picture.layout.size)
+
+
+def animate_with(log: EventLog, path: str | PathLike[str], **options: Any) -> None:
+    """Write an animation with the options of Film and Look, each by its name; see `animate`."""
+    known = {field.name: part for part in (Film, Look) for field in fields(part)}
+    unknown = sorted(set(options) - set(known))
+    if unknown:
+        raise EventsimError(f"animate has no option {', '.join(unknown)}; there are {', '.join(known)}")
+    film, look = (
+        {name: value for name, value in options.items() if known[name] is part} for part in (Film, Look)
+    )
+    animate(log, path, Film(**film), Look(**look))
 
 
 def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
@@ -119,13 +134,20 @@ def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
 
 
 def _drawn(
-    picture: Picture, replay: Replay, timing: Timing, progress: Progress | None
+    picture: Picture, replay: Replay, timing: Timing, between: int, progress: Progress | None
 ) -> Iterator[NDArray[np.uint8]]:
-    count = len(timing.times)
-    for place, frame in enumerate(frames_at(replay, timing.times, GLOW * timing.speed)):
-        yield picture.draw(frame)
+    """Yield the pixels of each frame.
+
+    between: how many frames are drawn, unseen, for a trail that leads to each: the moments of a strip are far apart.
+    """
+    ahead = np.linspace(TRAIL * timing.speed, 0.0, between + 1)[between == 1 :]
+    times = np.maximum(timing.times[:, None] - ahead, replay.span[0]).ravel()
+    for place, frame in enumerate(frames_at(replay, times, GLOW * timing.speed), start=1):
+        pixels = picture.draw(frame)
+        if place % len(ahead) == 0:
+            yield pixels
         if progress is not None:
-            progress((place + 1) / count, frame.events, frame.state.time)
+            progress(place / len(times), frame.events, frame.state.time)
 
 
 def _samples(picture: Picture, replay: Replay, timing: Timing) -> Iterator[NDArray[np.uint8]]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Colormap, ListedColormap, to_rgba
+from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
@@ -89,15 +90,19 @@ def amounts() -> Colormap:
 def fastest_flight(log: EventLog) -> float:
     """Return the speed at the end of the scale: `FASTEST_SHARE` of the flights are slower; above 0."""
     pairs = log.b >= 0
-    flights = [log.scene.disks.velocity.T, (log.vxa, log.vya), (log.vxb[pairs], log.vyb[pairs])]
-    speeds = np.concatenate([np.hypot(vx, vy) for vx, vy in flights])
+    flights: list[Sequence[Floats]] = [
+        (*log.scene.disks.velocity.T,),
+        (log.vxa, log.vya),
+        (log.vxb[pairs], log.vyb[pairs]),
+    ]
+    speeds = np.concatenate([np.hypot(*flight) for flight in flights])
     return float(np.quantile(speeds, FASTEST_SHARE)) or float(speeds.max()) or 1.0
 
 
-def species_of(disks: Disks) -> tuple[Floats, Floats]:
+def species_of(disks: Disks) -> tuple[NDArray[np.int64], Floats]:
     """Return the species of each disk (N,), and radius and mass of each species (S, 2), the largest first."""
     kinds, species = np.unique(np.column_stack([-disks.radius, -disks.mass]), axis=0, return_inverse=True)
-    return species.reshape(-1), -kinds
+    return species.reshape(-1).astype(np.int64), -kinds
 
 
 def _fixed(colours: Floats, key: Scale | Kinds | None) -> Colouring:
@@ -129,7 +134,7 @@ def _by_mass(disks: Disks) -> Colouring:
     if len(masses) == 0 or masses.min() == masses.max():
         values = np.unique(disks.mass)
         labels = tuple((f"mass {value:g}", KINDS[place]) for place, value in enumerate(values.tolist()))
-        return _fixed(_of_kinds(np.searchsorted(values, disks.mass)), Kinds(labels))
+        return _fixed(_of_kinds(np.searchsorted(values, disks.mass).astype(np.int64)), Kinds(labels))
     low, high = float(masses.min()), float(masses.max())
     colours = amounts()((np.where(finite, disks.mass, high) - low) / (high - low))
     colours[~finite] = to_rgba(KINDS[6])
@@ -143,13 +148,17 @@ def _by_species(disks: Disks) -> Colouring:
             f"there are {len(kinds)} species (pairs of radius and mass), and colours for {len(KINDS)}: "
             "colour by mass, speed, contacts or index"
         )
+    return _fixed(_of_kinds(species), Kinds(species_labels(disks)))
+
+
+def species_labels(disks: Disks) -> tuple[tuple[str, str], ...]:
+    """Return (label, colour) of the species, as many as there are colours."""
+    kinds = species_of(disks)[1][: len(KINDS)]
     by_mass = len(np.unique(kinds[:, 1])) > 1
-    labels = tuple(
-        (f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}", KINDS[place])
-        for place, (radius, mass) in enumerate(kinds.tolist())
-    )
-    return _fixed(_of_kinds(species), Kinds(labels))
+    texts = [f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}" for radius, mass in kinds.tolist()]
+    return tuple(zip(texts, KINDS, strict=False))
 
 
-def _of_kinds(species: Floats) -> Floats:
-    return np.array([to_rgba(colour) for colour in KINDS])[species]
+def _of_kinds(species: NDArray[np.int64]) -> Floats:
+    colours: Floats = np.array([to_rgba(colour) for colour in KINDS])[species]
+    return colours

@@ -88,7 +88,7 @@ class Bars:
             self._draw_kinds(key)
 
     def _draw_scale(self, key: Scale) -> None:
-        right, length, faint = PAD, 90.0, self._palette.faint
+        right, length, faint = float(PAD), 90.0, self._palette.faint
         high = self._text(-right, BAR / 2, f"{key.high:.3g}", "right", faint)
         right += self._width(high) + 6
         unit, (width, height) = self._place.unit, self._place.size

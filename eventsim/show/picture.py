@@ -108,9 +108,8 @@ class Picture:
             glow = frame.glow[:, None]
             colours = colours * (1.0 - glow) + np.array(to_rgba(self._palette.glow)) * glow
         place, disk = disks_with_images(frame.state.position, self._radius, self._replay.log.scene)
-        self._disks.set_offsets(place)
+        self._disks.set(offsets=place, facecolor=colours[disk])
         self._disks.set_sizes(self._areas[disk], DPI)
-        self._disks.set_facecolors(colours[disk])
 
     def _disk_artist(self) -> CircleCollection:
         radius = np.maximum(self._radius * self.layout.scale, SMALLEST)

@@ -49,14 +49,18 @@ class FlightTable:
 
     def of(self, disks: NDArray[np.int64]) -> FlightTable:
         """Return the flights of some disks."""
-        chosen = np.isin(self.disk, disks)
-        return FlightTable(*(getattr(self, name)[chosen] for name in self.__slots__))
+        return self.at(np.flatnonzero(np.isin(self.disk, disks)))
+
+    def at(self, places: NDArray[np.int64]) -> FlightTable:
+        """Return the flights at some places of the table."""
+        return FlightTable(*(getattr(self, name)[places] for name in self.__slots__))
 
     def lengths(self) -> Floats:
         """Return the length of each flight (F,); under gravity by Simpson's rule for the speed."""
         lag = self.duration[:, None]
         speeds = [np.hypot(*(self.velocity + share * lag * self.pull).T) for share in (0.0, 0.5, 1.0)]
-        return self.duration * (speeds[0] + 4.0 * speeds[1] + speeds[2]) / 6.0
+        lengths: Floats = self.duration * (speeds[0] + 4.0 * speeds[1] + speeds[2]) / 6.0
+        return lengths
 
 
 def flight_table(replay: Replay) -> FlightTable:

@@ -57,7 +57,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     label(
         axes,
         f"free path [{LENGTH}]",
-        f"probability density [1 / {LENGTH}]",
+        f"probability density [per {LENGTH}]",
         f"{name_of(log.scene.name)}: {verdict}",
     )
     axes.set(yscale="log", xlim=(0.0, edges[-1]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from eventsim.record.events import Kind
 from eventsim.record.log import EventLog
@@ -26,6 +27,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     span = replay_with_time(log).span
     n = len(log.scene.disks)
     over, axes = figure.subplots(2, 1, sharex=True, height_ratios=[1, 4])
+    handles = []
     height = min(max(200.0 / n, 0.8), 12.0)
     for kind in Kind:
         rows = log.rows[log.kind == kind]
@@ -35,16 +37,19 @@ def draw(figure: Figure, log: EventLog) -> None:
         time = np.concatenate([rows["time"], rows["time"][pairs]])
         disk = np.concatenate([rows["a"], rows["b"][pairs]])
         colour, marker = MARKS[kind]
+        handles.append(
+            Line2D([], [], color=colour, marker="s", ls="none", label=f"{kind.label}: {len(rows):,}")
+        )
         axes.plot(
             time, disk, marker, color=colour, markersize=height, markeredgewidth=0.9, linestyle="none",
-            label=f"{kind.label}: {len(rows):,}", rasterized=len(time) > MOST_VECTORS,
+            rasterized=len(time) > MOST_VECTORS,
         )  # fmt: skip
     counts, edges = np.histogram(log.time, bins=100, range=span)
     over.stairs(counts / (edges[1] - edges[0]), edges, color="#39424e", fill=True, alpha=0.35)
-    label(over, "", f"events / {TIME}", f"{name_of(log.scene.name)}: {len(log):,} events of {n:,} disks")
+    label(over, "", "events per\ntime unit", f"{name_of(log.scene.name)}: {len(log):,} events of {n:,} disks")
     label(axes, f"time [{TIME}]", "disk", "")
     axes.set(xlim=span, ylim=(-0.7, n - 0.3))
     axes.grid(visible=False)
     if n <= 20:
         axes.set_yticks(range(n))
-    figure.legend(loc="outside lower right", ncols=4, frameon=False, fontsize=9)
+    figure.legend(handles=handles, loc="outside lower right", ncols=4, frameon=False, fontsize=9)

@@ -30,8 +30,11 @@ def draw(figure: Figure, log: EventLog) -> None:
     time, gap = gaps_at_contact(replay)
     below.plot(time, gap, ".", ms=2.5, color=ORANGE, rasterized=len(gap) > MOST_VECTORS)
     if lossy:
-        said = f"energy falls to {change[-1]:.3g} of itself"
-        above.set_ylim(0.0, None)
+        said = f"energy ends at {change[-1]:.3g} of itself"
+        if change.min() > 0.0 and change[-1] < 0.1:
+            above.set_yscale("log")
+        else:
+            above.set_ylim(0.0, None)
     else:
         said = f"energy keeps to {np.abs(change).max():.1g}"
     deepest = max(float(-gap.min()), 0.0) if len(gap) else 0.0

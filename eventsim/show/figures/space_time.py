@@ -15,12 +15,19 @@ from eventsim.show.figures.style import LENGTH, TIME, label, name_of
 from eventsim.show.figures.trajectories import wrapped_pieces
 
 MOST_VECTORS = 20_000
+MOST_CONTACTS = 800
+"""Of a longer run the beginning is drawn, up to this many contacts: more cannot be told apart."""
 
 
 def draw(figure: Figure, log: EventLog) -> None:
     """Draw the coordinate along which the disks spread most; dots are contacts of two disks."""
     replay = replay_with_time(log)
+    begin, end = replay.span
+    pairs = log.time[log.kind == Kind.PAIR]
+    if len(pairs) > MOST_CONTACTS:
+        end = float(pairs[MOST_CONTACTS])
     scene, table = log.scene, flight_table(replay)
+    table = table.at(np.flatnonzero(table.time <= end))
     spread = np.ptp(table.place, axis=0)
     axis = int(spread[1] > spread[0])
     time, ends = table.pieces()
@@ -36,13 +43,15 @@ def draw(figure: Figure, log: EventLog) -> None:
     )
     axes.plot(table.time[table.pair], table.place[table.pair, axis], ".", ms=2.5, color="#1b1f24")
     shown = outlines.shown_rectangle(log, replay.stage.corner, table.place)
-    axes.set(xlim=replay.span, ylim=(shown[axis], shown[axis + 2]))
+    axes.set(xlim=(begin, end), ylim=(shown[axis], shown[axis + 2]))
     if scene.domain.size is not None:
         for edge in (scene.domain.origin[axis], scene.domain.origin[axis] + scene.domain.size[axis]):
             axes.axhline(edge, color="#39424e", lw=1.2, ls="--" if scene.domain.periodic[axis] else "-")
-    pairs = int((log.kind == Kind.PAIR).sum())
+    which = (
+        f"{len(pairs):,}" if len(pairs) <= MOST_CONTACTS else f"the first {MOST_CONTACTS:,} of {len(pairs):,}"
+    )
     label(
         axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
-        f"{name_of(scene.name)}: {replay.stage.n:,} disks, {pairs:,} contacts between them (dots)",
+        f"{name_of(scene.name)}: {replay.stage.n:,} disks, {which} contacts between them (dots)",
     )  # fmt: skip
     axes.grid(visible=False)

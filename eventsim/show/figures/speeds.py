@@ -67,7 +67,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     label(
         axes,
         f"speed [{SPEED}]",
-        f"probability density [1 / ({SPEED})]",
+        "probability density [time / length]",
         f"{name_of(log.scene.name)}: {verdict}",
     )
     axes.set(xlim=(0.0, edges[-1]), ylim=(0.0, None))

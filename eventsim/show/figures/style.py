@@ -12,8 +12,8 @@ SIZE, DPI = (7.2, 4.4), 150
 
 BLUE, ORANGE, GREEN, PINK = KINDS[0], KINDS[1], KINDS[2], KINDS[3]
 RED = KINDS[5]
-TIME, LENGTH, SPEED = "time", "length", "length / time"
-"""Units: those of the scene."""
+TIME, LENGTH, SPEED = "time unit", "length unit", "length / time"
+"""Units: whatever the scene takes for them."""
 
 
 def new_figure() -> Figure:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
+from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
 from eventsim.record.log import EventLog
 from eventsim.show import outlines
+from eventsim.show.colouring import amounts
 from eventsim.show.figures.flights import flight_table, replay_with_time
-from eventsim.show.figures.style import LENGTH, label, name_of
+from eventsim.show.figures.style import LENGTH, SIZE, label, name_of
 from eventsim.show.images import lines_with_images
 from eventsim.show.palette import KINDS, LIGHT
 
@@ -22,6 +25,11 @@ MOST_DISKS = 16
 
 MOST_COLOURS = 7
 
+TALLEST, NARROWEST, LABELS = 6.4, 4.6, 0.8
+"""Inches: of the scene in a figure, of a figure, and what labels take."""
+
+Indices: TypeAlias = NDArray[np.int64]
+
 
 def draw(figure: Figure, log: EventLog) -> None:
     """Draw the ways of up to MOST_DISKS disks; dots are contacts, circles the disks at the end."""
@@ -29,15 +37,14 @@ def draw(figure: Figure, log: EventLog) -> None:
     scene, n = log.scene, replay.stage.n
     disks = np.arange(min(n, MOST_DISKS))
     table = flight_table(replay).of(disks)
-    axes = figure.add_subplot(aspect="equal")
     colours = np.array(KINDS[:MOST_COLOURS] if n <= MOST_COLOURS else [])
-    shades = (
-        colours[disks] if len(colours) else colormaps["turbo"](0.05 + 0.9 * disks / max(len(disks) - 1, 1))
-    )
+    shades = colours[disks] if len(colours) else amounts()(disks / max(len(disks) - 1, 1))
     _, ends = table.pieces()
     disk = np.repeat(table.disk, len(ends) // max(len(table.disk), 1))
     ends, disk = wrapped_pieces(ends, disk, outlines.period_of(scene), scene.domain.origin)
     shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
+    figure.set_size_inches(*inches_for(shown))
+    axes = figure.add_subplot(aspect="equal")
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]))
     ways = LineCollection(list(ends), colors=shades[disk], linewidths=0.9, alpha=0.75)
     axes.add_collection(ways, autolim=False)
@@ -46,7 +53,13 @@ def draw(figure: Figure, log: EventLog) -> None:
         ways.set_clip_path(inside)
     hit = ~table.first
     axes.scatter(
-        *table.place[hit].T, s=7, c=shades[table.disk[hit]], edgecolors="white", linewidths=0.3, zorder=3
+        table.place[hit, 0],
+        table.place[hit, 1],
+        s=7,
+        c=shades[table.disk[hit]],
+        edgecolors="white",
+        linewidths=0.3,
+        zorder=3,
     )
     last = replay.final().position[disks]
     circles = [
@@ -71,9 +84,16 @@ def draw(figure: Figure, log: EventLog) -> None:
     axes.grid(visible=False)
 
 
+def inches_for(shown: outlines.Rectangle) -> tuple[float, float]:
+    """Return the size of a figure that a rectangle of the scene fills, labels included."""
+    aspect = (shown[3] - shown[1]) / (shown[2] - shown[0])
+    width = min(max(TALLEST / aspect, NARROWEST), SIZE[0])
+    return width, min(max((width - LABELS) * aspect, 1.0), TALLEST) + LABELS
+
+
 def wrapped_pieces(
-    ends: Floats, disk: Floats, period: tuple[float | None, float | None], corner: tuple[float, float]
-) -> tuple[Floats, Floats]:
+    ends: Floats, disk: Indices, period: tuple[float | None, float | None], corner: tuple[float, float]
+) -> tuple[Floats, Indices]:
     """Return pieces (P, 2, 2), and the disk (P,) of each, repeated in every image of the domain that they pass through."""
     for axis, length in enumerate(period):
         if length is None:

@@ -17,7 +17,7 @@ from eventsim.record.events import Column
 from eventsim.record.log import EventLog
 from eventsim.record.replay import Replay
 from eventsim.show import outlines
-from eventsim.show.colouring import amounts, default_mode, fastest_flight, mode_named, species_of
+from eventsim.show.colouring import amounts, default_mode, fastest_flight, mode_named, species_labels, species_of
 from eventsim.show.frames import shown_span
 from eventsim.show.images import lines_with_images
 from eventsim.show.palette import DARK, KINDS, LIGHT
@@ -95,6 +95,7 @@ def _stage(replay: Replay, last: float) -> dict[str, Any]:
         **{name: [line.tolist() for line in of_kind] for name, of_kind in lines.items()},
         "usualRadius": float(np.median(scene.disks.radius)),
         "fastest": fastest_flight(log),
+        "speciesNames": [name for name, _ in species_labels(scene.disks)],
         "masses": [float(masses.min()), float(masses.max())] if len(masses) else [1.0, 1.0],
         "kinds": KINDS,
         "amounts": [to_hex(shade) for shade in shades],

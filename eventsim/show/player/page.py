@@ -9,11 +9,15 @@ from pathlib import Path
 from string import Template
 
 from eventsim.record.log import EventLog
+from eventsim.record.replay import Replay
 from eventsim.show.player.pack import packed
 
 SCRIPTS = ("world.js", "drawing.js", "player.js", "load.js")
 FRAME_HEIGHT = 560
 """CSS pixels of a player inside a notebook."""
+
+MOST_EVENTS = 50_000
+"""Events (4 MB) beyond which a notebook shows a run as text: each output stays in the notebook's file."""
 
 
 def page(
@@ -42,8 +46,11 @@ def page(
     )
 
 
-def frame(log: EventLog) -> str:
-    """Return the player as an html element of its own, for a notebook."""
+def notebook_frame(log: EventLog) -> str | None:
+    """Return the player as an html element of its own; None for a log too long for a notebook, or without time."""
+    start, end = Replay(log).span
+    if len(log) > MOST_EVENTS or start == end:
+        return None
     source = html.escape(page(log), quote=True)
     return f'<iframe srcdoc="{source}" style="width: 100%; height: {FRAME_HEIGHT}px; border: 0"></iframe>'
 

@@ -19,7 +19,7 @@ class Player {
     this.part = (name) => root.querySelector(`[data-part="${name}"]`);
     this.canvas = this.part("canvas");
     this.drawing = new Drawing(this.canvas, world, description.stage);
-    this.disks = description.stage;
+    this.stage = description.stage;
     this._connect();
     this._show();
     new ResizeObserver(() => { this.drawing.resize(); this._show(); }).observe(this.canvas);
@@ -27,7 +27,7 @@ class Player {
 
   /* The state at the time that is shown, on the scene's axes: {time, x, y, vx, vy}. */
   state() {
-    const now = this.world.state(this.view.time), [cx, cy] = this.disks.corner;
+    const now = this.world.state(this.view.time), [cx, cy] = this.stage.corner;
     return { time: this.start + this.view.time, x: Array.from(now.x, (x) => x + cx), y: Array.from(now.y, (y) => y + cy),
              vx: Array.from(now.vx), vy: Array.from(now.vy) };
   }
@@ -116,7 +116,8 @@ class Player {
     on("speed", "input", () => this.setSpeed(2 ** Number(this.part("speed").value)));
     const colour = this.part("colour");
     for (const name of COLOURS) colour.append(new Option(name, name, false, name === this.view.colour));
-    on("colour", "change", () => { this.view.colour = colour.value; this._show(); });
+    on("colour", "change", () => { this.view.colour = colour.value; this._key_of_colours(); this._show(); });
+    this._key_of_colours();
     for (const name of ["trails", "flash", "arrows", "dark"]) {
       this.part(name).checked = this.view[name];
       on(name, "change", () => this._switch(name, this.part(name).checked));
@@ -127,6 +128,20 @@ class Player {
     on("canvas", "click", () => this.toggle());
     window.addEventListener("keydown", (event) => this._key(event));
     this._label();
+  }
+
+  /* Say what the colours mean: the ends of a scale, or a dot for each species. */
+  _key_of_colours() {
+    const { amounts, kinds, speciesNames, fastest, masses } = this.stage, number = (value) => String(Number(value.toPrecision(3)));
+    const scale = (low, high) => [low, dot(`linear-gradient(90deg, ${amounts.join(", ")})`, "scale"), high];
+    const keys = {
+      speed: () => scale("0", number(fastest)),
+      mass: () => (masses[0] < masses[1] ? scale(number(masses[0]), number(masses[1])) : []),
+      contacts: () => scale("few", "many"),
+      index: () => scale("0", String(this.world.count - 1)),
+      species: () => speciesNames.slice(0, 4).flatMap((name, k) => [dot(kinds[k % kinds.length], ""), name]),
+    };
+    this.part("key").replaceChildren(...keys[this.view.colour]());
   }
 
   _switch(name, value) {
@@ -165,7 +180,7 @@ class Player {
 
   /* Write what is known of the marked disk beside the pointer. */
   _tell() {
-    const i = this.view.marked, now = this.world.now, disks = this.world.disks, [cx, cy] = this.disks.corner;
+    const i = this.view.marked, now = this.world.now, disks = this.world.disks, [cx, cy] = this.stage.corner;
     const number = (value) => Number(value.toPrecision(6));
     const tip = this.part("tip"), box = this.root.getBoundingClientRect();
     tip.textContent = [
@@ -179,6 +194,13 @@ class Player {
     tip.style.left = `${left + 16 + tip.offsetWidth < box.width ? left + 16 : Math.max(left - 16 - tip.offsetWidth, 0)}px`;
     tip.style.top = `${Math.min(top + 12, box.height - tip.offsetHeight)}px`;
   }
+}
+
+function dot(background, kind) {
+  const element = document.createElement("i");
+  element.className = kind;
+  element.style.background = background;
+  return element;
 }
 
 /* A time with as many digits as tell apart the steps of a thousandth of a duration. */
