@@ -6,6 +6,7 @@ the list of the present day.
 
 from __future__ import annotations
 
+from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline
 from eventsim.engines.fast.layout import (
     BUCKET,
@@ -71,14 +72,14 @@ def first(m, grid, day, limit):
     while True:
         bucket = day & (grid.days - 1)
         head = word(m.buckets, bucket)
-        earliest, others, i = -1, 0, head
+        earliest, others, i = -1, 0, head  # all updated without branches, which could not be foreseen
         time = float(day + 1) * grid.day_length
         while i >= 0:
             due = real(m.disks, i * REALS + DUE)
-            if due < time:
-                time, earliest, others = due, i, 0
-            elif due == time and earliest >= 0:
-                others += 1
+            sooner = due < time
+            others = 0 if sooner else others + (due == time)
+            earliest = i if sooner else earliest
+            time = due if sooner else time
             i = word(m.disks, i * WORDS + NEXT)
         if earliest >= 0:
             return earliest, day, others
@@ -143,7 +144,7 @@ def fetch_record(m, i):
 @inline
 def fetch_around(m, grid, i, disks):
     """Ask for the slots of the cells around disk i; or for the first line of each disk in them."""
-    depth, width = grid.depth, grid.columns + 2
+    depth, width = depth_of(grid, grid.deep), grid.columns + 2
     start = depth * (word(m.disks, i * WORDS + COLUMN) - 1 + width * (word(m.disks, i * WORDS + ROW) - 1))
     for _ in range(3):
         if disks:

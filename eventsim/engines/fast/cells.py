@@ -12,9 +12,18 @@ from eventsim.engines.fast.layout import (
     EDGE,
     FLAGS,
     ROW,
+    USUAL_DEPTH,
     WORDS,
 )
 from eventsim.engines.fast.memory import store, word
+
+
+@inline
+def depth_of(grid, deep):
+    """The number of slots of a cell: a constant where it is the usual one."""
+    if deep is None:
+        return USUAL_DEPTH
+    return grid.depth
 
 
 @inline
@@ -38,11 +47,12 @@ def enter(m, grid, rules, i, column, row):
 def _occupy(m, grid, rules, i, column, row, edge, slots):
     if slots is None:
         return True
-    start = grid.depth * cell_of(grid, column, row)
+    depth = depth_of(grid, grid.deep)
+    start = depth * cell_of(grid, column, row)
     k = 0
-    while k < grid.depth and word(slots, start + k) != grid.n:
+    while k < depth and word(slots, start + k) != grid.n:
         k += 1
-    if k == grid.depth:
+    if k == depth:
         return False
     store(slots, start + k, i)
     if edge:
@@ -54,8 +64,9 @@ def _occupy(m, grid, rules, i, column, row, edge, slots):
 def leave(m, grid, rules, i):
     """Take disk i out of its cell."""
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
-    start = grid.depth * cell_of(grid, column, row)
-    for k in range(grid.depth):
+    depth = depth_of(grid, grid.deep)
+    start = depth * cell_of(grid, column, row)
+    for k in range(depth):
         disk = word(m.slots, start + k)
         store(m.slots, start + k, grid.n if disk == i else disk)
     if word(m.disks, i * WORDS + FLAGS) & EDGE:
@@ -70,12 +81,13 @@ def _copy_to_ghosts(m, grid, column, row, along_x, along_y):
         ghost_column = grid.columns + 1 if column == 1 else (0 if column == grid.columns else -1)
     if along_y:
         ghost_row = grid.rows + 1 if row == 1 else (0 if row == grid.rows else -1)
-    start = grid.depth * cell_of(grid, column, row)
-    for k in range(grid.depth):
+    depth = depth_of(grid, grid.deep)
+    start = depth * cell_of(grid, column, row)
+    for k in range(depth):
         disk = word(m.slots, start + k)
         if ghost_column >= 0:
-            store(m.slots, grid.depth * cell_of(grid, ghost_column, row) + k, disk)
+            store(m.slots, depth * cell_of(grid, ghost_column, row) + k, disk)
         if ghost_row >= 0:
-            store(m.slots, grid.depth * cell_of(grid, column, ghost_row) + k, disk)
+            store(m.slots, depth * cell_of(grid, column, ghost_row) + k, disk)
         if ghost_column >= 0 and ghost_row >= 0:
-            store(m.slots, grid.depth * cell_of(grid, ghost_column, ghost_row) + k, disk)
+            store(m.slots, depth * cell_of(grid, ghost_column, ghost_row) + k, disk)

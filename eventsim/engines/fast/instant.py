@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pull
+from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline, kernel
 from eventsim.engines.fast.layout import (
     COLUMN,
@@ -68,15 +69,15 @@ def _pairs_at(m, grid, rules, i, now, found, count, slots):
     if slots is None:
         return _pairs_of_everyone(m, grid, rules, i, now, found, count)
     x, y = place(m, rules, i, now)
-    start = corner_slot(m, grid, i)
+    start, depth = corner_slot(m, grid, i), depth_of(grid, grid.deep)
     for _ in range(3):
-        for k in range(3 * grid.depth):
+        for k in range(3 * depth):
             j = word(m.slots, start + k)
             if j != grid.n and j != i:
                 kx, ky = images(m, rules, i, j, now, x, y)
                 if pair_is_due(m, rules, i, j, kx, ky) == now:
                     count = _add(found, count, i, j, kx, ky)
-        start += grid.depth * (grid.columns + 2)
+        start += depth * (grid.columns + 2)
     return count
 
 

@@ -23,6 +23,9 @@ PARTNER, PARTNER_COUNT, PREVIOUS, NEXT, BUCKET, COLUMN, ROW = 20, 21, 22, 23, 24
 AT_ONCE, WRAPS_X, WRAPS_Y, MET_KX, MET_KY = 27, 28, 29, 30, 31
 """In line 1: contacts at the time of the last one; wraps; the image in which it was met (of a wall: the side)."""
 
+USUAL_DEPTH = 4
+"""Slots in a cell that is too narrow for a fifth disk."""
+
 EDGE, IMMOVABLE, TRACER = 1, 2, 4
 """Flags: in a cell at the border of the grid; infinite mass; no mass."""
 
@@ -87,7 +90,7 @@ class Rules(NamedTuple):
 class Grid(NamedTuple):
     """Disks, cells and the calendar.
 
-    n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell.  low: the corner of the grid.
+    n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell; deep: None where it is the usual one.  low: the corner of the grid.
     days: buckets, a power of two.  lanes: eight pairs at a time, or None.  look_ahead: days at which memory is prefetched, or None.
     """
 
@@ -95,6 +98,7 @@ class Grid(NamedTuple):
     columns: int
     rows: int
     depth: int
+    deep: object
     low_x: float
     low_y: float
     side_x: float
@@ -120,8 +124,8 @@ class Grid(NamedTuple):
 """Why a kernel returned: its steps are done; no event before the limit; enough events; the row buffer is full; contacts of equal
 time; a full cell; a disk has left the grid; an instant does not end; a long time without events."""
 
-DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, DISK, STEPS = range(11)
-"""Places in `counts`; DISK: the one that a status is about."""
+DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS = range(12)
+"""Places in `counts`; ROW_COUNT: rows written into the buffer by the last call, ROOM: how many fit; DISK: the one that a status is about."""
 
 NOW, DEEPEST, OUTER_X, OUTER_Y = range(4)
 """Places in `sums`: the time, the deepest overlap, momentum from outside."""

@@ -12,17 +12,20 @@ from eventsim.engines.fast.layout import (
     CONTACT_TIME,
     CROSSINGS,
     DAY,
+    DEEPEST,
     DISK,
     DOWN,
     DUE,
     EVENTS,
     LEFT,
     NOW,
+    PAIRS,
     PARTNER,
     PARTNER_COUNT,
     COUNTS,
     REALS,
     RIGHT,
+    ROOM,
     ROW,
     ROW_COUNT,
     STALE,
@@ -38,6 +41,8 @@ from eventsim.engines.fast.layout import (
     STEPS,
     UP,
     WALL,
+    WALLS,
+    WINDOW_ROWS,
     WORDS,
     WRAP_DOWN,
     WRAP_LEFT,
@@ -95,19 +100,18 @@ def move(m, grid, rules, i, code, slots):
 
 
 @kernel
-def run(arrays, grid, rules, counts, sums, limit, target, budget, room):
+def run(arrays, grid, rules, counts, sums, limit, target, budget):
     """Handle events before `limit` (a time) until `target` rows in all, `budget` steps, or no room for a row; the status."""
     m = pointers(arrays)
-    day, now = counts[DAY], sums[NOW]
+    day, now, deepest = counts[DAY], sums[NOW], sums[DEEPEST]
+    begun = counts[EVENTS]
+    events, walls, wraps, stale = begun, 0, 0, 0
+    bound = min(target, begun + counts[ROOM])
     status = STATUS_BUDGET
     steps = 0
     while steps < budget:
-        steps += 1
-        if counts[EVENTS] >= target:
-            status = STATUS_EVENTS
-            break
-        if counts[ROW_COUNT] >= room:
-            status = STATUS_ROWS
+        if events >= bound:
+            status = STATUS_EVENTS if events >= target else STATUS_ROWS
             break
         i, day, others = first(m, grid, day, limit)
         if i < 0:
@@ -117,18 +121,17 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget, room):
         if not due < limit:
             status = STATUS_LIMIT
             break
+        now = due
         if others > 0 and not (others == 1 and is_mutual(m, i)):
-            k = unsettled(m, i)
-            if k < 0:
-                now = due
+            i = unsettled(m, i)
+            if i < 0:
                 status = STATUS_TIE
                 break
-            i = k
+        steps += 1
         code = word(m.disks, i * WORDS + PARTNER)
-        now = due
         if code >= 0:
             if is_stale(m, i):
-                counts[STALE] += 1
+                stale += 1
                 take(m, i)
             elif word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS:
                 status = STATUS_TIE
@@ -136,7 +139,9 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget, room):
             else:
                 take(m, i)
                 take(m, code)
-                resolve_pair(m, rules, counts, sums, i, code, now)
+                overlap = resolve_pair(m, rules, sums, i, code, now, events, events - begun)
+                deepest = overlap if overlap > deepest else deepest
+                events += 1
                 predict(m, grid, rules, code, now, now)
                 push(m, grid, code, day)
         elif code <= WALL:
@@ -144,24 +149,33 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget, room):
                 status = STATUS_TIE
                 break
             take(m, i)
-            resolve_wall(m, rules, counts, sums, i, code, now)
+            resolve_wall(m, rules, sums, i, code, now, events, events - begun)
+            walls += 1
+            events += 1
         else:
             take(m, i)
             if code <= WRAP_RIGHT:
-                counts[WRAPS] += 1
+                wraps += 1
                 wrap(m, rules, i, code, now)
-            else:
-                counts[CROSSINGS] += 1
             if not move(m, grid, rules, i, code, m.slots):
                 status = STATUS_FULL
                 break
         predict(m, grid, rules, i, now, now)
         push(m, grid, i, day)
-        if (code >= 0 or code <= WALL) and word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
+        if word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
             counts[DISK] = i
             status = STATUS_STUCK
             break
-    counts[DAY], counts[STEPS], sums[NOW] = day, counts[STEPS] + steps, now
+    counts[DAY], sums[NOW], sums[DEEPEST] = day, now, deepest
+    counts[EVENTS] = events
+    counts[PAIRS] += events - begun - walls
+    counts[WALLS] += walls
+    counts[WINDOW_ROWS] += events - begun
+    counts[ROW_COUNT] = events - begun
+    counts[STALE] += stale
+    counts[WRAPS] += wraps
+    counts[STEPS] += steps
+    counts[CROSSINGS] += steps - (events - begun) - stale - wraps
     return status
 
 

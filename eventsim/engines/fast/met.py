@@ -69,3 +69,25 @@ def side_met(m, i, place):
                 return word(m.several, 4 * row + 1)
             row = word(m.several, 4 * row + 3)
     return 0
+
+
+@inline
+def partner_just_met(m, rules, i, kx, ky):
+    """The disk that i met last if it says so as well and is seen in that image, else -1; (kx, ky): the image that it has now.
+
+    Where each of two disks remembers the other one, both remember the same contact: one image is enough to look at.
+    """
+    j = word(m.disks, i * WORDS + MET)
+    met = word(m.disks, j * WORDS + MET)
+    if met == SEVERAL:
+        return j if just_met(m, i, j, kx, ky) else -1
+    same = (met == i) & _same_image(m, i, j, kx, ky, rules.length_x, rules.length_y)
+    return j if same else -1
+
+
+@inline
+def _same_image(m, i, j, kx, ky, length_x, length_y):
+    if length_x is None and length_y is None:
+        return True
+    same_x = word(m.disks, i * WORDS + MET_KX) == unwrapped_x(m, i, j, kx)
+    return same_x & (word(m.disks, i * WORDS + MET_KY) == unwrapped_y(m, i, j, ky))

@@ -26,6 +26,9 @@ MANY_DISKS = 50_000
 LOOK_AHEAD = 32
 """Days at which the prefetch begins."""
 
+SHARE, SHARE_OF_MANY = 1.0, 0.6
+"""The length of a day, in mean times between two scheduled events (the two disks of a contact have one each)."""
+
 LEAST_DAYS = 64
 
 
@@ -93,4 +96,4 @@ def day_length(due: Floats, now: float, end: float, n: int) -> float:
         return max(end, least)
     k = max(1, len(ahead) // 8)
     share = np.partition(ahead, k - 1)[k - 1] / k
-    return float(max((0.35 if n >= MANY_DISKS else 0.6) * share, least))
+    return float(max((SHARE_OF_MANY if n >= MANY_DISKS else SHARE) * share, least))

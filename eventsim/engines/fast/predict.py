@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pull, speed
+from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.lanes import contact_of_eight, gather_disks
 from eventsim.engines.fast.layout import (
@@ -26,6 +27,7 @@ from eventsim.engines.fast.layout import (
     ROW,
     SEVERAL,
     UP,
+    USUAL_DEPTH,
     VX,
     VY,
     WALL,
@@ -39,7 +41,7 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, store, word
-from eventsim.engines.fast.met import just_met
+from eventsim.engines.fast.met import just_met, partner_just_met
 from eventsim.engines.fast.shapes import shape_delay
 from eventsim.formulas.contact import pair_delay
 from eventsim.formulas.crossing import crossing_delay
@@ -307,10 +309,11 @@ def pair_is_due(m, rules, i, j, kx, ky):
 @part
 def _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared):
     """The earliest contact with another disk in the nine cells around, if that is before the given event."""
-    start, width = corner_slot(m, grid, i), grid.depth * (grid.columns + 2)
+    depth = depth_of(grid, grid.deep)
+    start, width = corner_slot(m, grid, i), depth * (grid.columns + 2)
     edge = word(m.disks, i * WORDS + FLAGS) & EDGE
     for _ in range(3):
-        for k in range(3 * grid.depth):
+        for k in range(3 * depth):
             j = word(m.slots, start + k)
             if j == grid.n or j == i:
                 continue
@@ -344,7 +347,7 @@ def _contacts_of_everyone(m, grid, rules, i, floor, time, code, shared):
 def corner_slot(m, grid, i):
     """The first slot of the lower left one of the nine cells around disk i."""
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
-    return grid.depth * (column - 1 + (grid.columns + 2) * (row - 1))
+    return depth_of(grid, grid.deep) * (column - 1 + (grid.columns + 2) * (row - 1))
 
 
 @inline
@@ -368,14 +371,11 @@ def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
         kx, ky = 0, 0
         if edge:
             kx, ky = images(m, rules, i, skip, now, x, y)
-        if not just_met(m, i, skip, kx, ky):
-            skip = -1
-    start, width, across = corner_slot(m, grid, i), grid.depth * (grid.columns + 2), 3 * grid.depth
-    count = 0
-    for _ in range(3):
-        for k in range(0, across, 16):
-            count = gather_disks(m.slots, start + k, across - k, m.near, count, grid.n, i, skip)
-        start += width
+        skip = partner_just_met(m, rules, i, kx, ky)
+    start, width = corner_slot(m, grid, i), depth_of(grid, grid.deep) * (grid.columns + 2)
+    count = _gather(m, grid, start, 0, i, skip, grid.deep)
+    count = _gather(m, grid, start + width, count, i, skip, grid.deep)
+    count = _gather(m, grid, start + 2 * width, count, i, skip, grid.deep)
     x0, y0, u, w = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
@@ -397,6 +397,16 @@ def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
         first += 8
         if first >= count:
             return time, code, shared
+
+
+@inline
+def _gather(m, grid, start, count, i, skip, deep):
+    """Append the disks of three cells side by side to the list of neighbours; the new count."""
+    if deep is None:
+        return gather_disks(m.slots, start, 3 * USUAL_DEPTH, m.near, count, grid.n, i, skip)
+    for k in range(0, 3 * grid.depth, 16):
+        count = gather_disks(m.slots, start + k, 3 * grid.depth - k, m.near, count, grid.n, i, skip)
+    return count
 
 
 @inline

@@ -9,21 +9,18 @@ from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     CONTACT_TIME,
-    DEEPEST,
     LABEL,
     OUTER_X,
     OUTER_Y,
-    PAIRS,
     RADIUS,
     REALS,
     WALL,
-    WALLS,
     WORDS,
 )
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.predict import image, shift
-from eventsim.engines.fast.rows import note
+from eventsim.engines.fast.rows import write_row
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
 from eventsim.engines.reference.resolve import AT_ONCE as INSTANT
 from eventsim.formulas.impulse import (
@@ -96,10 +93,11 @@ def _is_finite(i, mass):
 
 
 @inline
-def resolve_pair(m, rules, counts, sums, i, j, t):
-    """Resolve the contact of disks i and j at time t."""
+def resolve_pair(m, rules, sums, i, j, t, number, slot):
+    """Resolve the contact of disks i and j at time t; its overlap in reaches."""
     swap = word(m.disks, j * WORDS + LABEL) < word(m.disks, i * WORDS + LABEL)
-    a, b = (j, i) if swap else (i, j)
+    a = j if swap else i
+    b = i if swap else j
     xa, ya = place(m, rules, a, t)
     xb, yb = place(m, rules, b, t)
     ua, wa = speed(m, rules, a, t)
@@ -121,15 +119,13 @@ def resolve_pair(m, rules, counts, sums, i, j, t):
     distance = sqrt(dx * dx + dy * dy)
     reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
     overlap = (reach - distance) / reach
-    if overlap > sums[DEEPEST] and _is_finite(a, m.mass) and _is_finite(b, m.mass):
-        sums[DEEPEST] = overlap
     _book_pair(sums, a, b, -(q * reduced) * dx, -(q * reduced) * dy, m.mass)
-    counts[PAIRS] += 1
-    note(m, counts, a, b, -1, -(q * reduced) * distance, t, m.rows)
+    write_row(m, number, slot, a, b, -1, -(q * reduced) * distance, t, m.rows)
+    return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
 
 
 @part
-def resolve_wall(m, rules, counts, sums, i, code, t):
+def resolve_wall(m, rules, sums, i, code, t, number, slot):
     """Resolve the contact of disk i with the wall that the code of the event stands for."""
     number = WALL - code
     place_, side = number // 2, -1 if number % 2 else 1
@@ -158,8 +154,7 @@ def resolve_wall(m, rules, counts, sums, i, code, t):
         sums[OUTER_X] += mass * du
         sums[OUTER_Y] += mass * dw
         impulse = mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))
-    counts[WALLS] += 1
-    note(m, counts, i, -1, wall, impulse, t, m.rows)
+    write_row(m, number, slot, i, -1, wall, impulse, t, m.rows)
 
 
 @inline

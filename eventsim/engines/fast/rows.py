@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from eventsim.engines.fast.compiled import inline
-from eventsim.engines.fast.layout import EVENTS, LABEL, REALS, ROW_COUNT, VX, VY, WINDOW_ROWS, WORDS, X, Y
+from eventsim.engines.fast.layout import LABEL, REALS, VX, VY, WORDS, X, Y
 from eventsim.engines.fast.memory import put, real, word
 from eventsim.record.events import ROW, Kind
 
@@ -23,33 +23,31 @@ PAIR_KIND, WALL_KIND = int(Kind.PAIR), int(Kind.WALL)
 
 
 @inline
-def note(m, counts, a, b, wall, impulse, t, rows):
-    """Count an event, and keep its row if rows are kept; a has the smaller label.  Python fills in the time and the epoch."""
-    if rows is not None:
-        at = SIZE * counts[ROW_COUNT]
-        put(rows, at + EVENT, np.int64(counts[EVENTS]))
-        put(rows, at + KIND, np.int8(PAIR_KIND if b >= 0 else WALL_KIND))
-        put(rows, at + A, np.int32(word(m.disks, a * WORDS + LABEL)))
-        put(rows, at + WALL, np.int32(wall))
-        put(rows, at + XA, real(m.disks, a * REALS + X))
-        put(rows, at + YA, real(m.disks, a * REALS + Y))
-        put(rows, at + VXA, real(m.disks, a * REALS + VX))
-        put(rows, at + VYA, real(m.disks, a * REALS + VY))
-        if b >= 0:
-            put(rows, at + B, np.int32(word(m.disks, b * WORDS + LABEL)))
-            put(rows, at + XB, real(m.disks, b * REALS + X))
-            put(rows, at + YB, real(m.disks, b * REALS + Y))
-            put(rows, at + VXB, real(m.disks, b * REALS + VX))
-            put(rows, at + VYB, real(m.disks, b * REALS + VY))
-        else:
-            put(rows, at + B, np.int32(-1))
-            put(rows, at + XB, math.nan)
-            put(rows, at + YB, math.nan)
-            put(rows, at + VXB, math.nan)
-            put(rows, at + VYB, math.nan)
-        put(rows, at + IMPULSE, impulse)
-        put(rows, at + JOINT, np.int64(-1))
-        put(rows, at + REMAINDER, t)
-        counts[ROW_COUNT] += 1
-    counts[EVENTS] += 1
-    counts[WINDOW_ROWS] += 1
+def write_row(m, number, slot, a, b, wall, impulse, t, rows):
+    """Write row `number` of the log, if rows are kept; a has the smaller label.  Python fills in the time and the epoch."""
+    if rows is None:
+        return
+    at = SIZE * slot
+    put(rows, at + EVENT, np.int64(number))
+    put(rows, at + KIND, np.int8(PAIR_KIND if b >= 0 else WALL_KIND))
+    put(rows, at + A, np.int32(word(m.disks, a * WORDS + LABEL)))
+    put(rows, at + WALL, np.int32(wall))
+    put(rows, at + XA, real(m.disks, a * REALS + X))
+    put(rows, at + YA, real(m.disks, a * REALS + Y))
+    put(rows, at + VXA, real(m.disks, a * REALS + VX))
+    put(rows, at + VYA, real(m.disks, a * REALS + VY))
+    if b >= 0:
+        put(rows, at + B, np.int32(word(m.disks, b * WORDS + LABEL)))
+        put(rows, at + XB, real(m.disks, b * REALS + X))
+        put(rows, at + YB, real(m.disks, b * REALS + Y))
+        put(rows, at + VXB, real(m.disks, b * REALS + VX))
+        put(rows, at + VYB, real(m.disks, b * REALS + VY))
+    else:
+        put(rows, at + B, np.int32(-1))
+        put(rows, at + XB, math.nan)
+        put(rows, at + YB, math.nan)
+        put(rows, at + VXB, math.nan)
+        put(rows, at + VYB, math.nan)
+    put(rows, at + IMPULSE, impulse)
+    put(rows, at + JOINT, np.int64(-1))
+    put(rows, at + REMAINDER, t)

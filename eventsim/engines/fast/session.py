@@ -58,10 +58,10 @@ class FastSession:
         self.counters = Counters()
         self.reason: str | None = None
         self._keep_rows = keep_rows
-        self._counts = np.zeros(11, np.int64)
+        self._counts = np.zeros(12, np.int64)
         self._sums = np.zeros(4)
         self._sizes = sizes
-        self._depth = 4
+        self._depth = layout.USUAL_DEPTH
         straight = stage.gravity is None
         plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
         wanted = lanes_work() if lanes is None else lanes
@@ -72,6 +72,7 @@ class FastSession:
         self._features = _features(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._buffer = np.zeros(BUFFER if keep_rows else 0, ROW)
+        self._counts[layout.ROOM] = BUFFER if keep_rows else FOREVER
         self._blocks: list[Rows] = []
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
@@ -83,7 +84,6 @@ class FastSession:
         try:
             return self._advance(stop, budget)
         finally:
-            self._flush()
             self._tell_counters()
 
     def _advance(self, stop: Stop, budget: int) -> str | None:
@@ -97,9 +97,7 @@ class FastSession:
             status = self._run(limit, target, last - int(counts[layout.STEPS]))
             if status == layout.STATUS_EVENTS:
                 return "events"
-            if status == layout.STATUS_ROWS:
-                self._flush()
-            elif status == layout.STATUS_TIE:
+            if status == layout.STATUS_TIE:
                 if (i := self._resolve_instant()) is not None:
                     return self._give_up(i)
             elif status == layout.STATUS_STUCK:
@@ -121,9 +119,10 @@ class FastSession:
         counts = self._counts
         day, steps = int(counts[layout.DAY]), int(counts[layout.STEPS])
         status: int = run(
-            self._arrays, self._grid, self._rules, counts, self._sums, limit, target, budget, max(len(self._buffer), 1)
+            self._arrays, self._grid, self._rules, counts, self._sums, limit, target, budget
         )
         self.state.now = float(self._sums[layout.NOW])
+        self._flush()
         steps = int(counts[layout.STEPS]) - steps
         if status == layout.STATUS_BUDGET and steps > self.state.n:
             days = (int(counts[layout.DAY]) - day) / steps
@@ -141,7 +140,6 @@ class FastSession:
         Returns a disk whose contacts at this instant do not end.
         """
         state, now = self.state, self.state.now
-        self._flush()
         generation = self._generation()
         resolver = self._opened_resolver()
         waiting = [int(i) for i in self._find(due_at)[:, 0]]
@@ -218,7 +216,6 @@ class FastSession:
 
     def _turn_over(self) -> None:
         state = self.state
-        self._flush()
         self.counters.turnovers += 1
         end = state.window_end
         turn_over(self._arrays, self._grid, self._rules, end)
@@ -272,12 +269,14 @@ class FastSession:
 
     def _grid_of(self, cells: Sizes, has_slots: bool, day: float) -> Grid:
         n = self.stage.n
+        deep = None if cells.depth == layout.USUAL_DEPTH else 1
         ahead = LOOK_AHEAD if n >= MANY_DISKS and has_slots else None
         return Grid(
             n,
             cells.columns,
             cells.rows,
             cells.depth,
+            deep,
             *cells.low,
             *cells.side,
             days_of(n),
