@@ -1,0 +1,29 @@
+"""Short logs to draw."""
+
+import pytest
+
+import eventsim as es
+
+
+def log_of(name, **stop):
+    log = es.simulate(es.gallery(name), log=True, **stop).log
+    assert log is not None
+    return log
+
+
+@pytest.fixture(scope="session")
+def broken():
+    """The first second of the break."""
+    return log_of("break", until=1.0)
+
+
+@pytest.fixture(scope="session")
+def fluid():
+    """A periodic fluid."""
+    return log_of("periodic-fluid", events=600)
+
+
+@pytest.fixture(scope="session")
+def still():
+    """A log in which no time passes."""
+    return log_of("break", events=0)

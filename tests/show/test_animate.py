@@ -1,0 +1,203 @@
+"""Movies: what is in the file agrees with the log, and nothing is left where something went wrong."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image, ImageSequence
+
+import eventsim as es
+from eventsim.errors import EventsimError
+from eventsim.record.replay import Replay
+from eventsim.show.animate import Film, animate
+from eventsim.show.colouring import Colouring
+from eventsim.show.frames import frames_at
+from eventsim.show.picture import Look, Picture
+
+imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="the extra video is not installed")
+SMALL = Look(size=(320, 200))
+
+
+def test_an_mp4_has_the_frames_size_and_duration_asked_for(broken, tmp_path):
+    path = tmp_path / "break.mp4"
+    animate(broken, path, Film(fps=25, duration=2.0), SMALL)
+    reader = imageio_ffmpeg.read_frames(str(path))
+    found = next(reader)
+    reader.close()
+    assert (found["size"], found["fps"], found["codec"]) == ((320, 200), 25.0, "h264")
+    assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (50, pytest.approx(2.0, abs=0.01))
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("name", ["broken", "fluid"])
+def test_disks_are_drawn_where_the_state_says(name, request):
+    log = request.getfixturevalue(name)
+    replay = Replay(log)
+    times = np.linspace(*replay.span, 3)
+    picture = Picture(replay, Look(size=(1280, 720)), (1280, 720), times)
+    unlike = np.random.default_rng(1).random(
+        (len(log.scene.disks), 4)
+    )  # no two disks of nearly the same colour
+    unlike[:, 3] = 1.0
+    picture._colouring = Colouring(lambda frame: unlike, None)
+    left, bottom, _, _ = picture.layout.scene
+    for frame in frames_at(replay, times, 1.0):
+        pixels = picture.draw(frame).astype(int)
+        centres = centres_in(picture, pixels, frame)
+        x0, y0 = picture_corner(log)
+        expected = (frame.state.position - (x0, y0)) * picture.layout.scale + (left, bottom)
+        low = np.array(log.scene.domain.origin) + log.scene.disks.radius.max()
+        high = low + log.scene.domain.size - 2 * log.scene.disks.radius.max()
+        inside = ((frame.state.position > low) & (frame.state.position < high)).all(axis=1)
+        whole = np.isfinite(centres[:, 0]) & inside
+        assert whole.sum() > 0.5 * len(whole)
+        assert np.abs(centres - expected)[whole].max() < 0.2  # pixels
+
+
+def picture_corner(log):
+    domain = log.scene.domain
+    margin = 0.0 if domain.periodic[0] else 0.02 * max(domain.size)
+    return domain.origin[0] - margin, domain.origin[1] - margin
+
+
+def centres_in(picture, pixels, frame):
+    """Centres of mass (N, 2), from the lower-left, of the pixels of each disk's colour; NaN where others share them."""
+    colours = (picture._colouring.paint(frame)[:, :3] * 255).round().astype(int)
+    height = pixels.shape[0]
+    x0, y0 = picture_corner(picture._replay.log)
+    left, bottom, _, _ = picture.layout.scene
+    radius = picture._replay.log.scene.disks.radius * picture.layout.scale
+    centres = np.full((len(colours), 2), np.nan)
+    for i, colour in enumerate(colours):
+        x, y = (frame.state.position[i] - (x0, y0)) * picture.layout.scale + (left, bottom)
+        reach = int(radius[i]) + 3
+        column, row = int(x), int(height - y)
+        if not (reach < column < pixels.shape[1] - reach and reach < row < height - reach):
+            continue
+        window = pixels[row - reach : row + reach + 1, column - reach : column + reach + 1, :3]
+        rows, columns = np.nonzero(np.abs(window - colour).max(axis=2) <= 2)
+        if (
+            abs(len(rows) / (np.pi * (radius[i] - 1.0) ** 2) - 1.0) < 0.15
+        ):  # a whole disk, and no other of this colour
+            centres[i] = column - reach + columns.mean() + 0.5, height - (row - reach + rows.mean() + 0.5)
+    return centres
+
+
+def test_a_movie_shows_the_same_frame_whatever_came_before_it(fluid):
+    replay = Replay(fluid)
+    times = np.linspace(*replay.span, 5)
+    drawn = [
+        [picture.draw(frame).copy() for frame in frames_at(replay, shown, 0.01)]
+        for shown in (times, times[[0, 4]])
+        if (picture := Picture(replay, SMALL, (320, 200), times))
+    ]
+    assert np.array_equal(drawn[0][4], drawn[1][1])
+
+
+def test_a_gif_lasts_as_long_as_asked_and_repeats(broken, tmp_path):
+    path = tmp_path / "break.gif"
+    animate(broken, path, Film(fps=30, duration=1.0), SMALL)
+    with Image.open(path) as image:
+        durations = [frame.info["duration"] for frame in ImageSequence.Iterator(image)]
+        assert (image.size, sum(durations), image.info["loop"]) == ((320, 200), 1000, 0)
+
+
+def test_a_png_is_a_strip_of_moments(broken, tmp_path):
+    path = tmp_path / "break.png"
+    animate(
+        broken,
+        path,
+        Film(moments=4),
+        Look(size=(320, 200), trails=True, velocities=True, flash=True, dark=True),
+    )
+    with Image.open(path) as image:
+        assert image.size == (640, 400)
+
+
+@pytest.mark.parametrize("name", ["stadium", "channel", "brownian", "bounce", "sinai", "corridor", "mixture"])
+@pytest.mark.parametrize("color", [None, "mass", "contacts"])
+def test_every_kind_of_scene_can_be_drawn(name, color, tmp_path):
+    log = es.simulate(es.gallery(name), events=40, log=True).log
+    animate(log, tmp_path / "a.png", Film(moments=2), Look(color=color, trails=True, velocities=True))
+
+
+def test_a_run_animates_itself(tmp_path):
+    run = es.simulate(es.gallery("two-disks"), log=True)
+    run.animate(tmp_path / "two.png", moments=2, dark=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["two.png"]
+    with pytest.raises(EventsimError, match="no option colour"):
+        run.animate(tmp_path / "two.png", colour="speed")
+    with pytest.raises(EventsimError, match="log=True"):
+        es.simulate(es.gallery("two-disks")).animate(tmp_path / "two.png")
+
+
+@pytest.mark.parametrize("suffix", [".mp4", ".gif", ".png"])
+@pytest.mark.parametrize("error", [KeyboardInterrupt, RuntimeError])
+def test_an_interrupted_export_leaves_nothing(broken, tmp_path, suffix, error):
+    def interrupt(fraction, events, time):
+        if fraction > 0.4:
+            raise error
+
+    with pytest.raises(error):
+        animate(broken, tmp_path / f"a{suffix}", Film(), SMALL, interrupt)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupted_export_keeps_the_file_that_was_there(broken, tmp_path):
+    path = tmp_path / "a.png"
+    path.write_text("before")
+
+    def interrupt(fraction, events, time):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        animate(broken, path, Film(), SMALL, interrupt)
+    assert path.read_text() == "before"
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "expected"),
+    [
+        ("a.avi", {}, r"\.mp4, \.gif, \.html, \.png"),
+        ("a.gif", {"size": (10, 10)}, "10x10"),
+        ("a.gif", {"color": "mood"}, "mood"),
+    ],
+)
+def test_what_cannot_be_drawn_is_one_sentence(broken, tmp_path, name, options, expected):
+    with pytest.raises(EventsimError, match=expected):
+        animate(broken, tmp_path / name, None, Look(**options))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".mp4", ".gif", ".png", ".html"])
+def test_a_log_without_time_has_nothing_to_show(still, tmp_path, suffix):
+    with pytest.raises(EventsimError, match="nothing to show"):
+        animate(still, tmp_path / f"a{suffix}")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_ffmpeg_is_one_sentence(broken, tmp_path, monkeypatch):
+    def missing():
+        raise RuntimeError("no ffmpeg")
+
+    monkeypatch.setattr(imageio_ffmpeg, "get_ffmpeg_exe", missing)
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(EventsimError, match=r"eventsim-disks\[video\]"):
+        animate(broken, tmp_path / "a.mp4")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_ffmpeg_that_fails_is_one_sentence(broken, tmp_path, monkeypatch):
+    monkeypatch.setattr("eventsim.show.mp4.QUALITY", ("-pix_fmt", "nonsense"))
+    with pytest.raises(EventsimError, match="ffmpeg could not write the movie: ."):
+        animate(broken, tmp_path / "a.mp4", None, SMALL)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_drawing_needs_neither_a_display_nor_pyplot(tmp_path):
+    code = (
+        "import sys, eventsim as es; run = es.simulate(es.gallery('two-disks'), log=True); "
+        "run.animate('a.png', moments=1); assert 'matplotlib.pyplot' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={"HOME": str(tmp_path)}, check=True)

@@ -1,0 +1,129 @@
+"""Figures: every kind of every scene, and the numbers in them."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import eventsim as es
+from eventsim.errors import EventsimError
+from eventsim.record.replay import Replay
+from eventsim.scene.gallery import names
+from eventsim.show.figures import TITLES, msd
+from eventsim.show.figures.flights import flight_table
+from eventsim.show.figures.free_paths import free_paths, mean_free_path, path_density
+from eventsim.show.figures.residuals import gaps_at_contact
+from eventsim.show.figures.trajectories import wrapped_pieces
+from eventsim.show.figures.write import write_figure
+
+
+@pytest.mark.parametrize("kind", TITLES)
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+def test_every_kind_is_written_in_every_format(fluid, tmp_path, kind, suffix):
+    path = tmp_path / f"a{suffix}"
+    write_figure(fluid, kind, path)
+    first = path.read_bytes()
+    write_figure(fluid, kind, path)
+    assert path.read_bytes() == first  # a figure depends on the log alone
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", TITLES)
+@pytest.mark.parametrize("name", names())
+def test_every_scene_gives_a_figure_or_a_sentence(tmp_path, kind, name):
+    log = es.simulate(es.gallery(name), events=200, log=True).log
+    try:
+        write_figure(log, kind, tmp_path / "a.png")
+    except EventsimError as error:
+        assert str(error)
+        assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("kind", TITLES)
+def test_an_empty_log_is_one_sentence(still, tmp_path, kind):
+    with pytest.raises(EventsimError, match="nothing to draw"):
+        write_figure(still, kind, tmp_path / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_kind_or_suffix_is_one_sentence(fluid, tmp_path):
+    with pytest.raises(EventsimError, match="speeds"):
+        write_figure(fluid, "speed", tmp_path / "a.png")
+    with pytest.raises(EventsimError, match=r"\.svg"):
+        write_figure(fluid, "speeds", tmp_path / "a.jpg")
+
+
+def test_flights_lead_from_contact_to_contact(fluid):
+    replay = Replay(fluid)
+    table = flight_table(replay)
+    assert len(table.disk) == len(fluid) + (fluid.b >= 0).sum() + replay.stage.n
+    assert table.duration.sum() == pytest.approx(
+        replay.stage.n * (replay.span[1] - replay.span[0]), rel=1e-12
+    )
+    reached = table.place + table.duration[:, None] * table.velocity
+    inner = np.flatnonzero(~table.first)
+    size = np.array(fluid.scene.domain.size)
+    apart = reached[inner - 1] - table.place[inner]
+    assert np.abs(apart - size * np.round(apart / size)).max() < 1e-12
+
+
+def test_displacements_are_those_of_the_states(broken):
+    replay = Replay(broken)
+    times = np.linspace(*replay.span, 9)
+    table = flight_table(replay)
+    for disk in (0, 3, 15):
+        way = msd.displacements(table, disk, times)
+        states = np.array([replay.state_at(time).position[disk] for time in times])
+        assert np.abs(way - (states - states[0])).max() < 1e-12
+
+
+def test_a_piece_across_a_periodic_boundary_is_drawn_in_both_images():
+    ends, disk = wrapped_pieces(
+        np.array([[[8.0, 1.0], [13.0, 2.0]]]), np.array([4]), (10.0, None), (0.0, 0.0)
+    )
+    assert ends[:, :, 0].tolist() == [[8.0, 13.0], [-2.0, 3.0]]
+    assert disk.tolist() == [4, 4]
+
+
+def test_theory_of_free_paths_is_a_density_with_mean_one():
+    x = np.linspace(0.0, 60.0, 60_001)
+    density = path_density(x)
+    assert np.trapezoid(density, x) == pytest.approx(1.0, abs=2e-3)
+    assert np.trapezoid(x * density, x) == pytest.approx(1.0, abs=2e-2)
+
+
+def test_measured_free_paths_agree_with_kinetic_theory():
+    log = es.simulate(es.gallery("periodic-fluid"), events=6000, log=True).log
+    paths = free_paths(flight_table(Replay(log)))
+    error = paths.std() / np.sqrt(len(paths))
+    # Enskog with Henderson's Z, good to about 1 % at this density; the sample adds 3 standard errors.
+    assert paths.mean() == pytest.approx(mean_free_path(log), abs=3 * error + 0.03 * paths.mean())
+
+
+def test_gaps_at_contact_are_nought_to_rounding(fluid):
+    time, gap = gaps_at_contact(Replay(fluid))
+    assert len(time) == (fluid.b >= 0).sum()
+    assert np.abs(gap).max() < 1e-12
+
+
+@pytest.mark.parametrize("kind", TITLES)
+def test_no_text_is_cut_off_or_printed_over_another(fluid, kind):
+    from importlib import import_module
+
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    from eventsim.show.figures.style import new_figure
+
+    figure: Figure = new_figure()
+    canvas = FigureCanvasAgg(figure)
+    import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw(figure, fluid)
+    canvas.draw()
+    shown = figure.bbox
+    for axes in figure.axes:
+        texts = [axes.xaxis.label, axes.yaxis.label, axes.title, axes._left_title]
+        for text in (text for text in texts if text.get_text()):
+            box = text.get_window_extent()
+            assert box.x0 >= shown.x0 - 1
+            assert box.x1 <= shown.x1 + 1
+            assert box.y0 >= shown.y0 - 1
+            assert box.y1 <= shown.y1 + 1
