@@ -1,0 +1,72 @@
+"""`eventsim animate` and `eventsim figure`: from a scene or a log to a file."""
+
+import json
+
+import pytest
+
+
+@pytest.fixture
+def log_file(eventsim, scene_file, tmp_path):
+    path = tmp_path / "two.csv"
+    assert eventsim("run", scene_file, "--log", path, "--quiet").exit_code == 0
+    return path
+
+
+def test_a_scene_is_simulated_and_drawn(eventsim, scene_file, tmp_path):
+    out = tmp_path / "two.png"
+    result = eventsim("animate", scene_file, "--out", out, "--size", "200x160", "--moments", 2, "--dark")
+    assert result.exit_code == 0
+    assert "2 events drawn to" in result.stdout
+    assert out.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_log_is_drawn_and_reported_as_json(eventsim, log_file, tmp_path):
+    out = tmp_path / "two.gif"
+    result = eventsim("animate", log_file, "--out", out, "--duration", 0.5, "--size", "200x160", "--json")
+    data = json.loads(result.stdout)
+    assert (data["events"], data["format"], data["bytes"]) == (2, "gif", out.stat().st_size)
+
+
+def test_a_page_holds_the_player(eventsim, log_file, tmp_path):
+    out = tmp_path / "two.html"
+    assert eventsim("animate", log_file, "--out", out, "--quiet").stdout == ""
+    assert "openPlayer" in out.read_text(encoding="utf-8")
+
+
+def test_a_figure_is_drawn_from_a_log(eventsim, log_file, tmp_path):
+    out = tmp_path / "two.svg"
+    result = eventsim("figure", log_file, "--kind", "trajectories", "--out", out)
+    assert result.exit_code == 0
+    assert "trajectories drawn to" in result.stdout
+    assert out.read_text().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["animate", "two.csv"], "--out"),
+        (["animate", "two.csv", "--out", "a.avi"], ".mp4, .gif, .html, .png"),
+        (["animate", "two.csv", "--out", "none/a.gif"], "no directory"),
+        (["animate", "two.csv", "--out", "a.gif", "--size", "big"], "1280x720"),
+        (["animate", "two.csv", "--out", "a.gif", "--speed", "1", "--duration", "1"], "exclude"),
+        (["animate", "two.csv", "--out", "a.gif", "--from", "5"], "the log tells the time"),
+        (["animate", "two.csv", "--out", "a.gif", "--moments", "5"], ".png"),
+        (["animate", "two.csv", "--out", "a.gif", "--until", "5"], "is a log"),
+        (["animate", "two.csv", "--out", "a.gif", "--color", "mood"], "'mass'"),
+        (["animate", "none.csv", "--out", "a.gif"], "none.csv"),
+        (["animate", "brake", "--out", "a.gif"], "break"),
+        (["figure", "two.csv", "--out", "a.png"], "--kind"),
+        (["figure", "two.csv", "--kind", "speed", "--out", "a.png"], "'speeds'"),
+        (["figure", "two.csv", "--kind", "speeds", "--out", "a.gif"], ".png, .svg, .pdf"),
+        (["figure", "two.csv", "--kind", "free-paths", "--out", "a.png"], "at least 20"),
+    ],
+)
+def test_bad_usage_is_one_clear_message(
+    eventsim, log_file, scene_file, tmp_path, monkeypatch, words, expected
+):
+    monkeypatch.chdir(tmp_path)
+    result = eventsim(*words)
+    assert result.exit_code == 2
+    assert expected in result.stderr
+    assert result.stdout == ""
+    assert sorted(tmp_path.iterdir()) == sorted([log_file, scene_file])
