@@ -62,9 +62,7 @@ def predict(m, grid, rules, i, now, floor):
         shared = 0
     time, code, shared = _shapes(m, rules, i, floor, time, code, shared, rules.features)
     time, code, shared = _contacts(m, grid, rules, i, now, floor, x, y, time, code, shared, m.slots, grid.lanes)
-    count = 0
-    if code >= 0:
-        count = word(m.disks, code * WORDS + COUNT)
+    count = word(m.disks, (code if code >= 0 else grid.n) * WORDS + COUNT)  # of the sentinel: 0
     store(m.disks, i * REALS + DUE, time)
     store(m.disks, i * WORDS + PARTNER, code)
     store(m.disks, i * WORDS + PARTNER_COUNT, count + COUNTS * shared)
@@ -97,9 +95,10 @@ def _crossing(m, grid, rules, i, now, x, y, u, w, gx):
         delay_y = (low_y + (grid.side_y if w > 0.0 else 0.0) - y) / w
         delay_x = delay_x if u != 0.0 else NEVER
         delay_y = delay_y if w != 0.0 else NEVER
-        delay, code = delay_y, (UP if w > 0.0 else DOWN)
-        if delay_x < delay_y:
-            delay, code = delay_x, (RIGHT if u > 0.0 else LEFT)
+        code_x = RIGHT if u > 0.0 else LEFT
+        code_y = UP if w > 0.0 else DOWN
+        delay = delay_x if delay_x < delay_y else delay_y
+        code = code_x if delay_x < delay_y else code_y
         return now + (delay if delay > 0.0 else 0.0), code
     ax, ay = pull(m, i, gx, rules.classes), pull(m, i, rules.gy, rules.classes)
     delay, code = crossing_delay(x, u, ax, low_x + grid.side_x, -1.0), RIGHT
@@ -390,10 +389,11 @@ def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
             new, j, many = contact_of_eight(
                 m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 0
             )
-        if new < time:
-            time, code, shared = new, j, many
-        elif new == time and new < NEVER and _is_contact(code):
-            shared = 1
+        sooner = new < time  # no branches: they could not be foreseen
+        also = (new == time) & ((code >= 0) | (code <= WALL))
+        shared = many if sooner else shared | also
+        code = j if sooner else code
+        time = new if sooner else time
         first += 8
         if first >= count:
             return time, code, shared

@@ -93,11 +93,18 @@ def _is_finite(i, mass):
 
 
 @inline
+def _in_order(m, i, j, mass, rows):
+    """The disks of a pair, the smaller label first; where nobody can tell, as they come."""
+    if mass is None and rows is None:
+        return i, j
+    swap = word(m.disks, j * WORDS + LABEL) < word(m.disks, i * WORDS + LABEL)
+    return (j if swap else i), (i if swap else j)
+
+
+@inline
 def resolve_pair(m, rules, sums, i, j, t, number, slot):
     """Resolve the contact of disks i and j at time t; its overlap in reaches."""
-    swap = word(m.disks, j * WORDS + LABEL) < word(m.disks, i * WORDS + LABEL)
-    a = j if swap else i
-    b = i if swap else j
+    a, b = _in_order(m, i, j, m.mass, m.rows)
     xa, ya = place(m, rules, a, t)
     xb, yb = place(m, rules, b, t)
     ua, wa = speed(m, rules, a, t)
