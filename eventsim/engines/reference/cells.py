@@ -25,16 +25,23 @@ ENOUGH_DISKS = 24
 """Below it, looking at all pairs is faster than keeping cells."""
 
 
+LARGEST = 2.0**12
+"""Columns or rows that are enough for any scene of this engine."""
+
 GIANT, FEW = 4.0, 32
 """A disk of more than 4 times the median radius is kept out of the cells, if it is one of at most n / 32."""
 
 
 class Grid(NamedTuple):
-    """Cells of `side` (x, y); columns and rows, None where the plane is open; giants: disks tried against all others."""
+    """Columns and rows of cells of `side` (x, y), the first one at `low`; giants: disks tried against all others.
+
+    On the open plane the outer cells reach to infinity, so that disks which fly apart come to an end of their crossings.
+    """
 
     side: tuple[float, float]
-    columns: int | None
-    rows: int | None
+    columns: int
+    rows: int
+    low: tuple[float, float] = (0.0, 0.0)
     giants: tuple[int, ...] = ()
 
 
@@ -44,20 +51,26 @@ def plan(stage: Stage, side: float | None = None) -> Grid | None:
         return None
     giants = _giants(stage)
     least = sum(sorted(np.delete(stage.radius, giants).tolist())[-2:]) * MARGIN
-    extent = stage.size if stage.size is not None else (float(stage.x.max()), float(stage.y.max()))
+    low, extent = _extent(stage)
     if side is None:
         spacing = math.sqrt(extent[0]) * math.sqrt(extent[1]) / math.sqrt(stage.n)
         side = max(least, spacing)
     if not (side >= least and side > 0.0):
         return None
-    if stage.size is None:
-        return Grid((side, side), None, None, giants)
-    columns, rows = (int(min(length / side, 2.0**20)) for length in stage.size)
+    columns, rows = (int(min(length / side, LARGEST)) for length in extent)
     enough = [count >= 3 or length is None for count, length in zip((columns, rows), stage.period, strict=True)]
     if not all(enough) or max(columns, rows) < 3:
         return None
     columns, rows = max(columns, 1), max(rows, 1)
-    return Grid((stage.size[0] / columns, stage.size[1] / rows), columns, rows, giants)
+    return Grid((extent[0] / columns, extent[1] / rows), columns, rows, low, giants)
+
+
+def _extent(stage: Stage) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(lower corner, size) of what the cells cover: the domain; on the open plane three times what the disks take up."""
+    if stage.size is not None:
+        return (0.0, 0.0), stage.size
+    width, height = float(stage.x.max()), float(stage.y.max())
+    return (-width, -height), (3.0 * width, 3.0 * height)
 
 
 def _giants(stage: Stage) -> tuple[int, ...]:
@@ -77,6 +90,7 @@ class Cells:
 
     def __init__(self, stage: Stage, grid: Grid) -> None:
         self.side = grid.side
+        self._low = grid.low
         self._shape = (grid.columns, grid.rows)
         self._periodic = tuple(length is not None for length in stage.period)
         self._members: dict[Cell, list[int]] = {}
@@ -94,7 +108,7 @@ class Cells:
         """Put disk i into the cell of its centre; it must not be in another one."""
         if self.cell_of[i] is None:
             return
-        cell = self._clip(int(x // self.side[0]), 0), self._clip(int(y // self.side[1]), 1)
+        cell = self._clip(x, 0), self._clip(y, 1)
         self.cell_of[i] = cell
         self._in(cell).append(i)
 
@@ -145,20 +159,20 @@ class Cells:
             return None, None
         k = cell[axis]
         count = self._shape[axis]
-        low = None if k == 0 and count is not None else k * self.side[axis]
-        high = None if count is not None and k == count - 1 else (k + 1) * self.side[axis]
+        low = None if k == 0 else self._low[axis] + k * self.side[axis]
+        high = None if k == count - 1 else self._low[axis] + (k + 1) * self.side[axis]
         return low, high
 
     def _in(self, cell: Cell) -> list[int]:
         return self._members.setdefault(cell, [])
 
-    def _clip(self, k: int, axis: int) -> int:
-        count = self._shape[axis]
-        return k if count is None else min(max(k, 0), count - 1)
+    def _clip(self, x: float, axis: int) -> int:
+        """The column or row of a coordinate; beyond the grid the outermost."""
+        count, k = self._shape[axis], (x - self._low[axis]) / self.side[axis]
+        return int(min(max(k, 0.0), count - 1.0))
 
     def _next(self, k: int, step: int, axis: int) -> int:
-        count = self._shape[axis]
-        return (k + step) % count if count is not None and self._periodic[axis] else k + step
+        return (k + step) % self._shape[axis] if self._periodic[axis] else k + step
 
     def _neighbours(self, cell: Cell, offsets_x: tuple[int, ...], offsets_y: tuple[int, ...]) -> Iterator[Group]:
         for dx in offsets_x:
@@ -171,7 +185,7 @@ class Cells:
     def _fold(self, k: int, axis: int) -> tuple[int | None, int]:
         """The cell number inside the domain and the image it is seen in; None beyond a hard boundary."""
         count = self._shape[axis]
-        if count is None or 0 <= k < count:
+        if 0 <= k < count:
             return k, 0
         if not self._periodic[axis]:
             return None, 0

@@ -18,8 +18,8 @@ from eventsim.formulas.clock import remainder_since
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
 
-INSTANT_LIMIT = 1000
-"""Contacts of one disk at one instant of the clock: far more than any rack or cradle needs, far fewer than a hang."""
+VAIN_WRAPS = 8
+"""Wraps per disk without a contact after which it is worth asking whether all disks move alike."""
 
 
 class ReferenceSession:
@@ -47,6 +47,7 @@ class ReferenceSession:
         self.cells = None if chosen is None else Cells(stage, chosen)
         self.reason: str | None = None
         self._check = check
+        self._wraps_in_vain = 0
         self._predictor = Predictor(stage, self.state, self.calendar, self.cells)
         self._resolver = Resolver(stage, self.state, self.counters, keep_rows)
         self._predict_afresh()
@@ -80,6 +81,11 @@ class ReferenceSession:
                 counters.wraps += 1
                 wrap(state, cells, event, self.stage.period[event.b])  # type: ignore[arg-type]
                 self._predictor.predict(event.a, due)
+                self._wraps_in_vain += 1
+                if self._wraps_in_vain > VAIN_WRAPS * state.n and stop.until is None:
+                    self._wraps_in_vain = 0
+                    if self._drifts():
+                        return "quiet"
             elif event.rank == CROSSING:
                 calendar.pop()
                 counters.crossings += 1
@@ -95,6 +101,7 @@ class ReferenceSession:
 
     def _resolve_instant(self) -> str | None:
         """Resolve all contacts of the earliest time that are predicted by now, then predict their disks anew."""
+        self._wraps_in_vain = 0
         generation = self._pop_generation()
         changed: list[int] = []
         for component in components(generation):
@@ -103,7 +110,7 @@ class ReferenceSession:
         for i in changed:
             self._predictor.predict(i, now)
         for i in changed:
-            if self.state.at_once[i] >= INSTANT_LIMIT:
+            if self.state.at_once[i] >= self._resolver.at_once_limit:
                 return self._give_up(i)
         return None
 
@@ -144,6 +151,12 @@ class ReferenceSession:
         """With an empty calendar nothing happens for ever; only a stop time makes it worth while to let the clock turn."""
         return stop.until is None
 
+    def _drifts(self) -> bool:
+        """Whether all disks have one velocity and nothing to meet: they would wrap for ever."""
+        state, stage = self.state, self.stage
+        alike = len(set(zip(state.vx, state.vy, strict=True))) == 1
+        return alike and stage.gravity is None and not stage.boundaries and not stage.features
+
     def _pass_to(self, until: float) -> None:
         """Let time pass to `until`, a remainder; without a stop time it stays where it is."""
         if self.state.now < until < float("inf"):
@@ -155,18 +168,8 @@ class ReferenceSession:
         return remainder_since(self.state.epoch, self.stage.epoch_length, until, self.stage.start_time)
 
     def _give_up(self, i: int) -> str:
-        """An instant that does not end: say which disk, and what is known of it."""
-        inelastic = self.stage.pair_restitution < 1.0 or self.stage.wall_restitution < 1.0
-        what = "collapse" if inelastic or self.stage.gravity is not None else "digits"
-        x, y = self.state.place(i, self.state.now)
-        cause = (
-            "its contacts follow one another faster than the clock can tell (inelastic collapse, or a disk at rest on another "
-            "one or on a wall); contact_duration, a time in the scene, lets such a scene go on"
-            if what == "collapse"
-            else "its contacts at this instant do not end"
-        )
-        self.reason = f"disk {i} at ({x + self.stage.corner[0]:g}, {y + self.stage.corner[1]:g}): {cause}"
-        return what
+        stopped, self.reason = endless(self.stage, i, self.state.place(i, self.state.now))
+        return stopped
 
     @property
     def clock(self) -> tuple[int, float]:
@@ -199,6 +202,20 @@ class ReferenceSession:
         """Go on from a snapshot, this engine's or another's."""
         self.state.restore(saved)
         self._predict_afresh()
+
+
+def endless(stage: Stage, i: int, place: tuple[float, float]) -> tuple[str, str]:
+    """An instant that does not end: why a run stops there, and a sentence on disk i and what is known of it."""
+    inelastic = stage.pair_restitution < 1.0 or stage.wall_restitution < 1.0
+    what = "collapse" if inelastic or stage.gravity is not None else "digits"
+    cause = (
+        "its contacts follow one another faster than the clock can tell (inelastic collapse, or a disk at rest on another "
+        "one or on a wall); contact_duration, a time in the scene, lets such a scene go on"
+        if what == "collapse"
+        else "its contacts at this instant do not end"
+    )
+    x, y = place
+    return what, f"disk {i} at ({x + stage.corner[0]:g}, {y + stage.corner[1]:g}): {cause}"
 
 
 def row_order(event: Event) -> tuple[int, int, int]:

@@ -26,6 +26,13 @@ from eventsim.scene.stage import Stage
 Row: TypeAlias = tuple[Any, ...]
 MISSING = math.nan
 
+AT_ONCE = 2.0**-48
+"""Contacts of a disk are at one instant where the time between them is below this part of the clock: a few of its last bits."""
+
+AT_ONCE_ELASTIC, AT_ONCE_INELASTIC = 100_000, 100
+"""Contacts of one disk at one instant that are too many.  Elastic sequences end, if late (a light disk between a heavy one and
+a wall); inelastic ones of this length are a collapse."""
+
 
 class Resolver:
     """Resolves the contacts of one stage; counts them, books momentum, and keeps their rows if asked to."""
@@ -39,6 +46,8 @@ class Resolver:
         self._same_mass: float = stage.common_mass
         self._keep_rows = keep_rows
         self.rows: list[Row] = []
+        elastic = stage.pair_restitution == 1.0 and stage.wall_restitution == 1.0
+        self.at_once_limit = AT_ONCE_ELASTIC if elastic else AT_ONCE_INELASTIC
 
     def resolve(self, component: list[Event]) -> list[int]:
         """Resolve contacts of one time that are connected through shared disks; the disks that it changed."""
@@ -80,8 +89,8 @@ class Resolver:
         kx = event.image[0] + state.wraps_x[a] - state.wraps_x[b]
         ky = event.image[1] + state.wraps_y[a] - state.wraps_y[b]
         state.met[a], state.met[b] = ((b, kx, ky),), ((a, -kx, -ky),)
-        self._note_time(a, t)
-        self._note_time(b, t)
+        self._note_time(a, t, q == 0.0)
+        self._note_time(b, t, q == 0.0)
         reduced = self._reduced(a, b)
         distance = sqrt(dx * dx + dy * dy)
         self._note_overlap(a, b, distance)
@@ -113,7 +122,7 @@ class Resolver:
             wall = stage.features[place - len(stage.boundaries)].wall
         state.anchor(i, t, x, y, u, w)
         state.met[i] = ((event.b, side, 0),)
-        self._note_time(i, t)
+        self._note_time(i, t, (u, w) == before)
         mass = self._mass_of(i)
         impulse = self._book_wall(mass, u - before[0], w - before[1])
         self._counters.wall_contacts += 1
@@ -149,7 +158,7 @@ class Resolver:
                     x, y = self._on_boundary(-1 - component[k].b, i, x, y)
             state.anchor(i, t, x, y, *outcome.velocities[number[i]])
             state.met[i] = tuple(self._met(component[k], i) for k in active if i in component[k][2:4])
-            self._note_time(i, t)
+            self._note_time(i, t, False)
         first = self._counters.events
         for k in active:
             self._note_joint(component[k], contacts[k], outcome.impulses[k], first)
@@ -219,9 +228,12 @@ class Resolver:
         state = self._state
         return contact_restitution(restitution, duration, t - state.contact_time[a], t - state.contact_time[b])
 
-    def _note_time(self, i: int, t: Real) -> None:
+    def _note_time(self, i: int, t: Real, idle: bool) -> None:
+        """Note a contact of disk i; of idle ones, which change nothing, a third at the same instant is too many."""
         state = self._state
-        state.at_once[i] = state.at_once[i] + 1 if state.contact_time[i] == t else 1
+        weight = self.at_once_limit // 3 + 1 if idle else 1
+        again = t - state.contact_time[i] <= AT_ONCE * t
+        state.at_once[i] = state.at_once[i] + weight if again else weight
         state.contact_time[i] = t
 
     def _note_overlap(self, a: int, b: int, distance: Real) -> None:
