@@ -194,20 +194,30 @@ def fill(arrays, grid, rules, now):
 
 @kernel
 def predict_all(arrays, grid, rules, counts, now):
-    """Schedule the earliest event of every disk, in an empty calendar."""
+    """Schedule the earliest event of every disk in an emptied calendar."""
     m = pointers(arrays)
+    day = _first_day(m, grid, now)
+    counts[DAY] = day
     for i in range(grid.n):
         predict(m, grid, rules, i, now, now)
+        push(m, grid, i, day)
 
 
 @kernel
 def schedule(arrays, grid, counts, now):
-    """Put every disk into an empty calendar."""
+    """Put every disk into an emptied calendar."""
     m = pointers(arrays)
-    day = int(now * grid.days_per_time)
+    day = _first_day(m, grid, now)
     counts[DAY] = day
     for i in range(grid.n):
         push(m, grid, i, day)
+
+
+@inline
+def _first_day(m, grid, now):
+    for bucket in range(grid.days):
+        store(m.buckets, bucket, -1)
+    return int(now * grid.days_per_time)
 
 
 @kernel

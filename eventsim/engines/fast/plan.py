@@ -26,7 +26,7 @@ MANY_DISKS = 50_000
 LOOK_AHEAD = 32
 """Days at which the prefetch begins."""
 
-SHARE, SHARE_OF_MANY = 1.0, 0.6
+SHARE, SHARE_OF_MANY = 1.4, 0.7
 """The length of a day, in mean times between two scheduled events (the two disks of a contact have one each)."""
 
 LEAST_DAYS = 64
@@ -88,10 +88,15 @@ def days_of(n: int) -> int:
     return 1 << max(LEAST_DAYS, (8 if n >= MANY_DISKS else 4) * n).bit_length() - 1
 
 
+def shortest_day(end: float) -> float:
+    """Days of a window that ends at `end` are so long at least that their numbers stay exact."""
+    return max(math.ldexp(end, -40), 1e-300)
+
+
 def day_length(due: Floats, now: float, end: float, n: int) -> float:
     """A day that has less than one event: from how soon the next events of the disks are."""
     ahead = due[np.isfinite(due)] - now
-    least = math.ldexp(max(end, 5e-324), -40)
+    least = shortest_day(end)
     if not len(ahead):
         return max(end, least)
     k = max(1, len(ahead) // 8)

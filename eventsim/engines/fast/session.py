@@ -14,7 +14,7 @@ from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid, Rules
 from eventsim.engines.fast.loop import fill, predict_all, renew, run, schedule, turn_over
 from eventsim.engines.fast.order import along_a_curve
-from eventsim.engines.fast.plan import LOOK_AHEAD, MANY_DISKS, Sizes, cell_sizes, day_length, days_of
+from eventsim.engines.fast.plan import LOOK_AHEAD, MANY_DISKS, Sizes, cell_sizes, day_length, days_of, shortest_day
 from eventsim.engines.fast.shapes import KINDS, WIDTH
 from eventsim.engines.fast.state import FastState, aligned
 from eventsim.engines.reference.calendar import CONTACT, Event
@@ -33,8 +33,9 @@ FEW_DISKS = 24
 """Below it, looking at all disks is as fast as cells."""
 
 FOREVER = 1 << 62
+FEW_STEPS = 256
 TOO_FEW_DAYS, TOO_MANY_DAYS = 0.5, 6.0
-"""Days that an event may take; outside, the length of a day is chosen anew."""
+"""Days that an event may take, on the average of so many steps; outside, the length of a day is chosen anew."""
 
 
 class FastSession:
@@ -74,6 +75,7 @@ class FastSession:
         self._buffer = np.zeros(BUFFER if keep_rows else 0, ROW)
         self._counts[layout.ROOM] = BUFFER if keep_rows else FOREVER
         self._blocks: list[Rows] = []
+        self._days = self._steps = 0
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
         self.restore(saved if saved is not None else start_of(stage))
@@ -105,7 +107,7 @@ class FastSession:
             elif status == layout.STATUS_FULL:
                 self._predict_afresh()
             elif status in (layout.STATUS_LIMIT, layout.STATUS_IDLE):
-                empty = bool(np.all(np.isinf(self._due)))
+                empty = bool(np.isinf(self._due[0]) and np.all(np.isinf(self._due)))
                 if status == layout.STATUS_IDLE and not empty:
                     self._schedule()
                 elif turns and not (empty and stop.until is None):
@@ -123,11 +125,12 @@ class FastSession:
         )
         self.state.now = float(self._sums[layout.NOW])
         self._flush()
-        steps = int(counts[layout.STEPS]) - steps
-        if status == layout.STATUS_BUDGET and steps > self.state.n:
-            days = (int(counts[layout.DAY]) - day) / steps
-            if not TOO_FEW_DAYS < days < TOO_MANY_DAYS:
+        self._days += int(counts[layout.DAY]) - day
+        self._steps += int(counts[layout.STEPS]) - steps
+        if self._steps > max(self.state.n, FEW_STEPS):
+            if not TOO_FEW_DAYS < self._days / self._steps < TOO_MANY_DAYS:
                 self._schedule()
+            self._days = self._steps = 0
         return status
 
     @property
@@ -147,6 +150,7 @@ class FastSession:
         for component in components(generation):
             changed += resolver.resolve(component)
         self._keep(resolver)
+        self._arrays = self._arrays._replace(several=state.several.reshape(-1))
         places = {int(state.place_of[i]) for i in changed}
         for i in places:
             renew(self._arrays, self._grid, self._rules, self._counts, i, now, now)
@@ -224,8 +228,9 @@ class FastSession:
         state.window_end = window_length(state.window, state.epoch_length)
         state.window_rows = 0
         self._set_now(0.0)
+        if self._grid.day_length < shortest_day(state.window_end):
+            self._choose_days()
         predict_all(self._arrays, self._grid, self._rules, self._counts, 0.0)
-        self._schedule()
 
     def _set_now(self, now: float) -> None:
         self.state.now = now
@@ -286,12 +291,14 @@ class FastSession:
             ahead,
         )
 
-    def _schedule(self) -> None:
-        """Make the calendar anew, with days of a fitting length."""
+    def _choose_days(self) -> None:
+        """Choose a fitting length of the days, for a calendar that is to be made anew."""
         day = day_length(self._due, self.state.now, self.state.window_end, self.state.n)
         self._grid = self._grid._replace(day_length=day, days_per_time=1.0 / day)
-        self._arrays.buckets[:] = -1
-        self._arrays = self._arrays._replace(several=self.state.several.reshape(-1))
+
+    def _schedule(self) -> None:
+        """Make the calendar anew, with days of a fitting length."""
+        self._choose_days()
         schedule(self._arrays, self._grid, self._counts, self.state.now)
 
     def _pass_to(self, until: float) -> None:
