@@ -7,6 +7,7 @@ The story, and where each part of it lives::
     engines    how time passes: from event to event           eventsim.engines
     record     what happened: the event log and its replay    eventsim.record
     simulation the way in for Python users                    eventsim.simulation
+    show       pictures of what happened                      eventsim.show
     cli        the way in from a terminal                     eventsim.cli
 
 >>> import eventsim as es

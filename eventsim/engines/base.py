@@ -164,6 +164,10 @@ class Run:
     _log: EventLog | None = None
     _replay: Replay | None = None
 
+    def __repr__(self) -> str:
+        name = self.scene.name or "a scene without a name"
+        return f"Run({name}: {self.counters.events:,} events to t = {self.time!r}, stopped: {self.stopped})"
+
     @property
     def time(self) -> float:
         """Where the scene's clock stands."""

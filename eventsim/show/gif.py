@@ -16,7 +16,7 @@ HUNDREDTH = 10
 def palette_of(frames: Iterable[NDArray[np.uint8]]) -> Image.Image:
     """Return an image whose 256 colours suit all of some frames (height, width, 4)."""
     samples = np.concatenate([frame[..., :3] for frame in frames])
-    return Image.fromarray(samples).quantize(256, dither=Image.Dither.NONE)
+    return Image.fromarray(samples).quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
 
 
 def write_gif(

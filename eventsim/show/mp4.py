@@ -66,7 +66,11 @@ def write_mp4(part: Path, frames: Iterable[NDArray[np.uint8]], size: tuple[int, 
     ]
     with tempfile.TemporaryFile() as complaints:
         process = subprocess.Popen(
-            [*command, str(part)], stdin=subprocess.PIPE, stdout=complaints, stderr=complaints
+            [*command, str(part)],
+            stdin=subprocess.PIPE,
+            stdout=complaints,
+            stderr=complaints,
+            start_new_session=True,  # Ctrl-C is ours: ffmpeg is ended below
         )
         assert process.stdin is not None
         try:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from eventsim.record.events import Floats, Rows
+from eventsim.record.events import Floats, Rows, State
 from eventsim.record.replay import Replay
 from eventsim.show.frames import Frame
 
@@ -38,15 +38,20 @@ class Trails:
     def __init__(self, replay: Replay, frames: int) -> None:
         """frames: how many of them a trail reaches back."""
         self._replay = replay
-        self._before: Floats | None = None
+        self._before: State | None = None
         self._longest = max(frames, 1)
         self._pieces: deque[tuple[Floats, NDArray[np.uint8]]] = deque(maxlen=self._longest)
 
     def follow(self, frame: Frame) -> Iterator[tuple[Path, float]]:
-        """Add the way since the previous frame; yield the paths to draw, from the faintest on, each with its alpha."""
-        if self._before is not None:
-            self._pieces.append(self._piece(self._before, frame))
-        self._before = frame.state.position
+        """Add the way since the previous frame; yield the paths to draw, from the faintest on, each with its alpha.
+
+        A frame before the previous one begins a new trail.
+        """
+        if self._before is not None and self._before.time > frame.state.time:
+            self._pieces.clear()
+        elif self._before is not None:
+            self._pieces.append(self._piece(self._before.position, frame))
+        self._before = frame.state
         pieces = list(self._pieces)
         size = -(-self._longest // BANDS)
         for first in range(len(pieces) % size - size if len(pieces) % size else 0, len(pieces), size):
