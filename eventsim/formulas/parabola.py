@@ -14,6 +14,10 @@ DOUBLINGS = 2000
 """Enough to leave any float64 behind."""
 
 
+ANY_OVERLAP, PRESENT_OVERLAP, NO_OVERLAP = 2, 1, 0
+"""Which falling pieces that begin with a closed gap are contacts: all; only one that falls already now; none."""
+
+
 def circle_gap(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, t: Real) -> Real:
     """h = side (|d + v t + a t^2/2|^2 - radius^2) at delay t; side is +1 outside the circle, -1 inside."""
     px = dx + t * (du + (0.5 * ax) * t)
@@ -29,40 +33,45 @@ def circle_rate(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side
 
 
 def circle_delays(
-    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float
+    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, overlap: int = ANY_OVERLAP
 ) -> tuple[Real, Real]:
     """The first two delays >= 0 at which the gap h to a circle is <= 0 and falling; NEVER where there is none.
 
     (dx, dy), (du, dw), (ax, ay): position, velocity and acceleration (not zero) relative to the centre.  A quartic has at
-    most two falling pieces; the second is for arcs, which may be open where the first one crosses them.
+    most two falling pieces; the second is for arcs, which may be open where the first one crosses them: there a disk can be
+    on the far side of the circle without overlapping it, and `overlap` says which closed gaps count.
     """
     q2 = 1.5 * (ax * ax + ay * ay)
     q1 = 3.0 * (du * ax + dw * ay)
     q0 = (du * du + dw * dw) + (dx * ax + dy * ay)
     first, second = _positive_roots(q2, q1, q0)
     start = 0.0
-    start_rate = circle_rate(dx, dy, du, dw, ax, ay, side, start)
+    rate = circle_rate(dx, dy, du, dw, ax, ay, side, start)
+    falls = rate < 0.0 or (rate == 0.0 and side * q0 < 0.0)
     fall = 0.0
+    late = overlap == ANY_OVERLAP
+    counts = overlap != NO_OVERLAP
     found = NEVER
     far = _far(dx, dy, du, dw, ax, ay, radius, side, second)
     for end in (first, second, far):
         if not end > start:
             continue
-        end_rate = circle_rate(dx, dy, du, dw, ax, ay, side, end)
-        if (start_rate < 0.0) != (end_rate < 0.0):
-            turn = _turn(dx, dy, du, dw, ax, ay, side, start, end)
-            if start_rate < 0.0:
-                delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, turn)
+        falls_then = circle_rate(dx, dy, du, dw, ax, ay, side, end) < 0.0
+        if falls != falls_then:
+            turn = _turn(dx, dy, du, dw, ax, ay, side, start, end, falls)
+            if falls:
+                delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, turn, counts)
                 if delay < NEVER:
                     if found < NEVER:
                         return found, delay
                     found = delay
             else:
                 fall = turn
+            counts = late
         start = end
-        start_rate = end_rate
-    if start_rate < 0.0:
-        delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, far)
+        falls = falls_then
+    if falls:
+        delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, far, counts)
         if found < NEVER:
             return found, delay
         found = delay
@@ -98,9 +107,19 @@ def _far(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Rea
     return t
 
 
-def _turn(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side: float, low: Real, high: Real) -> Real:
-    """Where the rate changes its sign between low and high."""
-    falling = circle_rate(dx, dy, du, dw, ax, ay, side, low) < 0.0
+def _turn(
+    dx: Real,
+    dy: Real,
+    du: Real,
+    dw: Real,
+    ax: Real,
+    ay: Real,
+    side: float,
+    low: Real,
+    high: Real,
+    falling: bool,
+) -> Real:
+    """Where the rate changes its sign between low, where the gap is falling or not, and high."""
     for _ in range(BISECTIONS):
         middle = low + 0.5 * (high - low)
         if not (low < middle < high):
@@ -123,10 +142,14 @@ def _closing(
     side: float,
     low: Real,
     high: Real,
+    counts: bool,
 ) -> Real:
-    """Where a gap that falls from low to high closes: low if it is closed there already, NEVER if it stays open."""
+    """Where a gap that falls from low to high closes; NEVER if it stays open.
+
+    A gap that is closed from the beginning closes at low, if such an overlap counts.
+    """
     if not circle_gap(dx, dy, du, dw, ax, ay, radius, side, low) > 0.0:
-        return low
+        return low if counts else NEVER
     if circle_gap(dx, dy, du, dw, ax, ay, radius, side, high) > 0.0:
         return NEVER
     for _ in range(BISECTIONS):

@@ -14,6 +14,10 @@ from fractions import Fraction
 from typing import NamedTuple
 
 
+class SqueezedError(ArithmeticError):
+    """No impulses part the contacts of a cluster: something is squeezed between bodies that it cannot deflect."""
+
+
 class JointContact(NamedTuple):
     """One contact of a cluster: body a, body b (None: a wall), direction (dx, dy) from b to a of any length, restitution."""
 
@@ -40,7 +44,8 @@ def resolve_together(
 ) -> Outcome:
     """Resolve a cluster: immovable disks at walls, then the massive disks, then the tracers against what these have become.
 
-    The impulse between an immovable disk and a wall is nan: it has no finite size.
+    The impulse between an immovable disk and a wall is nan: it has no finite size.  Raises SqueezedError where no impulses
+    part the contacts.
     """
     exact: list[Vector] = [(Fraction(u), Fraction(w)) for u, w in velocities]
     impulses = [Fraction(0)] * len(contacts)
@@ -173,6 +178,8 @@ def _eliminate(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Frac
 def _lemke(matrix: list[list[Fraction]], q: list[Fraction]) -> list[Fraction]:
     """Lemke's method on w = M z + q + z0; the tableau's columns are w, z, z0, and the right side."""
     n = len(q)
+    if min(q) >= 0:
+        return [Fraction(0)] * n
     z0, right = 2 * n, 2 * n + 1
     tableau = []
     for i in range(n):
@@ -190,7 +197,7 @@ def _lemke(matrix: list[list[Fraction]], q: list[Fraction]) -> list[Fraction]:
         entering = leaving + n if leaving < n else leaving - n
         candidates = [i for i in range(n) if tableau[i][entering] > 0]
         if not candidates:
-            raise ArithmeticError("the linear complementarity problem of a cluster has no solution")
+            raise SqueezedError
         with_z0 = [i for i in candidates if basis[i] == z0]
         row = min(candidates, key=lambda i: _lexicographic(tableau[i], entering, right, n))
         ratio = tableau[row][right] / tableau[row][entering]

@@ -213,17 +213,13 @@ def test_f20_disks_that_share_one_velocity_on_a_torus_are_quiet():
 
 def test_f23_the_first_40_impacts_of_a_zeno_bounce_are_bit_exact():
     """g = 2, drop height 1, e = 1/2: impacts at 3 - 2^(2-n)."""
-    scene = es.Scene(
-        es.Disks([[5.0, 1.5]], radius=0.5), es.Box((10.0, 10.0)), gravity=(0.0, -2.0), restitution=0.5
-    )
+    scene = es.Scene(es.Disks([[5.0, 1.5]], radius=0.5), es.Box((10.0, 10.0)), gravity=(0.0, -2.0), restitution=0.5)
     rows = rows_of(scene, events=40)
     assert rows["time"].tolist() == [3.0 - 2.0 ** (2 - n) for n in range(1, 41)]
 
 
 def test_f23_a_zeno_bounce_is_diagnosed_and_never_sinks():
-    scene = es.Scene(
-        es.Disks([[5.0, 1.5]], radius=0.5), es.Box((10.0, 10.0)), gravity=(0.0, -2.0), restitution=0.5
-    )
+    scene = es.Scene(es.Disks([[5.0, 1.5]], radius=0.5), es.Box((10.0, 10.0)), gravity=(0.0, -2.0), restitution=0.5)
     session, stopped = run_of(scene, until=10.0)
     assert stopped == "collapse"
     assert session.motion().y.tolist() == [0.5]
@@ -349,3 +345,12 @@ def test_an_immovable_disk_is_not_deflected_and_a_tracer_deflects_nobody():
 def test_masses_of_1e200_do_not_overflow():
     rows = rows_of(pair_scene([[-3.0, 0.0], [0.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], mass=1e200), until=10.0)
     assert (rows[0]["vxa"], rows[0]["vxb"]) == (0.0, 1.0)
+
+
+def test_a_disk_squeezed_between_immovable_ones_stops_the_run_with_a_reason():
+    scene = pair_scene(
+        [[-2.0, 0.0], [0.0, 0.0], [2.0, 0.0]], [[1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]], mass=[math.inf, 1.0, math.inf]
+    )
+    session, stopped = run_of(scene, until=5.0)
+    assert stopped == "collapse"
+    assert "disks 0, 1, 2" in session.reason

@@ -15,6 +15,7 @@ from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.clock import remainder_since
+from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
 
@@ -105,7 +106,11 @@ class ReferenceSession:
         generation = self._pop_generation()
         changed: list[int] = []
         for component in components(generation):
-            changed += self._resolver.resolve(component)
+            try:
+                changed += self._resolver.resolve(component)
+            except SqueezedError:
+                stopped, self.reason = squeezed(component)
+                return stopped
         now = self.state.now
         for i in changed:
             self._predictor.predict(i, now)
@@ -216,6 +221,13 @@ def endless(stage: Stage, i: int, place: tuple[float, float]) -> tuple[str, str]
     )
     x, y = place
     return what, f"disk {i} at ({x + stage.corner[0]:g}, {y + stage.corner[1]:g}): {cause}"
+
+
+def squeezed(component: list[Event]) -> tuple[str, str]:
+    """A cluster that no impulses part: why a run stops there, and a sentence on its disks."""
+    disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
+    names = ", ".join(map(str, disks))
+    return "collapse", f"of disks {names} one is squeezed between others, or walls, that it cannot deflect"
 
 
 def row_order(event: Event) -> tuple[int, int, int]:

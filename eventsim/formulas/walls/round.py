@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from eventsim.formulas.contact import pair_delay
-from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
 
 
@@ -164,11 +164,9 @@ def arc_delay(
         reach = outer if face_side > 0 else inner
         if not reach > 0.0 and not (reach == 0.0 and face_side > 0):
             continue
-        first, second = circle_delays(dx, dy, vx, vy, gx, gy, reach, float(face_side))
+        overlap = PRESENT_OVERLAP if face_side == side else NO_OVERLAP
+        first, second = circle_delays(dx, dy, vx, vy, gx, gy, reach, float(face_side), overlap)
         for delay in (first, second):
-            # a disk that overlaps the circle's line from the other side is not on this side yet
-            if delay == 0.0 and face_side != side:
-                continue
             if delay < best and on_arc(
                 shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
             ):
