@@ -155,7 +155,9 @@ def species_labels(disks: Disks) -> tuple[tuple[str, str], ...]:
     """Return (label, colour) of the species, as many as there are colours."""
     kinds = species_of(disks)[1][: len(KINDS)]
     by_mass = len(np.unique(kinds[:, 1])) > 1
-    texts = [f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}" for radius, mass in kinds.tolist()]
+    texts = [
+        f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}" for radius, mass in kinds.tolist()
+    ]
     return tuple(zip(texts, KINDS, strict=False))
 
 

@@ -41,3 +41,23 @@ def lines_with_images(lines: Sequence[Floats], scene: Scene) -> list[Floats]:
         shifted = [line + k * step for line, k in product(seen, (-1, 1))]
         seen += [line for line in shifted if line[:, axis].max() > low and line[:, axis].min() < high]
     return seen
+
+
+def wrapped_pieces(
+    ends: Floats,
+    disk: NDArray[np.int64],
+    period: tuple[float | None, float | None],
+    corner: tuple[float, float],
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Return pieces (P, 2, 2), and the disk (P,) of each, repeated in every image of the domain that they pass through."""
+    for axis, length in enumerate(period):
+        if length is None:
+            continue
+        cell = np.floor((ends[:, :, axis] - corner[axis]) / length).astype(np.int64)
+        low, high = cell.min(axis=1), cell.max(axis=1)
+        count = high - low + 1
+        which = np.repeat(np.arange(len(ends)), count)
+        place = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+        ends, disk = ends[which].copy(), disk[which]
+        ends[:, :, axis] -= ((low[which] + place) * length)[:, None]
+    return ends, disk

@@ -31,6 +31,9 @@ SMALLEST = 1.5
 EDGED = 4.0
 """Pixels: disks of a larger radius get an edge, that neighbours of one colour can be told apart."""
 
+WALL_WIDTH, WIDEST_WALL = 2.0, 0.08
+"""Points, and as a share of the picture's smaller side: a corridor must not be all wall."""
+
 LONGEST_ARROW = 0.08
 """The arrow of the fastest flight is this share of the picture's larger side."""
 
@@ -151,8 +154,9 @@ class Picture:
             Rectangle(corner, *size, facecolor=self._palette.inside, edgecolor="none", zorder=0)
         )
         hard, periodic = outlines.boundary_lines(scene)
-        self._add_lines([*lines_with_images(outlines.wall_lines(scene), scene), *hard], 2.0, "solid")
-        self._add_lines(periodic, 1.2, "dashed")
+        width = min(WALL_WIDTH * self.layout.unit, WIDEST_WALL * min(self.layout.scene[2:]))
+        self._add_lines([*lines_with_images(outlines.wall_lines(scene), scene), *hard], width, "solid")
+        self._add_lines(periodic, 0.6 * width, "dashed")
 
     def _add_lines(self, lines: Sequence[Floats], width: float, style: str) -> None:
         artist = LineCollection(

@@ -7,14 +7,19 @@ from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.path import Path
-from numpy.typing import NDArray
 
-from eventsim.record.events import Floats, Rows, State
+from eventsim.record.events import Floats, State
 from eventsim.record.replay import Replay
+from eventsim.show.flights import flights_between
 from eventsim.show.frames import Frame
+from eventsim.show.images import wrapped_pieces
+from eventsim.show.outlines import period_of
 
 HEAD = 0.3
 """Length of an arrow's head, a share of the arrow."""
+
+PARABOLA_PIECES = 2
+"""Straight pieces in which the way from one frame to the next is drawn under gravity."""
 
 BANDS, STRONGEST = 12, 0.85
 """Shades in which a trail fades, and the opacity of the newest."""
@@ -40,7 +45,7 @@ class Trails:
         self._replay = replay
         self._before: State | None = None
         self._longest = max(frames, 1)
-        self._pieces: deque[tuple[Floats, NDArray[np.uint8]]] = deque(maxlen=self._longest)
+        self._pieces: deque[Floats] = deque(maxlen=self._longest)
 
     def follow(self, frame: Frame) -> Iterator[tuple[Path, float]]:
         """Add the way since the previous frame; yield the paths to draw, from the faintest on, each with its alpha.
@@ -50,37 +55,19 @@ class Trails:
         if self._before is not None and self._before.time > frame.state.time:
             self._pieces.clear()
         elif self._before is not None:
-            self._pieces.append(self._piece(self._before.position, frame))
+            self._pieces.append(self._pieces_between(self._before, frame))
         self._before = frame.state
         pieces = list(self._pieces)
         size = -(-self._longest // BANDS)
-        for first in range(len(pieces) % size - size if len(pieces) % size else 0, len(pieces), size):
-            points, codes = zip(*pieces[max(first, 0) : first + size], strict=True)
+        for first in range(-(-len(pieces) % size), len(pieces), size):
+            points = np.concatenate(pieces[max(first, 0) : first + size]).reshape(-1, 2)
+            codes = np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=np.uint8), len(points) // 2)
             age = len(pieces) - first - size
-            yield Path(np.concatenate(points), np.concatenate(codes)), STRONGEST * (1.0 - age / self._longest)
+            yield Path(points, codes), STRONGEST * (1.0 - age / self._longest)
 
-    def _piece(self, before: Floats, frame: Frame) -> tuple[Floats, NDArray[np.uint8]]:
-        """Return the ways of all disks through one frame: points, and codes that begin a new line where a disk does."""
-        n = len(before)
-        disk, place = contact_places(frame.recent, self._replay.stage.corner)
-        disks = np.concatenate([np.arange(n), disk, np.arange(n)])
-        points = np.concatenate([before, place, frame.state.position])
-        order = np.argsort(disks, kind="stable")
-        disks, points = disks[order], points[order]
-        begins = np.ones(len(disks), dtype=np.bool_)
-        begins[1:] = disks[1:] != disks[:-1]
-        for axis, length in enumerate(self._replay.stage.period):
-            if length is not None:  # a way across a periodic boundary goes on at the other side
-                begins[1:] |= np.abs(points[1:, axis] - points[:-1, axis]) > 0.5 * length
-        return points, np.where(begins, Path.MOVETO, Path.LINETO).astype(np.uint8)
-
-
-def contact_places(rows: Rows, corner: tuple[float, float]) -> tuple[NDArray[np.int64], Floats]:
-    """Return the disks (K,) of rows and where their centres were (K, 2) on the scene's axes, in the order of the rows."""
-    pair = rows["b"] >= 0
-    row = np.concatenate([np.arange(len(rows)), np.flatnonzero(pair)])
-    disk = np.concatenate([rows["a"], rows["b"][pair]]).astype(np.int64)
-    x = np.concatenate([rows["xa"], rows["xb"][pair]])
-    y = np.concatenate([rows["ya"], rows["yb"][pair]])
-    order = np.argsort(row, kind="stable")
-    return disk[order], np.column_stack([x, y])[order] + corner
+    def _pieces_between(self, before: State, frame: Frame) -> Floats:
+        """Return the ways of all disks from one frame to the next as straight pieces (P, 2, 2), inside the domain."""
+        scene = self._replay.log.scene
+        table = flights_between(self._replay, before, frame.recent, frame.state.time)
+        _, ends, disk = table.pieces(PARABOLA_PIECES)
+        return wrapped_pieces(ends, disk, period_of(scene), scene.domain.origin)[0]

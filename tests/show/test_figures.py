@@ -11,11 +11,11 @@ from eventsim.errors import EventsimError
 from eventsim.record.replay import Replay
 from eventsim.scene.gallery import names
 from eventsim.show.figures import TITLES, msd
-from eventsim.show.figures.flights import flight_table
 from eventsim.show.figures.free_paths import free_paths, mean_free_path, path_density
 from eventsim.show.figures.residuals import gaps_at_contact
-from eventsim.show.figures.trajectories import wrapped_pieces
 from eventsim.show.figures.write import write_figure
+from eventsim.show.flights import flight_table
+from eventsim.show.images import wrapped_pieces
 
 
 @pytest.mark.parametrize("kind", TITLES)

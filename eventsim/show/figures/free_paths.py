@@ -15,8 +15,9 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.record.events import Floats, Kind
 from eventsim.record.log import EventLog
-from eventsim.show.figures.flights import FlightTable, flight_table, replay_with_time, with_events
+from eventsim.show.figures.demands import replay_with_time, with_events
 from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of
+from eventsim.show.flights import FlightTable, flight_table
 
 BINS, LONGEST = 40, 6.0
 """Bins, up to this many mean free paths."""

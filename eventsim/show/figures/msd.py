@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.record.events import Floats
 from eventsim.record.log import EventLog
-from eventsim.show.figures.flights import FlightTable, flight_table, replay_with_time
+from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of
+from eventsim.show.flights import FlightTable, flight_table
 
 SAMPLES, LAGS = 600, 40
 """Times at which displacements are read; lags shown, evenly spread on a logarithmic scale."""

@@ -10,9 +10,10 @@ from eventsim.record.events import Kind
 from eventsim.record.log import EventLog
 from eventsim.show import outlines
 from eventsim.show.colouring import amounts
-from eventsim.show.figures.flights import flight_table, replay_with_time
+from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label, name_of
-from eventsim.show.figures.trajectories import wrapped_pieces
+from eventsim.show.flights import flight_table
+from eventsim.show.images import wrapped_pieces
 
 MOST_VECTORS = 20_000
 MOST_CONTACTS = 800
@@ -30,9 +31,8 @@ def draw(figure: Figure, log: EventLog) -> None:
     table = table.at(np.flatnonzero(table.time <= end))
     spread = np.ptp(table.place, axis=0)
     axis = int(spread[1] > spread[0])
-    time, ends = table.pieces()
+    time, ends, disk = table.pieces()
     lines = np.stack([time, ends[:, :, axis]], axis=2)
-    disk = np.repeat(table.disk, len(lines) // len(table.disk))
     period = outlines.period_of(scene)[axis]
     lines, disk = wrapped_pieces(lines, disk, (None, period), (0.0, scene.domain.origin[axis]))
     axes = figure.add_subplot()

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.record.events import Floats
 from eventsim.record.log import EventLog
-from eventsim.show.figures.flights import replay_with_time
+from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import SPEED, label, name_of
 from eventsim.show.palette import KINDS
 

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
-from numpy.typing import NDArray
 
-from eventsim.record.events import Floats
 from eventsim.record.log import EventLog
 from eventsim.show import outlines
 from eventsim.show.colouring import amounts
-from eventsim.show.figures.flights import flight_table, replay_with_time
+from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import LENGTH, SIZE, label, name_of
-from eventsim.show.images import lines_with_images
+from eventsim.show.flights import flight_table
+from eventsim.show.images import lines_with_images, wrapped_pieces
 from eventsim.show.palette import KINDS, LIGHT
 
 MOST_DISKS = 16
@@ -28,8 +25,6 @@ MOST_COLOURS = 7
 TALLEST, NARROWEST, LABELS = 6.4, 4.6, 0.8
 """Inches: of the scene in a figure, of a figure, and what labels take."""
 
-Indices: TypeAlias = NDArray[np.int64]
-
 
 def draw(figure: Figure, log: EventLog) -> None:
     """Draw the ways of up to MOST_DISKS disks; dots are contacts, circles the disks at the end."""
@@ -39,8 +34,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     table = flight_table(replay).of(disks)
     colours = np.array(KINDS[:MOST_COLOURS] if n <= MOST_COLOURS else [])
     shades = colours[disks] if len(colours) else amounts()(disks / max(len(disks) - 1, 1))
-    _, ends = table.pieces()
-    disk = np.repeat(table.disk, len(ends) // max(len(table.disk), 1))
+    _, ends, disk = table.pieces()
     ends, disk = wrapped_pieces(ends, disk, outlines.period_of(scene), scene.domain.origin)
     shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
     figure.set_size_inches(*inches_for(shown))
@@ -89,20 +83,3 @@ def inches_for(shown: outlines.Rectangle) -> tuple[float, float]:
     aspect = (shown[3] - shown[1]) / (shown[2] - shown[0])
     width = min(max(TALLEST / aspect, NARROWEST), SIZE[0])
     return width, min(max((width - LABELS) * aspect, 1.0), TALLEST) + LABELS
-
-
-def wrapped_pieces(
-    ends: Floats, disk: Indices, period: tuple[float | None, float | None], corner: tuple[float, float]
-) -> tuple[Floats, Indices]:
-    """Return pieces (P, 2, 2), and the disk (P,) of each, repeated in every image of the domain that they pass through."""
-    for axis, length in enumerate(period):
-        if length is None:
-            continue
-        cell = np.floor((ends[:, :, axis] - corner[axis]) / length).astype(np.int64)
-        low, high = cell.min(axis=1), cell.max(axis=1)
-        count = high - low + 1
-        which = np.repeat(np.arange(len(ends)), count)
-        place = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
-        ends, disk = ends[which].copy(), disk[which]
-        ends[:, :, axis] -= ((low[which] + place) * length)[:, None]
-    return ends, disk

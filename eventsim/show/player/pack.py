@@ -17,7 +17,14 @@ from eventsim.record.events import Column
 from eventsim.record.log import EventLog
 from eventsim.record.replay import Replay
 from eventsim.show import outlines
-from eventsim.show.colouring import amounts, default_mode, fastest_flight, mode_named, species_labels, species_of
+from eventsim.show.colouring import (
+    amounts,
+    default_mode,
+    fastest_flight,
+    mode_named,
+    species_labels,
+    species_of,
+)
 from eventsim.show.frames import shown_span
 from eventsim.show.images import lines_with_images
 from eventsim.show.palette import DARK, KINDS, LIGHT
