@@ -132,8 +132,9 @@ def _search(needs: Needs) -> str:
     elif search.side is None:
         text = f"all pairs: each disk is tried against every other; {_why_all_pairs(needs)}"
     else:
-        count = "" if search.columns is None else f", {search.columns} x {search.rows} of them"
-        count += f" (they pay from {ENOUGH_DISKS} disks on)"
+        count = f", {search.columns} x {search.rows} of them (they pay from {ENOUGH_DISKS} disks on)"
+        if needs.size is None:
+            count += ", the outer ones without end"
         text = (
             f"cells of {short(search.side[0])} x {short(search.side[1])}{count}: a disk is tried against those "
             "in its own cell and in those next to it"

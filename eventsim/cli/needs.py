@@ -14,6 +14,7 @@ from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.stage import stage_of
 from eventsim.scene.validate import touching_by_rounding
 from eventsim.scene.walls import wall_names
+from eventsim.simulation import engine_named
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
@@ -140,7 +141,7 @@ def needs_of(scene: Scene) -> Needs:
         touching_notes=tuple(touching_by_rounding(scene)),
         until=scene.until,
         events=scene.events,
-        engine="reference",
+        engine=engine_named("auto").name,
     )
 
 

@@ -1,6 +1,10 @@
 """`eventsim animate` and `eventsim figure`: from a scene or a log to a file."""
 
 import json
+import signal
+import subprocess
+import sys
+import time
 
 import pytest
 
@@ -70,3 +74,16 @@ def test_bad_usage_is_one_clear_message(
     assert expected in result.stderr
     assert result.stdout == ""
     assert sorted(tmp_path.iterdir()) == sorted([log_file, scene_file])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+def test_an_interrupt_ends_it_with_130_and_no_file(log_file, tmp_path):
+    words = [sys.executable, "-m", "eventsim", "animate", log_file, "--out", tmp_path / "a.gif", "--duration", "5000"]
+    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
+    part = tmp_path / "a.gif.part"
+    while not part.exists() and process.poll() is None:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert (process.returncode, said) == (130, "interrupted\n")
+    assert not list(tmp_path.glob("a.gif*"))
