@@ -126,20 +126,17 @@ class Simulation:
 
         Raises CollapseError where contacts follow one another without end.
         """
-        rows = self._advance(Stop(events=self._session.counters.events + 1))
-        self._time = None
-        return rows
+        return self._advance(Stop(events=self._session.counters.events + 1))
 
-    def advance_to(self, time: float) -> Rows:
+    def advance_to(self, time: float, events: int | None = None) -> Rows:
         """Let time pass to `time` on the scene's clock; the rows of what happened.
 
+        events: stop after so many even where that is earlier; `time` of the simulation tells which came first.
         Raises CollapseError as step; EventsimError for a time that has passed.
         """
         if math.isnan(time) or math.isinf(time) or time < self.time:
             raise EventsimError(f"cannot advance to {time!r}: it must be a finite time, not before {self.time!r}")
-        rows = self._advance(Stop(until=time))
-        self._time = time
-        return rows
+        return self._advance(Stop(time, None if events is None else self._session.counters.events + events))
 
     def set_velocity(self, disk: int, velocity: tuple[float, float]) -> None:
         """Give a disk another velocity, now: a kick, logged, so that the log still replays."""
@@ -174,6 +171,7 @@ class Simulation:
             self._keep()
         if stopped in ("collapse", "digits"):
             raise CollapseError(f"stopped by {stopped}: {self._session.reason}")
+        self._time = stop.until if stopped in ("until", "quiet") else None
         blocks = self._blocks[before:]
         self._blocks[before:] = [np.concatenate(blocks)]
         return self._blocks[-1]
