@@ -89,17 +89,15 @@ def animate(
     timing = _timing(replay, suffix, film)
     if suffix == ".mp4":
         ffmpeg()  # missing: say so before any work is done
-    between = BANDS if suffix == ".png" and look.trails else 1
+    hidden = BANDS if suffix == ".png" and look.trails else 0
     trail_frames = BANDS if suffix == ".png" else round(TRAIL * timing.fps)
     picture = Picture(replay, look, ROOM[suffix], timing.times, trail_frames)
     with whole_file(file) as part:
-        drawn = _drawn(picture, replay, timing, between, progress)
+        drawn = _drawn(picture, replay, timing, hidden, progress)
         if suffix == ".mp4":
             write_mp4(part, drawn, picture.layout.size, timing.fps)
         elif suffix == ".gif":
-            write_gif(
-                part, drawn, palette_of(_samples(picture, replay, timing)), len(timing.times), timing.fps
-            )
+            write_gif(part, drawn, palette_of(_samples(picture, replay, timing)), len(timing.times), timing.fps)
         else:
             write_strip(part, drawn, len(timing.times), picture.layout.size)
 
@@ -110,9 +108,7 @@ def animate_with(log: EventLog, path: str | PathLike[str], **options: Any) -> No
     unknown = sorted(set(options) - set(known))
     if unknown:
         raise EventsimError(f"animate has no option {', '.join(unknown)}; there are {', '.join(known)}")
-    film, look = (
-        {name: value for name, value in options.items() if known[name] is part} for part in (Film, Look)
-    )
+    film, look = ({name: value for name, value in options.items() if known[name] is part} for part in (Film, Look))
     animate(log, path, Film(**film), Look(**look))
 
 
@@ -134,13 +130,13 @@ def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
 
 
 def _drawn(
-    picture: Picture, replay: Replay, timing: Timing, between: int, progress: Progress | None
+    picture: Picture, replay: Replay, timing: Timing, hidden: int, progress: Progress | None
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield the pixels of each frame.
 
-    between: how many frames are drawn, unseen, for a trail that leads to each: the moments of a strip are far apart.
+    hidden: how many frames are drawn before each and not shown, for its trail: the moments of a strip are far apart.
     """
-    ahead = np.linspace(TRAIL * timing.speed, 0.0, between + 1)[between == 1 :]
+    ahead = TRAIL * timing.speed * np.arange(hidden, -1, -1) / max(hidden, 1)
     times = np.maximum(timing.times[:, None] - ahead, replay.span[0]).ravel()
     for place, frame in enumerate(frames_at(replay, times, GLOW * timing.speed), start=1):
         pixels = picture.draw(frame)

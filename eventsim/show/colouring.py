@@ -115,17 +115,13 @@ def _mapped(amount: Callable[[Frame], Floats], scale: Scale) -> Colouring:
 
 
 def _by_speed(replay: Replay) -> Colouring:
-    return _mapped(
-        lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, fastest_flight(replay.log))
-    )
+    return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, fastest_flight(replay.log)))
 
 
 def _by_contacts(replay: Replay) -> Colouring:
     log = replay.log
     most = np.bincount(np.concatenate([log.a, log.b[log.b >= 0]]), minlength=1).max()
-    return _mapped(
-        lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(max(most, 1)))
-    )
+    return _mapped(lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(max(most, 1))))
 
 
 def _by_mass(disks: Disks) -> Colouring:
@@ -155,9 +151,7 @@ def species_labels(disks: Disks) -> tuple[tuple[str, str], ...]:
     """Return (label, colour) of the species, as many as there are colours."""
     kinds = species_of(disks)[1][: len(KINDS)]
     by_mass = len(np.unique(kinds[:, 1])) > 1
-    texts = [
-        f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}" for radius, mass in kinds.tolist()
-    ]
+    texts = [f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}" for radius, mass in kinds.tolist()]
     return tuple(zip(texts, KINDS, strict=False))
 
 

@@ -52,21 +52,15 @@ def frame_timing(
             raise EventsimError(f"{name} = {value}: must be finite and above 0")
     seconds = (last - first) / speed if speed is not None else duration or default_duration
     if not seconds * fps <= MOST_FRAMES:
-        raise EventsimError(
-            f"this movie would have {seconds * fps:.3g} frames: give a higher speed or a shorter span"
-        )
+        raise EventsimError(f"this movie would have {seconds * fps:.3g} frames: give a higher speed or a shorter span")
     if speed is None:
         count = max(round(seconds * fps), 2)
         return Timing(np.linspace(first, last, count), fps, (last - first) / seconds)
-    count = (
-        math.floor(seconds * fps * (1.0 + 1e-12)) + 1
-    )  # the last frame is kept where fps * seconds rounds down
+    count = math.floor(seconds * fps * (1.0 + 1e-12)) + 1  # the last frame is kept where fps * seconds rounds down
     return Timing(np.minimum(first + np.arange(count) * (speed / fps), last), fps, speed)
 
 
-def moments(
-    span: tuple[float, float], count: int, begin: float | None = None, end: float | None = None
-) -> Floats:
+def moments(span: tuple[float, float], count: int, begin: float | None = None, end: float | None = None) -> Floats:
     """Return `count` times, evenly spread over the part of the span that is shown."""
     return np.linspace(*shown_span(span, begin, end), count)
 

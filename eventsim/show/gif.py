@@ -19,14 +19,9 @@ def palette_of(frames: Iterable[NDArray[np.uint8]]) -> Image.Image:
     return Image.fromarray(samples).quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
 
 
-def write_gif(
-    part: Path, frames: Iterable[NDArray[np.uint8]], palette: Image.Image, count: int, fps: float
-) -> None:
+def write_gif(part: Path, frames: Iterable[NDArray[np.uint8]], palette: Image.Image, count: int, fps: float) -> None:
     """Write `count` frames (height, width, 4), shown for ever; of each only what changed is kept."""
-    images = (
-        Image.fromarray(frame[..., :3]).quantize(palette=palette, dither=Image.Dither.NONE)
-        for frame in frames
-    )
+    images = (Image.fromarray(frame[..., :3]).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
     first = next(images)
     # A gif counts in hundredths of a second: each frame ends at the nearest one, so that nothing accumulates.
     ends = np.maximum(np.round(np.arange(1, count + 1) * (100.0 / fps)), np.arange(1, count + 1)).astype(int)

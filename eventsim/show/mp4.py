@@ -83,9 +83,7 @@ def write_mp4(part: Path, frames: Iterable[NDArray[np.uint8]], size: tuple[int, 
         if process.returncode != 0:
             complaints.seek(0)
             last = complaints.read().decode(errors="replace").strip().splitlines()[-1:]
-            raise EventsimError(
-                f"ffmpeg could not write the movie: {' '.join(last) or f'code {process.returncode}'}"
-            )
+            raise EventsimError(f"ffmpeg could not write the movie: {' '.join(last) or f'code {process.returncode}'}")
 
 
 def _feed(pipe: IO[bytes], frames: Iterable[NDArray[np.uint8]]) -> None:

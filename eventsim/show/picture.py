@@ -59,9 +59,7 @@ class Picture:
     Disks are circles of their true radius, one collection; a disk across a periodic boundary is drawn on both sides.
     """
 
-    def __init__(
-        self, replay: Replay, look: Look, room: tuple[int, int], times: Floats, trail_frames: int = 1
-    ) -> None:
+    def __init__(self, replay: Replay, look: Look, room: tuple[int, int], times: Floats, trail_frames: int = 1) -> None:
         """room: pixels that a picture may take where the look gives no size. times: of the frames to come."""
         self._replay, self._look = replay, look
         self._palette = DARK if look.dark else LIGHT
@@ -132,9 +130,7 @@ class Picture:
 
     def _path_artist(self, colour: str) -> PathPatch:
         width = 1.1 * self.layout.unit
-        patch = PathPatch(
-            Path(np.zeros((1, 2))), fill=False, edgecolor=colour, linewidth=width, capstyle="round"
-        )
+        patch = PathPatch(Path(np.zeros((1, 2))), fill=False, edgecolor=colour, linewidth=width, capstyle="round")
         patch.set_animated(True)
         self._axes.add_patch(patch)
         return patch
@@ -150,9 +146,7 @@ class Picture:
         corner, size = (shown[0], shown[1]), (shown[2] - shown[0], shown[3] - shown[1])
         if scene.domain.size is not None:
             corner, size = scene.domain.origin, scene.domain.size
-        self._axes.add_patch(
-            Rectangle(corner, *size, facecolor=self._palette.inside, edgecolor="none", zorder=0)
-        )
+        self._axes.add_patch(Rectangle(corner, *size, facecolor=self._palette.inside, edgecolor="none", zorder=0))
         hard, periodic = outlines.boundary_lines(scene)
         width = min(WALL_WIDTH * self.layout.unit, WIDEST_WALL * min(self.layout.scene[2:]))
         self._add_lines([*lines_with_images(outlines.wall_lines(scene), scene), *hard], width, "solid")

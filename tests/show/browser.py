@@ -21,15 +21,11 @@ FLAGS = (
 @contextmanager
 def browser(profile: Path) -> Iterator[Any]:
     """Start Chromium with a fresh profile; skip the test, saying what is missing, where that cannot be."""
-    webdriver = pytest.importorskip(
-        "selenium.webdriver", reason="selenium is not installed (the extra test brings it)"
-    )
+    webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed (the extra test brings it)")
     program = next(filter(None, map(shutil.which, BROWSERS)), None)
     driver = shutil.which(DRIVER)
     if program is None or driver is None:
-        pytest.skip(
-            f"no {' or '.join(BROWSERS)} with {DRIVER} here: apt-get install chromium chromium-driver"
-        )
+        pytest.skip(f"no {' or '.join(BROWSERS)} with {DRIVER} here: apt-get install chromium chromium-driver")
     options = webdriver.ChromeOptions()
     options.binary_location = program
     for flag in (*FLAGS, f"--user-data-dir={profile}"):

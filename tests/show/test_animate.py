@@ -30,15 +30,31 @@ def test_an_mp4_has_the_frames_size_and_duration_asked_for(broken, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_disk_in_the_movie_is_where_the_state_says(broken, tmp_path):
+    path, look = tmp_path / "break.mp4", Look(size=(1280, 720), color="speed")
+    animate(broken, path, Film(fps=25, duration=1.0, end=0.19), look)  # before the first contact only disk 0 is fast
+    times = np.linspace(0.0, 0.19, 25)
+    layout = Picture(Replay(broken), look, (1280, 720), times).layout
+    frames = imageio_ffmpeg.read_frames(str(path))
+    next(frames)
+    for time, data in zip(times.tolist(), frames, strict=True):
+        pixels = np.frombuffer(data, dtype=np.uint8).reshape(720, 1280, 3).astype(int)
+        yellow = (pixels[..., 0] > 200) & (pixels[..., 1] > 180) & (pixels[..., 2] < 110)
+        yellow[-60:] = False  # the key of the colours
+        rows, columns = np.nonzero(yellow)
+        found = columns.mean() + 0.5 - layout.scene[0], 720 - (rows.mean() + 0.5) - layout.scene[1]
+        state = Replay(broken).state_at(time)
+        expected = (state.position[0] - picture_corner(broken)) * layout.scale
+        assert np.abs(found - expected).max() < 0.5  # pixels
+
+
 @pytest.mark.parametrize("name", ["broken", "fluid"])
 def test_disks_are_drawn_where_the_state_says(name, request):
     log = request.getfixturevalue(name)
     replay = Replay(log)
     times = np.linspace(*replay.span, 3)
     picture = Picture(replay, Look(size=(1280, 720)), (1280, 720), times)
-    unlike = np.random.default_rng(1).random(
-        (len(log.scene.disks), 4)
-    )  # no two disks of nearly the same colour
+    unlike = np.random.default_rng(1).random((len(log.scene.disks), 4))  # no two disks of nearly the same colour
     unlike[:, 3] = 1.0
     picture._colouring = Colouring(lambda frame: unlike, None)
     left, bottom, _, _ = picture.layout.scene
@@ -77,9 +93,7 @@ def centres_in(picture, pixels, frame):
             continue
         window = pixels[row - reach : row + reach + 1, column - reach : column + reach + 1, :3]
         rows, columns = np.nonzero(np.abs(window - colour).max(axis=2) <= 2)
-        if (
-            abs(len(rows) / (np.pi * (radius[i] - 1.0) ** 2) - 1.0) < 0.15
-        ):  # a whole disk, and no other of this colour
+        if abs(len(rows) / (np.pi * (radius[i] - 1.0) ** 2) - 1.0) < 0.15:  # a whole disk, and no other of this colour
             centres[i] = column - reach + columns.mean() + 0.5, height - (row - reach + rows.mean() + 0.5)
     return centres
 

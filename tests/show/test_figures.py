@@ -58,9 +58,7 @@ def test_flights_lead_from_contact_to_contact(fluid):
     replay = Replay(fluid)
     table = flight_table(replay)
     assert len(table.disk) == len(fluid) + (fluid.b >= 0).sum() + replay.stage.n
-    assert table.duration.sum() == pytest.approx(
-        replay.stage.n * (replay.span[1] - replay.span[0]), rel=1e-12
-    )
+    assert table.duration.sum() == pytest.approx(replay.stage.n * (replay.span[1] - replay.span[0]), rel=1e-12)
     reached = table.place + table.duration[:, None] * table.velocity
     inner = np.flatnonzero(~table.first)
     size = np.array(fluid.scene.domain.size)
@@ -79,9 +77,7 @@ def test_displacements_are_those_of_the_states(broken):
 
 
 def test_a_piece_across_a_periodic_boundary_is_drawn_in_both_images():
-    ends, disk = wrapped_pieces(
-        np.array([[[8.0, 1.0], [13.0, 2.0]]]), np.array([4]), (10.0, None), (0.0, 0.0)
-    )
+    ends, disk = wrapped_pieces(np.array([[[8.0, 1.0], [13.0, 2.0]]]), np.array([4]), (10.0, None), (0.0, 0.0))
     assert ends[:, :, 0].tolist() == [[8.0, 13.0], [-2.0, 3.0]]
     assert disk.tolist() == [4, 4]
 

@@ -50,8 +50,6 @@ def test_frames_show_the_state_and_count_contacts(broken):
         assert frame.events == before.sum()
         pairs = before & (broken.b >= 0)
         assert frame.contacts.sum() == before.sum() + pairs.sum()
-        lit = np.union1d(
-            *(column[before & (broken.time > state.time - 0.1)] for column in (broken.a, broken.b))
-        )
+        lit = np.union1d(*(column[before & (broken.time > state.time - 0.1)] for column in (broken.a, broken.b)))
         assert np.array_equal(np.flatnonzero(frame.glow), lit[lit >= 0])
         assert frame.energy == pytest.approx(energy_of(broken, replay.state_at(0.0)), rel=1e-14)  # elastic

@@ -53,9 +53,7 @@ def assert_shows(found, replay):
     assert np.abs(velocity - state.velocity).max() <= CLOSE * max(1.0, np.abs(state.velocity).max())
 
 
-@pytest.mark.parametrize(
-    "name", ["break", "funnel", "periodic-fluid", "channel", "bounce", "stadium", "brownian"]
-)
+@pytest.mark.parametrize("name", ["break", "funnel", "periodic-fluid", "channel", "bounce", "stadium", "brownian"])
 def test_positions_are_those_of_state_at(opened, name):
     log = es.simulate(es.gallery(name), events=1500, log=True).log
     replay, driver = Replay(log), opened(log)
@@ -216,9 +214,7 @@ def test_the_page_asks_the_network_for_nothing(broken):
 
 
 def test_a_scene_name_cannot_break_the_page(opened):
-    scene = es.Scene(
-        es.Disks([(1, 1)], [(1, 0)], radius=0.5), es.Box((4, 2)), until=3.0, name="</script><b>&\"'</b>"
-    )
+    scene = es.Scene(es.Disks([(1, 1)], [(1, 0)], radius=0.5), es.Box((4, 2)), until=3.0, name="</script><b>&\"'</b>")
     driver = opened(es.simulate(scene, log=True).log)
     assert driver.title == scene.name
 

@@ -31,9 +31,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     with_events(log, Kind.PAIR)
     paths = free_paths(flight_table(replay_with_time(log)))
     if len(paths) < FEWEST:
-        raise LogError(
-            f"free-paths: only {len(paths)} whole free paths in this log; at least {FEWEST} are needed"
-        )
+        raise LogError(f"free-paths: only {len(paths)} whole free paths in this log; at least {FEWEST} are needed")
     mean, error = float(paths.mean()), float(paths.std(ddof=1) / np.sqrt(len(paths)))
     edges = np.linspace(0.0, LONGEST * mean, BINS + 1)
     counts = np.histogram(paths, bins=edges)[0]
@@ -48,13 +46,13 @@ def draw(figure: Figure, log: EventLog) -> None:
     theory = mean_free_path(log)
     shown = mean if theory is None else theory
     x = np.linspace(0.0, edges[-1], 200)
-    axes.plot(
-        x, path_density(x / shown) / shown, color=ORANGE, lw=1.5, label=f"kinetic theory, mean {shown:.4g}"
-    )
+    axes.plot(x, path_density(x / shown) / shown, color=ORANGE, lw=1.5, label=f"kinetic theory, mean {shown:.4g}")
     if theory is None:
         verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, taken over by the curve"
     else:
-        verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, Enskog {theory:.4g} ({mean / theory - 1:+.1%})"
+        verdict = (
+            f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, Enskog {theory:.4g} ({mean / theory - 1:+.1%})"
+        )
     label(
         axes,
         f"free path [{LENGTH}]",
@@ -79,13 +77,7 @@ def mean_free_path(log: EventLog) -> float | None:
     """Return Enskog's mean free path; None where the scene is no gas of equal disks in a rectangle."""
     scene, disks = log.scene, log.scene.disks
     equal = len(np.unique(disks.radius)) == 1 == len(np.unique(disks.mass)) and disks.radius[0] > 0.0
-    if (
-        scene.domain.size is None
-        or not equal
-        or scene.gravity is not None
-        or scene.walls
-        or len(disks) < FEWEST
-    ):
+    if scene.domain.size is None or not equal or scene.gravity is not None or scene.walls or len(disks) < FEWEST:
         return None
     area, diameter = scene.domain.size[0] * scene.domain.size[1], 2.0 * float(disks.radius[0])
     density = len(disks) / area

@@ -34,14 +34,12 @@ def draw(figure: Figure, log: EventLog) -> None:
     mean = np.array([part.mean() for part in squared])
     if not mean.any():
         raise LogError("msd: nothing moves in this run")
-    error = np.array(
-        [part.mean(axis=0).std(ddof=1) if len(moving) > 1 else 0.0 for part in squared]
-    ) / np.sqrt(len(moving))
+    error = np.array([part.mean(axis=0).std(ddof=1) if len(moving) > 1 else 0.0 for part in squared]) / np.sqrt(
+        len(moving)
+    )
     tau = lags * (times[1] - times[0])
     axes = figure.add_subplot()
-    axes.errorbar(
-        tau, mean, error, fmt="o", ms=3.5, lw=1, color=BLUE, label="measured, standard error over disks"
-    )
+    axes.errorbar(tau, mean, error, fmt="o", ms=3.5, lw=1, color=BLUE, label="measured, standard error over disks")
     weight = table.duration * np.isin(table.disk, moving)
     velocity2 = float(np.average((table.velocity**2).sum(axis=1), weights=weight))
     axes.plot(tau, velocity2 * tau**2, color=ORANGE, lw=1.3, label=r"ballistic, $\langle v^2\rangle\,\tau^2$")

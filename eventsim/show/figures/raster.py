@@ -37,9 +37,7 @@ def draw(figure: Figure, log: EventLog) -> None:
         time = np.concatenate([rows["time"], rows["time"][pairs]])
         disk = np.concatenate([rows["a"], rows["b"][pairs]])
         colour, marker = MARKS[kind]
-        handles.append(
-            Line2D([], [], color=colour, marker="s", ls="none", label=f"{kind.label}: {len(rows):,}")
-        )
+        handles.append(Line2D([], [], color=colour, marker="s", ls="none", label=f"{kind.label}: {len(rows):,}"))
         axes.plot(
             time, disk, marker, color=colour, markersize=height, markeredgewidth=0.9, linestyle="none",
             rasterized=len(time) > MOST_VECTORS,

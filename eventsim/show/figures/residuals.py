@@ -49,9 +49,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     below.axhline(0.0, color="#39424e", lw=0.8)
     below.set_xlim(replay.span)
     if not len(gap):
-        below.text(
-            0.5, 0.5, "no pair contacts", transform=below.transAxes, ha="center", va="center", color="#5b6570"
-        )
+        below.text(0.5, 0.5, "no pair contacts", transform=below.transAxes, ha="center", va="center", color="#5b6570")
 
 
 def gaps_at_contact(replay: Replay) -> tuple[Floats, Floats]:

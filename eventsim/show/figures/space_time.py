@@ -47,9 +47,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     if scene.domain.size is not None:
         for edge in (scene.domain.origin[axis], scene.domain.origin[axis] + scene.domain.size[axis]):
             axes.axhline(edge, color="#39424e", lw=1.2, ls="--" if scene.domain.periodic[axis] else "-")
-    which = (
-        f"{len(pairs):,}" if len(pairs) <= MOST_CONTACTS else f"the first {MOST_CONTACTS:,} of {len(pairs):,}"
-    )
+    which = f"{len(pairs):,}" if len(pairs) <= MOST_CONTACTS else f"the first {MOST_CONTACTS:,} of {len(pairs):,}"
     label(
         axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
         f"{name_of(scene.name)}: {replay.stage.n:,} disks, {which} contacts between them (dots)",

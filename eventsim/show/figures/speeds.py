@@ -30,9 +30,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     moving = np.isfinite(mass) & (mass > 0.0)
     masses = np.unique(mass[moving])
     if not 1 <= len(masses) <= MOST_MASSES:
-        raise LogError(
-            f"speeds: {len(masses)} finite masses in this scene; the figure shows 1 to {MOST_MASSES}"
-        )
+        raise LogError(f"speeds: {len(masses)} finite masses in this scene; the figure shows 1 to {MOST_MASSES}")
     times = np.linspace(*replay.span, SAMPLES)
     velocity = np.array([replay.state_at(time).velocity for time in times.tolist()])
     speed = np.hypot(velocity[..., 0], velocity[..., 1])
@@ -51,9 +49,7 @@ def draw(figure: Figure, log: EventLog) -> None:
         if moving.sum() >= FEWEST:
             v = np.linspace(0.0, edges[-1], 300)
             curve = value * v / temperature * np.exp(-value * v**2 / (2.0 * temperature))
-            axes.plot(
-                v, curve, color=colour, lw=1.4, label=None if place else f"Maxwell, kT = {temperature:.4g}"
-            )
+            axes.plot(v, curve, color=colour, lw=1.4, label=None if place else f"Maxwell, kT = {temperature:.4g}")
             survive = np.exp(-value * edges**2 / (2.0 * temperature))
             expected = -np.diff(survive) / np.diff(edges)
             good = errors > 0.0
@@ -77,7 +73,6 @@ def draw(figure: Figure, log: EventLog) -> None:
 def _histogram(speed: Floats, edges: Floats) -> tuple[Floats, Floats]:
     """Return the density of speeds (T, M) in each bin, and its standard error from blocks of time."""
     blocks = [
-        np.histogram(block, bins=edges)[0] / (block.size * np.diff(edges))
-        for block in np.array_split(speed, BLOCKS)
+        np.histogram(block, bins=edges)[0] / (block.size * np.diff(edges)) for block in np.array_split(speed, BLOCKS)
     ]
     return np.mean(blocks, axis=0), np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS)

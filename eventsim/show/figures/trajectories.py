@@ -56,18 +56,14 @@ def draw(figure: Figure, log: EventLog) -> None:
         zorder=3,
     )
     last = replay.final().position[disks]
-    circles = [
-        Circle((x, y), r) for (x, y), r in zip(last.tolist(), scene.disks.radius[disks].tolist(), strict=True)
-    ]
+    circles = [Circle((x, y), r) for (x, y), r in zip(last.tolist(), scene.disks.radius[disks].tolist(), strict=True)]
     axes.add_collection(
         PatchCollection(circles, facecolor=shades, edgecolor=LIGHT.edge, linewidth=0.6, alpha=0.9, zorder=4)
     )
     hard, open_ = outlines.boundary_lines(scene)
     walls = [*lines_with_images(outlines.wall_lines(scene), scene), *hard]
     axes.add_collection(LineCollection(walls, colors=LIGHT.wall, linewidths=1.6), autolim=False)
-    axes.add_collection(
-        LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False
-    )
+    axes.add_collection(LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False)
     which = f"{len(disks)} of {n} disks" if len(disks) < n else "all disks" if n > 1 else "the disk"
     label(
         axes,

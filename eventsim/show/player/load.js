@@ -4,7 +4,11 @@
 const KINDS_OF_NUMBERS = { f8: Float64Array, i4: Int32Array, i1: Int8Array };
 
 function unpacked(text, columns) {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)), found = {};
+  return columnsIn(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)), columns);
+}
+
+function columnsIn(bytes, columns) {
+  const found = {};
   let place = 0;
   for (const { name, type, length } of columns) {
     const numbers = KINDS_OF_NUMBERS[type], size = length * numbers.BYTES_PER_ELEMENT;

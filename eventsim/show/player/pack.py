@@ -7,15 +7,17 @@ lines on the scene's axes. Rows have no positions: the player flies each disk fr
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.colors import to_hex
 
-from eventsim.record.events import Column
+from eventsim.record.events import Column, Rows
 from eventsim.record.log import EventLog
 from eventsim.record.replay import Replay
+from eventsim.scene.stage import Stage
 from eventsim.show import outlines
 from eventsim.show.colouring import (
     amounts,
@@ -40,10 +42,11 @@ ROW_COLUMNS = (
     ("a", "i4"), ("b", "i4"), ("wall", "i4"), ("kind", "i1"),
 )  # fmt: skip
 
+PackedColumn: TypeAlias = tuple[str, str, Column]
+"""Name, type and numbers of a column."""
 
-def packed(
-    log: EventLog, color: str | None = None, seconds: float | None = None
-) -> tuple[dict[str, Any], str]:
+
+def packed(log: EventLog, color: str | None = None, seconds: float | None = None) -> tuple[dict[str, Any], str]:
     """Return the description of a log for the player, and its numbers in base64.
 
     seconds: how long it plays at the speed that it begins with. Raises EventsimError where the log has no time to
@@ -51,28 +54,22 @@ def packed(
     """
     replay = Replay(log)
     first, last = shown_span(replay.span, None, None)
-    columns = _columns(replay)
+    columns = [*start_columns(replay), *row_columns(log.expand().rows)]
     description = {
         "startTime": first,
         "duration": last - first,
         "seconds": seconds or SECONDS,
         "colour": mode_named(color) or default_mode(log.scene.disks),
-        "columns": [{"name": name, "type": kind, "length": len(column)} for name, kind, column in columns],
-        "scene": {
-            "count": replay.stage.n,
-            "epochLength": replay.stage.epoch_length,
-            "period": replay.stage.period,
-            "gravity": replay.stage.gravity,
-        },
-        "stage": _stage(replay, last),
+        "columns": described_columns(columns),
+        "scene": scene_description(replay.stage),
+        "stage": stage_description(replay, last),
     }
-    data = b"".join(column.astype(f"<{kind}").tobytes() for _, kind, column in columns)
-    return description, base64.b64encode(data).decode("ascii")
+    return description, base64.b64encode(column_bytes(columns)).decode("ascii")
 
 
-def _columns(replay: Replay) -> list[tuple[str, str, Column]]:
-    """Return name, type and numbers of each column: the disks at the start, then the rows."""
-    stage, disks, rows = replay.stage, replay.log.scene.disks, replay.log.rows
+def start_columns(replay: Replay) -> list[PackedColumn]:
+    """Return the disks at the start."""
+    stage, disks = replay.stage, replay.log.scene.disks
     start = {
         "x": stage.x,
         "y": stage.y,
@@ -81,14 +78,38 @@ def _columns(replay: Replay) -> list[tuple[str, str, Column]]:
         "radius": disks.radius,
         "mass": disks.mass,
     }
-    columns: list[tuple[str, str, Column]] = [(name, "f8", column) for name, column in start.items()]
+    columns: list[PackedColumn] = [(name, "f8", column) for name, column in start.items()]
     columns.append(("species", "i4", species_of(disks)[0]))
-    columns.extend((name, kind, rows[name]) for name, kind in ROW_COLUMNS)
     return columns
 
 
-def _stage(replay: Replay, last: float) -> dict[str, Any]:
-    """Return what the player's drawing needs to know besides the disks."""
+def row_columns(rows: Rows) -> list[PackedColumn]:
+    """Return what the player needs of rows."""
+    return [(name, kind, rows[name]) for name, kind in ROW_COLUMNS]
+
+
+def described_columns(columns: Sequence[PackedColumn]) -> list[dict[str, Any]]:
+    """Return how columns lie one after the other in `column_bytes`."""
+    return [{"name": name, "type": kind, "length": len(column)} for name, kind, column in columns]
+
+
+def column_bytes(columns: Sequence[PackedColumn]) -> bytes:
+    """Return the numbers of columns, little-endian."""
+    return b"".join(column.astype(f"<{kind}").tobytes() for _, kind, column in columns)
+
+
+def scene_description(stage: Stage) -> dict[str, Any]:
+    """Return what the player's world needs to know besides the disks."""
+    return {
+        "count": stage.n,
+        "epochLength": stage.epoch_length,
+        "period": stage.period,
+        "gravity": stage.gravity,
+    }
+
+
+def stage_description(replay: Replay, last: float) -> dict[str, Any]:
+    """Return what the player's drawing needs to know besides the disks; last: a time that the log covers."""
     log, scene, stage = replay.log, replay.log.scene, replay.stage
     masses = scene.disks.mass[np.isfinite(scene.disks.mass)]
     hard, open_ = outlines.boundary_lines(scene)

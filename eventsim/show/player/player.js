@@ -8,21 +8,33 @@ class Player {
   /* root: the element with the player's markup. description: see page.py. */
   constructor(root, world, description) {
     this.root = root;
+    this.part = (name) => root.querySelector(`[data-part="${name}"]`);
+    this.canvas = this.part("canvas");
+    this.view = { dark: description.dark, trails: description.trails, flash: description.flash, arrows: description.arrows,
+                  colour: description.colour };
+    this.open(world, description);
+    this._connect();
+    this._show();
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+  }
+
+  /* Begin with a world at its start. */
+  open(world, description) {
     this.world = world;
+    this.stage = description.stage;
     this.start = description.startTime;
     this.duration = description.duration;
     this.usualSpeed = description.duration / description.seconds;
-    this.view = { time: 0, speed: this.usualSpeed, colour: description.colour, dark: description.dark,
-                  trails: description.trails, flash: description.flash, arrows: description.arrows, marked: -1 };
+    Object.assign(this.view, { time: 0, speed: this.usualSpeed, marked: -1 });
     this.direction = 1;
     this.playing = false;
-    this.part = (name) => root.querySelector(`[data-part="${name}"]`);
-    this.canvas = this.part("canvas");
-    this.drawing = new Drawing(this.canvas, world, description.stage);
-    this.stage = description.stage;
-    this._connect();
+    this.drawing = new Drawing(this.canvas, world, this.stage);
+  }
+
+  /* Follow the size of the canvas. */
+  resize() {
+    this.drawing.resize();
     this._show();
-    new ResizeObserver(() => { this.drawing.resize(); this._show(); }).observe(this.canvas);
   }
 
   /* The state at the time that is shown, on the scene's axes: {time, x, y, vx, vy}. */

@@ -57,6 +57,19 @@ class World {
     }
   }
 
+  /* Forget all rows but the first `count`. */
+  cut(count) {
+    const { a, b } = this.event;
+    while (a.length > count) {
+      for (const disk of [b.values[a.length - 1], a.values[a.length - 1]]) {
+        if (disk < 0) continue;
+        this.anchorsOf[disk].pop();
+        for (const column of Object.values(this.anchor)) column.length--;
+      }
+      for (const column of Object.values(this.event)) column.length--;
+    }
+  }
+
   /* All disks at a time: {x, y, vx, vy}, arrays that the next call overwrites. At the time of an event, after it. */
   state(time) {
     const { x, y, vx, vy } = this.now;
