@@ -54,7 +54,7 @@ def packed(log: EventLog, color: str | None = None, seconds: float | None = None
     """
     replay = Replay(log)
     first, last = shown_span(replay.span, None, None)
-    columns = [*start_columns(replay), *row_columns(log.expand().rows)]
+    columns = [*start_columns(replay), *row_columns(replay.log.rows)]
     description = {
         "startTime": first,
         "duration": last - first,
