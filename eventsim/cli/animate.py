@@ -26,14 +26,10 @@ def pixels(context: click.Context, option: click.Parameter, value: str | None) -
 
 @click.command()
 @scene_options(required=True, metavar="SCENE|LOG")
-@click.option(
-    "--out", required=True, metavar="FILE", help="FILE.mp4, .gif, .png (a strip of moments) or .html."
-)
+@click.option("--out", required=True, metavar="FILE", help="FILE.mp4, .gif, .png (a strip of moments) or .html.")
 @stop_options
 @click.option("--fps", type=float, metavar="F", help="Frames per second; 30, of a gif 20.")
-@click.option(
-    "--speed", type=float, metavar="S", help="Time of the scene that passes in a second of the movie."
-)
+@click.option("--speed", type=float, metavar="S", help="Time of the scene that passes in a second of the movie.")
 @click.option("--duration", type=float, metavar="D", help="Seconds that the movie lasts; 10, of a gif 6.")
 @click.option("--from", "begin", type=float, metavar="T", help="Begin at this time on the scene's clock.")
 @click.option("--to", "end", type=float, metavar="T", help="End at this time on the scene's clock.")
@@ -97,9 +93,16 @@ def command(
     assert target is not None
     if speed is not None and duration is not None:
         raise click.UsageError("--speed and --duration exclude each other: the one follows from the other")
-    for option, value, suffixes in (("--moments", moments, (".png",)), ("--fps", fps, (".mp4", ".gif"))):
+    movies, drawn = (".mp4", ".gif"), (".mp4", ".gif", ".png")
+    for option, value, suffixes in (
+        ("--moments", moments, (".png",)),
+        ("--fps", fps, movies),
+        ("--size", size, drawn),
+        ("--from", begin, drawn),
+        ("--to", end, drawn),
+    ):
         if value is not None and target.suffix.lower() not in suffixes:
-            raise click.UsageError(f"{option} is for {' and '.join(suffixes)} files, and --out is {target}")
+            raise click.UsageError(f"{option} is for {', '.join(suffixes)} files, and --out is {target}")
 
     from time import perf_counter
 

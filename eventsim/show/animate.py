@@ -73,15 +73,7 @@ def animate(
     file, film, look = Path(path), film or Film(), look or Look()
     suffix = suffix_of(file, SUFFIXES, "an animation")
     if suffix == ".html":
-        text = page(
-            log,
-            color=look.color,
-            dark=look.dark,
-            trails=look.trails,
-            velocities=look.velocities,
-            flash=look.flash,
-            seconds=film.duration,
-        )
+        text = _page(log, film, look)
         with whole_file(file) as part:
             write_page(part, text)
         return
@@ -102,6 +94,24 @@ def animate(
             write_strip(part, drawn, len(timing.times), picture.layout.size)
 
 
+def _page(log: EventLog, film: Film, look: Look) -> str:
+    """Return the page that plays a log; what only drawn frames have is refused."""
+    for name, value in (("fps", film.fps), ("begin", film.begin), ("end", film.end), ("size", look.size)):
+        if value is not None:
+            raise EventsimError(f"{name} = {value}: a page plays the whole log, at any size and rate; leave it out")
+    span = Replay(log).span
+    timing = frame_timing(span, FPS[".mp4"], DURATION[".mp4"], film.speed, film.duration)
+    return page(
+        log,
+        color=look.color,
+        dark=look.dark,
+        trails=look.trails,
+        velocities=look.velocities,
+        flash=look.flash,
+        seconds=(span[1] - span[0]) / timing.speed,
+    )
+
+
 def animate_with(log: EventLog, path: str | PathLike[str], **options: Any) -> None:
     """Write an animation with the options of Film and Look, each by its name; see `animate`."""
     known = {field.name: part for part in (Film, Look) for field in fields(part)}
@@ -116,7 +126,7 @@ def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
     if suffix != ".png":
         return frame_timing(
             replay.span,
-            film.fps or FPS[suffix],
+            FPS[suffix] if film.fps is None else film.fps,
             DURATION[suffix],
             film.speed,
             film.duration,

@@ -55,6 +55,9 @@ def test_a_figure_is_drawn_from_a_log(eventsim, log_file, tmp_path):
         (["animate", "two.csv", "--out", "a.gif", "--speed", "1", "--duration", "1"], "exclude"),
         (["animate", "two.csv", "--out", "a.gif", "--from", "5"], "the log tells the time"),
         (["animate", "two.csv", "--out", "a.gif", "--moments", "5"], ".png"),
+        (["animate", "two.csv", "--out", "a.html", "--size", "200x200"], "--size is for .mp4, .gif, .png"),
+        (["animate", "two.csv", "--out", "a.html", "--speed", "0"], "speed = 0.0"),
+        (["animate", "two.csv", "--out", "a.gif", "--fps", "0"], "fps = 0.0"),
         (["animate", "two.csv", "--out", "a.gif", "--until", "5"], "is a log"),
         (["animate", "two.csv", "--out", "a.gif", "--color", "mood"], "'mass'"),
         (["animate", "none.csv", "--out", "a.gif"], "none.csv"),
@@ -65,9 +68,7 @@ def test_a_figure_is_drawn_from_a_log(eventsim, log_file, tmp_path):
         (["figure", "two.csv", "--kind", "free-paths", "--out", "a.png"], "at least 20"),
     ],
 )
-def test_bad_usage_is_one_clear_message(
-    eventsim, log_file, scene_file, tmp_path, monkeypatch, words, expected
-):
+def test_bad_usage_is_one_clear_message(eventsim, log_file, scene_file, tmp_path, monkeypatch, words, expected):
     monkeypatch.chdir(tmp_path)
     result = eventsim(*words)
     assert result.exit_code == 2

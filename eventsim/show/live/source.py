@@ -1,0 +1,68 @@
+"""Sources: which scene a page wants to see, and what is needed to make it."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from typing import Protocol
+
+from eventsim.errors import EventsimError, SceneError
+from eventsim.scene import Scene
+from eventsim.scene.files import scene_from_dict
+from eventsim.scene.gallery import Value, gallery
+
+MOST_DISKS = 5000
+"""Disks in a live view; more are for files and movies."""
+
+ABOUT_COUNTS = ("n", "n_small", "n_large")
+"""Parameters of built-in scenes that count disks."""
+
+
+class Source(Protocol):
+    """Something a scene is made from."""
+
+    def scene(self) -> Scene:
+        """Return the scene; raise SceneError where it breaks a rule."""
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltIn:
+    """A scene of the gallery."""
+
+    name: str
+    parameters: dict[str, Value]
+
+    def scene(self) -> Scene:
+        """Return the scene with these parameters."""
+        for name in ABOUT_COUNTS:
+            demand_few(self.parameters.get(name, 0), name)
+        return gallery(self.name, **self.parameters)
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """The text of a scene file in TOML."""
+
+    text: str
+
+    def scene(self) -> Scene:
+        """Return the scene; other files it names are not read."""
+        try:
+            data = tomllib.loads(self.text)
+        except tomllib.TOMLDecodeError as error:
+            raise SceneError(f"this is not valid TOML: {error}") from None
+        except RecursionError:
+            raise SceneError("this is nested too deeply for a scene file") from None
+        if "disks_file" in data:
+            raise SceneError("disks_file: the live view reads no other files; start it with eventsim live SCENE")
+        gases = data.get("gas")
+        for gas in gases if isinstance(gases, list) else ():
+            if isinstance(gas, dict):
+                demand_few(gas.get("count", 0), "gas.count")
+        return scene_from_dict(data)
+
+
+def demand_few(count: object, what: str) -> None:
+    """Raise where a live view is asked for too many disks."""
+    if isinstance(count, int) and count > MOST_DISKS:
+        raise EventsimError(f"{what} = {count}: a live view has at most {MOST_DISKS} disks")
