@@ -20,6 +20,7 @@ from eventsim.scene.stage import Stage
 
 if TYPE_CHECKING:
     from eventsim.record.replay import Replay
+    from eventsim.record.trajectory import Trajectory
 
 Progress: TypeAlias = Callable[[float | None, int, float], None]
 """Called now and then with the fraction done (None: unknown), the events so far and the time on the scene's clock."""
@@ -61,7 +62,10 @@ class Snapshot:
 
 @dataclass(slots=True)
 class Counters:
-    """How often what happened; wraps, crossings, stale predictions and turnovers are the engine's own work, not rows."""
+    """How often what happened; wraps, crossings, stale predictions and turnovers are the engine's own work, not rows.
+
+    steps, pair_tests: the work of a stepped engine.
+    """
 
     events: int = 0
     pair_contacts: int = 0
@@ -72,6 +76,8 @@ class Counters:
     crossings: int = 0
     stale: int = 0
     turnovers: int = 0
+    steps: int = 0
+    pair_tests: int = 0
     deepest_overlap: float = 0.0
     outer_momentum: list[float] = field(default_factory=lambda: [0.0, 0.0])
 
@@ -146,7 +152,7 @@ class Run:
 
     log_path: where the log was streamed to.  stopped: `until`, `events`, `quiet` (no event ahead), `collapse`, `digits`,
     `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s: simulating only; compile_s and
-    write_s apart, seconds.
+    write_s apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its log.
     """
 
     scene: Scene
@@ -161,6 +167,7 @@ class Run:
     write_s: float
     compile_s: float = 0.0
     log_path: Path | None = None
+    trajectory: Trajectory | None = None
     _log: EventLog | None = None
     _replay: Replay | None = None
 
@@ -188,8 +195,13 @@ class Run:
     def state_at(self, time: float) -> State:
         """The state at any time of the run, by replay of its log; at the time of an event, the state after it.
 
+        Of a stepped engine: free flight from the last sample of its trajectory before.
         Raises LogError where no log was kept or the time is outside the run.
         """
+        if self.trajectory is not None:
+            if not self.start_time <= time <= self.time:
+                raise LogError(f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}")
+            return self.trajectory.state_at(time, self.start_time)
         from eventsim.record.replay import Replay  # only who looks back pays for it
 
         log = self.log

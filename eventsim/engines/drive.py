@@ -94,6 +94,7 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         elapsed_s=elapsed,
         write_s=written,
         log_path=path,
+        trajectory=getattr(session, "trajectory", None),  # stepped engines have one
         _log=log,
     )
 

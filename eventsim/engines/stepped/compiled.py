@@ -1,0 +1,47 @@
+"""How loops of the stepped engines become machine code; where numba is not installed they run as plain Python."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+try:
+    from numba import config, njit
+
+    from eventsim.engines.fast import compiled  # makes the formulas callable from kernels
+except ImportError:
+    COMPILED = False
+
+    def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+        """Leave a loop as it is."""
+        return function
+
+    part = kernel
+else:
+    COMPILED = True
+
+    def _folder() -> Path:
+        """The folder beside that of the fast engine's kernels, by a hash of these sources: numba would not notice edits."""
+        digest = hashlib.sha256()
+        for path in sorted(Path(__file__).parent.glob("*.py")):
+            digest.update(path.read_bytes())
+        beside = compiled.cache_folder()
+        return beside.with_name(f"{beside.name}-stepped-{digest.hexdigest()[:16]}")
+
+    _FOLDER = str(_folder())
+
+    def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+        """Compile a loop that Python calls; kept on disk where that is possible."""
+        before = config.CACHE_DIR
+        config.CACHE_DIR = _FOLDER  # read when the function is decorated
+        try:
+            done: Callable[..., Any] = njit(error_model="numpy", cache=True)(function)
+        except RuntimeError:  # no folder to write to
+            done = njit(error_model="numpy")(function)
+        finally:
+            config.CACHE_DIR = before
+        return done
+
+    part = njit(error_model="numpy", inline="never")

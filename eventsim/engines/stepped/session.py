@@ -1,0 +1,192 @@
+"""What all stepped engines share: the contract of a session, kept step by step.
+
+Their log has a row for each impulse that they found, at the time of the step (or within it, where an engine looks there), with
+positions and velocities as the engine had them.  Read as a log of free flights it replays about the engine's own motion, not its
+bits: so a run also has a sampled trajectory, and `Run.state_at` reads that.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventsim.engines.base import Counters, Motion, Snapshot, Stop
+from eventsim.engines.stepped.clock import StepClock, usual_step
+from eventsim.engines.stepped.disks import Moving, moving_disks
+from eventsim.engines.stepped.found import BUFFER, EVENTS, ROW_COUNT, Found, nothing_found, tell_counters
+from eventsim.engines.stepped.ground import ground_of
+from eventsim.errors import EventsimError
+from eventsim.record.events import ROW, Floats, Kind, Rows, blank_rows
+from eventsim.record.places import on_scene_axes
+from eventsim.record.trajectory import Trajectory
+from eventsim.scene.stage import Stage
+
+FOREVER = 2**62
+
+VAIN_STEPS = 1_000_000
+"""Steps without an event after which a run without a stop time is called quiet: a stepped engine cannot know that nothing comes."""
+
+
+class SteppedSession:
+    """A stepped engine in the middle of a run; engines add `_run`.
+
+    dt: the step size, time; left out, a twentieth of the time in which a typical disk flies its radius.
+    Raises EventsimError for a step that is not a positive number, and for scenes that the engine does not know.
+    """
+
+    name = "stepped engine"
+
+    def __init__(self, stage: Stage, keep_rows: bool = True, dt: float | None = None) -> None:
+        self.stage = stage
+        self.counters = Counters()
+        self.reason: str | None = None
+        self.dt = usual_step(stage) if dt is None else float(dt)
+        if not 0.0 < self.dt < math.inf:
+            raise EventsimError(f"{self.name}: dt = {self.dt!r}: a step must be a finite time above 0")
+        self.ground = ground_of(stage)
+        self.disks: Moving = moving_disks(stage)
+        self.found: Found = nothing_found(BUFFER if keep_rows else 0)
+        self.clock_of_steps = StepClock(stage, self.dt)
+        self.trajectory = Trajectory(stage.gravity, stage.corner, stage.period)
+        self._keep_rows = keep_rows
+        self._blocks: list[Rows] = []
+        self._sample()
+
+    def _run(self, steps: int, most_events: int) -> int:
+        """Do at most so many steps, until so many events in all; how many were done, fewer where a list gets old."""
+        raise NotImplementedError
+
+    def advance(self, stop: Stop, budget: int) -> str | None:
+        """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
+        clock = self.clock_of_steps
+        most_events = FOREVER if stop.events is None else stop.events
+        vain = self._vain_from(stop)
+        while budget > 0:
+            if self.counters.events >= most_events:
+                return "events"
+            left = clock.steps_until(stop)
+            if left is not None and left <= 0:
+                assert stop.until is not None
+                clock.pass_to(stop.until)
+                return "until"
+            steps = min(budget, FOREVER if left is None else left, self.trajectory.steps_to_next(clock.steps))
+            done = self._run(steps, most_events)
+            clock.count(done)
+            tell_counters(self.found, self.counters)
+            self.counters.steps = clock.steps
+            self._flush()
+            if done == steps and self.trajectory.is_due(clock.steps):
+                self._sample()
+            budget -= max(done, 1)
+            if vain is not None and self.counters.events == vain[1] and clock.steps > vain[0] + VAIN_STEPS:
+                return "quiet"
+        return None
+
+    def _vain_from(self, stop: Stop) -> tuple[int, int] | None:
+        """(step, events) since when nothing may have happened; None with a stop time."""
+        return None if stop.until is not None else (self.clock_of_steps.steps, self.counters.events)
+
+    def _sample(self) -> None:
+        m = self.disks
+        self.trajectory.append(self.clock_of_steps.steps, self.clock_of_steps.now, m.x, m.y, m.vx, m.vy)
+
+    def _make_room(self, rows: int) -> None:
+        """Have a buffer for at least so many rows: those of one step."""
+        if self._keep_rows and len(self.found.rows) < rows:
+            self._flush()
+            self.found = self.found._replace(rows=np.zeros(rows + BUFFER, ROW))
+
+    def _flush(self) -> None:
+        count = int(self.found.counts[ROW_COUNT])
+        self.found.counts[ROW_COUNT] = 0
+        if count and self._keep_rows:
+            rows = self.found.rows[:count].copy()
+            rows.sort(order=("remainder", "event"))
+            rows["event"] = np.sort(rows["event"])
+            self._blocks.append(self.clock_of_steps.place(rows))
+
+    def take_rows(self) -> Rows:
+        """The rows since the last call, an array of ROW."""
+        blocks, self._blocks = self._blocks, []
+        return np.concatenate(blocks) if blocks else blank_rows(0)
+
+    @property
+    def clock(self) -> tuple[int, float]:
+        """Where the clock stands: (epoch, remainder)."""
+        return self.clock_of_steps.reading
+
+    def motion(self) -> Motion:
+        """Where all disks are now: between two steps they fly free."""
+        m, (gx, gy) = self.disks, self.stage.gravity or (0.0, 0.0)
+        lag = self.clock_of_steps.now - self.clock_of_steps.steps * self.dt
+        return Motion(
+            m.x + lag * (m.vx + 0.5 * gx * lag),
+            m.y + lag * (m.vy + 0.5 * gy * lag),
+            m.vx + gx * lag,
+            m.vy + gy * lag,
+            m.wraps_x.copy(),
+            m.wraps_y.copy(),
+        )
+
+    def kick(self, i: int, vx: float, vy: float) -> None:
+        """Set the velocity of a disk from outside, at the last step; a row of the log."""
+        m = self.disks
+        m.vx[i], m.vy[i] = vx, vy
+        self.counters.kicks += 1
+        self.found.counts[EVENTS] += 1
+        self.counters.events += 1
+        if self._keep_rows:
+            row = blank_rows(1)
+            row["event"], row["kind"], row["a"] = self.counters.events - 1, Kind.KICK, i
+            row["xa"], row["ya"], row["vxa"], row["vya"] = m.x[i], m.y[i], vx, vy
+            row["remainder"] = self.clock_of_steps.now
+            self._blocks.append(self.clock_of_steps.place(row))
+        self._kicked()
+
+    def _kicked(self) -> None:
+        """A disk has got another velocity."""
+
+    def snapshot(self) -> Snapshot:
+        """Return all that the future depends on; `met` holds what this engine remembers of contacts."""
+        m, clock = self.disks, self.clock_of_steps
+        flights = [tuple(values.tolist()) for values in (m.x, m.y, m.vx, m.vy, m.wraps_x, m.wraps_y)]
+        times = (clock.now,) * self.stage.n
+        zeros = (0,) * self.stage.n
+        memory = (clock.steps, *self._memory())
+        place = clock.epoch, clock.window, clock.window_rows, clock.now
+        return Snapshot(*place, times, *flights, memory, times, zeros)
+
+    def restore(self, saved: Snapshot) -> None:
+        """Go on from a snapshot of this engine."""
+        m, clock = self.disks, self.clock_of_steps
+        columns = (saved.x, saved.y, saved.vx, saved.vy, saved.wraps_x, saved.wraps_y)
+        for values, column in zip((m.x, m.y, m.vx, m.vy, m.wraps_x, m.wraps_y), columns, strict=True):
+            values[:] = column
+        clock.epoch, clock.window, clock.window_rows, clock.now = (
+            saved.epoch,
+            saved.window,
+            saved.window_rows,
+            saved.now,
+        )
+        clock.steps = int(saved.met[0])
+        self.trajectory.forget_after(clock.steps)
+        self._remember(saved.met[1:])
+
+    def _memory(self) -> tuple[object, ...]:
+        """What an engine remembers of contacts."""
+        return ()
+
+    def _remember(self, memory: tuple[object, ...]) -> None:
+        """Take back what `_memory` gave."""
+
+
+def places_of(session: SteppedSession) -> Floats:
+    """Where the disks are now (n, 2), on the scene's axes."""
+    motion, stage = session.motion(), session.stage
+    return np.column_stack(
+        [
+            on_scene_axes(motion.x, stage.corner[0], stage.period[0]),
+            on_scene_axes(motion.y, stage.corner[1], stage.period[1]),
+        ]
+    )
