@@ -118,9 +118,11 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
     time, code, shared = NEVER, NOTHING, 0
+    goes_on_x = m.slots is not None and rules.length_x is None and rules.wall_x is None  # an open plane, covered by cells
+    goes_on_y = m.slots is not None and rules.length_y is None and rules.wall_y is None
     k = word(m.disks, i * WORDS + COLUMN)
     low = grid.low_x + (k - 1) * grid.side_x
-    if k > 1 or (rules.length_x is None and rules.wall_x is None):
+    if k > 1 or goes_on_x:
         new = now + crossing_delay(x, u, ax, low, 1.0)
         time, code, shared = _earlier(time, code, shared, new, LEFT)
     else:
@@ -129,7 +131,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
-    if k < grid.columns or (rules.length_x is None and rules.wall_x is None):
+    if k < grid.columns or goes_on_x:
         new = now + crossing_delay(x, u, ax, low + grid.side_x, -1.0)
         time, code, shared = _earlier(time, code, shared, new, RIGHT)
     else:
@@ -150,7 +152,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
             time, code, shared = _earlier(time, code, shared, new, what)
     k = word(m.disks, i * WORDS + ROW)
     low = grid.low_y + (k - 1) * grid.side_y
-    if k > 1 or (rules.length_y is None and rules.wall_y is None):
+    if k > 1 or goes_on_y:
         new = now + crossing_delay(y, w, ay, low, 1.0)
         time, code, shared = _earlier(time, code, shared, new, DOWN)
     else:
@@ -159,7 +161,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
-    if k < grid.rows or (rules.length_y is None and rules.wall_y is None):
+    if k < grid.rows or goes_on_y:
         new = now + crossing_delay(y, w, ay, low + grid.side_y, -1.0)
         time, code, shared = _earlier(time, code, shared, new, UP)
     else:
