@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from eventsim.errors import EventsimError
 from eventsim.record.log import EventLog
 from eventsim.record.replay import Replay
-from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments
+from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4
 from eventsim.show.output import suffix_of, whole_file
@@ -136,7 +136,8 @@ def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
     if film.moments < 1:
         raise EventsimError(f"moments = {film.moments}: must be at least 1")
     times = moments(replay.span, film.moments, film.begin, film.end)
-    return Timing(times, FPS[".mp4"], float(times[-1] - times[0]) / DURATION[".mp4"])
+    first, last = shown_span(replay.span, film.begin, film.end)
+    return Timing(times, FPS[".mp4"], (last - first) / DURATION[".mp4"])
 
 
 def _drawn(

@@ -136,6 +136,14 @@ def test_every_kind_of_scene_can_be_drawn(name, color, tmp_path):
     animate(log, tmp_path / "a.png", Film(moments=2), Look(color=color, trails=True, velocities=True))
 
 
+@pytest.mark.parametrize("suffix", [".png", ".html"])
+def test_a_compact_log_is_drawn_like_the_full_one(broken, tmp_path, suffix):
+    broken.save(tmp_path / "compact.npz", compact=True)
+    animate(es.load_log(tmp_path / "compact.npz"), tmp_path / f"a{suffix}")
+    animate(broken, tmp_path / f"b{suffix}")
+    assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()
+
+
 def test_a_run_animates_itself(tmp_path):
     run = es.simulate(es.gallery("two-disks"), log=True)
     run.animate(tmp_path / "two.png", moments=2, dark=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
@@ -18,7 +19,7 @@ from eventsim.show.images import lines_with_images, wrapped_pieces
 from eventsim.show.palette import KINDS, LIGHT
 
 MOST_DISKS = 16
-"""More ways than these cannot be told apart: of larger scenes the first disks are drawn."""
+"""More ways than these cannot be told apart: of larger scenes some disks are drawn, evenly spread over the list."""
 
 MOST_COLOURS = 7
 
@@ -30,10 +31,9 @@ def draw(figure: Figure, log: EventLog) -> None:
     """Draw the ways of up to MOST_DISKS disks; dots are contacts, circles the disks at the end."""
     replay = replay_with_time(log)
     scene, n = log.scene, replay.stage.n
-    disks = np.arange(min(n, MOST_DISKS))
+    disks = np.unique(np.linspace(0, n - 1, min(n, MOST_DISKS)).astype(np.int64))
     table = flight_table(replay).of(disks)
-    colours = np.array(KINDS[:MOST_COLOURS] if n <= MOST_COLOURS else [])
-    shades = colours[disks] if len(colours) else amounts()(disks / max(len(disks) - 1, 1))
+    shades = np.array([to_rgba(c) for c in KINDS[:n]]) if n <= MOST_COLOURS else amounts()(np.linspace(0.0, 1.0, n))
     _, ends, disk = table.pieces()
     ends, disk = wrapped_pieces(ends, disk, outlines.period_of(scene), scene.domain.origin)
     shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
@@ -58,7 +58,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     last = replay.final().position[disks]
     circles = [Circle((x, y), r) for (x, y), r in zip(last.tolist(), scene.disks.radius[disks].tolist(), strict=True)]
     axes.add_collection(
-        PatchCollection(circles, facecolor=shades, edgecolor=LIGHT.edge, linewidth=0.6, alpha=0.9, zorder=4)
+        PatchCollection(circles, facecolor=shades[disks], edgecolor=LIGHT.edge, linewidth=0.6, alpha=0.9, zorder=4)
     )
     hard, open_ = outlines.boundary_lines(scene)
     walls = [*lines_with_images(outlines.wall_lines(scene), scene), *hard]
