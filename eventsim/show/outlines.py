@@ -22,7 +22,7 @@ FULL_TURN_POINTS = 240
 MARGIN = 0.02
 """Share of the larger side that is left free around hard boundaries and open scenes."""
 
-FAR = 0.5
+FAR = 1.0
 """An open scene's picture grows by at most this share of its size on each side to follow disks that fly away."""
 
 

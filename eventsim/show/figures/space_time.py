@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 from eventsim.record.events import Kind
 from eventsim.record.log import EventLog
 from eventsim.show import outlines
-from eventsim.show.colouring import amounts
 from eventsim.show.figures.demands import replay_with_time
-from eventsim.show.figures.style import LENGTH, TIME, label, name_of
+from eventsim.show.figures.style import LENGTH, TIME, label, name_of, shades_of
 from eventsim.show.flights import flight_table
 from eventsim.show.images import wrapped_pieces
 
@@ -36,13 +35,14 @@ def draw(figure: Figure, log: EventLog) -> None:
     period = outlines.period_of(scene)[axis]
     lines, disk = wrapped_pieces(lines, disk, (None, period), (0.0, scene.domain.origin[axis]))
     axes = figure.add_subplot()
-    shades = amounts()(disk / max(replay.stage.n - 1, 1))
     axes.add_collection(
-        LineCollection(list(lines), colors=shades, linewidths=1.0, rasterized=len(lines) > MOST_VECTORS),
+        LineCollection(
+            list(lines), colors=shades_of(replay.stage.n)[disk], linewidths=1.0, rasterized=len(lines) > MOST_VECTORS
+        ),
         autolim=False,
     )
     axes.plot(table.time[table.pair], table.place[table.pair, axis], ".", ms=2.5, color="#1b1f24")
-    shown = outlines.shown_rectangle(log, replay.stage.corner, table.place)
+    shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
     axes.set(xlim=(begin, end), ylim=(shown[axis], shown[axis + 2]))
     if scene.domain.size is not None:
         for edge in (scene.domain.origin[axis], scene.domain.origin[axis] + scene.domain.size[axis]):

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
+from eventsim.record.events import Floats
+from eventsim.show.colouring import amounts
 from eventsim.show.palette import KINDS, LIGHT
 
 SIZE, DPI = (7.2, 4.4), 150
@@ -12,6 +16,9 @@ SIZE, DPI = (7.2, 4.4), 150
 
 BLUE, ORANGE, GREEN, PINK = KINDS[0], KINDS[1], KINDS[2], KINDS[3]
 RED = KINDS[5]
+MOST_KINDS = 7
+"""Disks up to which each has a colour of its own; the last of KINDS, yellow, is too light for a line."""
+
 TIME, LENGTH, SPEED = "time unit", "length unit", "length / time"
 """Units: whatever the scene takes for them."""
 
@@ -29,6 +36,14 @@ def label(axes: Axes, x: str, y: str, title: str) -> None:
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(visible=True, color="#e3e6ea", linewidth=0.7)
     axes.set_axisbelow(True)
+
+
+def shades_of(n: int) -> Floats:
+    """Return a colour (n, 4) for each disk: unlike ones where they are few, else along a scale, dark enough for lines."""
+    if n <= MOST_KINDS:
+        return np.array([to_rgba(colour) for colour in KINDS[:n]])
+    shades: Floats = amounts()(np.linspace(0.0, 0.92, n))
+    return shades
 
 
 def name_of(name: str | None) -> str:

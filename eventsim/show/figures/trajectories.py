@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
-from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
 
 from eventsim.record.log import EventLog
 from eventsim.show import outlines
-from eventsim.show.colouring import amounts
 from eventsim.show.figures.demands import replay_with_time
-from eventsim.show.figures.style import LENGTH, SIZE, label, name_of
+from eventsim.show.figures.style import LENGTH, SIZE, label, name_of, shades_of
 from eventsim.show.flights import flight_table
 from eventsim.show.images import lines_with_images, wrapped_pieces
-from eventsim.show.palette import KINDS, LIGHT
+from eventsim.show.palette import LIGHT
 
 MOST_DISKS = 16
 """More ways than these cannot be told apart: of larger scenes some disks are drawn, evenly spread over the list."""
-
-MOST_COLOURS = 7
 
 TALLEST, NARROWEST, LABELS = 6.4, 4.6, 0.8
 """Inches: of the scene in a figure, of a figure, and what labels take."""
@@ -33,7 +29,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     scene, n = log.scene, replay.stage.n
     disks = np.unique(np.linspace(0, n - 1, min(n, MOST_DISKS)).astype(np.int64))
     table = flight_table(replay).of(disks)
-    shades = np.array([to_rgba(c) for c in KINDS[:n]]) if n <= MOST_COLOURS else amounts()(np.linspace(0.0, 1.0, n))
+    shades = shades_of(n)
     _, ends, disk = table.pieces()
     ends, disk = wrapped_pieces(ends, disk, outlines.period_of(scene), scene.domain.origin)
     shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
