@@ -49,6 +49,8 @@ from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
 
+SLACK = 2.0**-22
+
 
 @inline
 def predict(m, grid, rules, i, now, floor):
@@ -86,6 +88,15 @@ def _earlier(time, code, shared, new_time, new_code):
 
 
 @inline
+def slack(side, g):
+    """How far a disk may leave its cell: a parabola whose apex lies on the edge would else cross it to and fro for ever.
+
+    A quarter of the margin by which cells are wider than the longest reach.
+    """
+    return 0.0 if g is None else SLACK * side
+
+
+@inline
 def _crossing(m, grid, rules, i, now, x, y, u, w, gx):
     """The next passage into another cell, far from the border of the grid."""
     low_x = grid.low_x + (word(m.disks, i * WORDS + COLUMN) - 1) * grid.side_x
@@ -101,12 +112,13 @@ def _crossing(m, grid, rules, i, now, x, y, u, w, gx):
         code = code_x if delay_x < delay_y else code_y
         return now + (delay if delay > 0.0 else 0.0), code
     ax, ay = pull(m, i, gx, rules.classes), pull(m, i, rules.gy, rules.classes)
-    delay, code = crossing_delay(x, u, ax, low_x + grid.side_x, -1.0), RIGHT
-    other = crossing_delay(x, u, ax, low_x, 1.0)
+    slack_x, slack_y = slack(grid.side_x, gx), slack(grid.side_y, gx)
+    delay, code = crossing_delay(x, u, ax, low_x + grid.side_x + slack_x, -1.0), RIGHT
+    other = crossing_delay(x, u, ax, low_x - slack_x, 1.0)
     delay, code = (other, LEFT) if other < delay else (delay, code)
-    other = crossing_delay(y, w, ay, low_y + grid.side_y, -1.0)
+    other = crossing_delay(y, w, ay, low_y + grid.side_y + slack_y, -1.0)
     delay, code = (other, UP) if other < delay else (delay, code)
-    other = crossing_delay(y, w, ay, low_y, 1.0)
+    other = crossing_delay(y, w, ay, low_y - slack_y, 1.0)
     delay, code = (other, DOWN) if other < delay else (delay, code)
     return now + delay, code
 
@@ -123,7 +135,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
     k = word(m.disks, i * WORDS + COLUMN)
     low = grid.low_x + (k - 1) * grid.side_x
     if k > 1 or goes_on_x:
-        new = now + crossing_delay(x, u, ax, low, 1.0)
+        new = now + crossing_delay(x, u, ax, low - slack(grid.side_x, rules.gx), 1.0)
         time, code, shared = _earlier(time, code, shared, new, LEFT)
     else:
         new, what = _border_event(
@@ -132,7 +144,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
     if k < grid.columns or goes_on_x:
-        new = now + crossing_delay(x, u, ax, low + grid.side_x, -1.0)
+        new = now + crossing_delay(x, u, ax, low + grid.side_x + slack(grid.side_x, rules.gx), -1.0)
         time, code, shared = _earlier(time, code, shared, new, RIGHT)
     else:
         new, what = _border_event(
@@ -153,7 +165,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
     k = word(m.disks, i * WORDS + ROW)
     low = grid.low_y + (k - 1) * grid.side_y
     if k > 1 or goes_on_y:
-        new = now + crossing_delay(y, w, ay, low, 1.0)
+        new = now + crossing_delay(y, w, ay, low - slack(grid.side_y, rules.gx), 1.0)
         time, code, shared = _earlier(time, code, shared, new, DOWN)
     else:
         new, what = _border_event(
@@ -162,7 +174,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
     if k < grid.rows or goes_on_y:
-        new = now + crossing_delay(y, w, ay, low + grid.side_y, -1.0)
+        new = now + crossing_delay(y, w, ay, low + grid.side_y + slack(grid.side_y, rules.gx), -1.0)
         time, code, shared = _earlier(time, code, shared, new, UP)
     else:
         new, what = _border_event(
