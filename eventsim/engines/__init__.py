@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 from eventsim.engines.base import Run, Session, Stop
@@ -32,5 +33,23 @@ def _reference(*args: Any, **options: Any) -> Session:
     return ReferenceSession(*args, **options)
 
 
-ENGINES: dict[str, Engine] = {"reference": Engine("reference", _reference)}
+def _stepped(module: str, session: str) -> Callable[..., Session]:
+    """How to open a session of a stepped engine, loaded by the run that needs it."""
+
+    def opened(*args: Any, **options: Any) -> Session:
+        made: Session = getattr(import_module(f"eventsim.engines.stepped.{module}"), session)(*args, **options)
+        return made
+
+    return opened
+
+
+STEPPED: dict[str, Engine] = {
+    "frames": Engine("frames", _stepped("frames", "FramesSession")),
+    "stepped": Engine("stepped", _stepped("stepped", "FixedStepSession")),
+    "penalty": Engine("penalty", _stepped("penalty", "PenaltySession")),
+    "pymunk": Engine("pymunk", _stepped("chipmunk", "ChipmunkSession")),
+}
+"""The engines that advance in steps of a length `dt`; what event-driven runs are validated against."""
+
+ENGINES: dict[str, Engine] = {"reference": Engine("reference", _reference), **STEPPED}
 """name -> engine; every engine is run(scene, stop) -> Run."""

@@ -8,19 +8,21 @@ from pathlib import Path
 from typing import Any
 
 try:
-    from numba import config, njit
+    import numba
+    from numba import njit
 
     from eventsim.engines.fast import compiled  # makes the formulas callable from kernels
 except ImportError:
     COMPILED = False
 
-    def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    def kernel(function: Callable[..., Any]) -> Any:
         """Leave a loop as it is."""
         return function
 
-    part = kernel
+    part: Any = kernel
 else:
     COMPILED = True
+    config: Any = numba.config  # its settings are made when it is imported
 
     def _folder() -> Path:
         """The folder beside that of the fast engine's kernels, by a hash of these sources: numba would not notice edits."""
@@ -32,16 +34,15 @@ else:
 
     _FOLDER = str(_folder())
 
-    def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    def kernel(function: Callable[..., Any]) -> Any:
         """Compile a loop that Python calls; kept on disk where that is possible."""
         before = config.CACHE_DIR
         config.CACHE_DIR = _FOLDER  # read when the function is decorated
         try:
-            done: Callable[..., Any] = njit(error_model="numpy", cache=True)(function)
+            return njit(error_model="numpy", cache=True)(function)
         except RuntimeError:  # no folder to write to
-            done = njit(error_model="numpy")(function)
+            return njit(error_model="numpy")(function)
         finally:
             config.CACHE_DIR = before
-        return done
 
     part = njit(error_model="numpy", inline="never")

