@@ -21,6 +21,7 @@ VERBS = {
     "state": "Positions and velocities at any times, from a log.",
     "animate": "Draw a run as a movie, a strip of moments, or a page that plays it.",
     "figure": "Draw what a log says: trajectories, speeds, free paths, residuals, ...",
+    "live": "Open the live view in the browser: play, throw, measure, compare.",
 }
 
 BEGIN = """\

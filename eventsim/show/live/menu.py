@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from eventsim.scene import Scene
 from eventsim.scene.files import scene_from_dict
@@ -19,7 +20,7 @@ DENSEST_RANDOM = 0.5
 """The packing fraction up to which disks find random places; denser ones stand on a hexagonal lattice."""
 
 CONTACT_DURATION = 1e-3
-"""Seconds: contacts of a disk that follow each other faster are elastic, so that inelastic disks come to rest without collapse."""
+"""Seconds: contacts of a disk that follow each other faster are elastic, so that inelastic disks rest without collapse."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,7 @@ class Menu:
 
     width, height: of the box, pixels. count: disks. masses, radii: "equal" or "different". packing: fraction of the
     box that disks cover. speed: of each at the start, pixels / s. gravity: downwards, pixels / s^2.
+    pace: a second of the scene lasts a second.
     """
 
     width: float
@@ -40,6 +42,7 @@ class Menu:
     gravity: float = 0.0
     restitution: float = 1.0
     seed: int = 1
+    pace: ClassVar[float] = 1.0
 
     def scene(self) -> Scene:
         """Return the scene; raise SceneError where the disks do not fit."""

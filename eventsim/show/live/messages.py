@@ -41,8 +41,10 @@ class Join:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """How far a page has come: its time, the events until then, and the scene time it plays per second."""
+    """How far a page has come: its time, the events until then, and the scene time it plays per second; edition: of the
+    opened scene that it speaks of."""
 
+    edition: int
     time: float
     events: int
     speed: float
@@ -205,7 +207,12 @@ def _menu(fields: Fields) -> Menu:
 
 
 def _shown(fields: Fields) -> Shown:
-    return Shown(fields.number("time", 0.0), fields.whole("events", 0, 2**53), fields.number("speed", 0.0))
+    return Shown(
+        edition=fields.whole("edition", 0, 2**53),
+        time=fields.number("time", 0.0),
+        events=fields.whole("events", 0, 2**53),
+        speed=fields.number("speed", 0.0),
+    )
 
 
 def _throw(fields: Fields) -> Throw:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from eventsim.errors import EventsimError, SceneError
 from eventsim.scene import Scene
@@ -19,7 +19,11 @@ ABOUT_COUNTS = ("n", "n_small", "n_large")
 
 
 class Source(Protocol):
-    """Something a scene is made from."""
+    """Something a scene is made from; pace: the scene time that a second of playing shows, None: as suits the scene."""
+
+    @property
+    def pace(self) -> float | None:
+        """Scene time per second of playing, where that is known."""
 
     def scene(self) -> Scene:
         """Return the scene; raise SceneError where it breaks a rule."""
@@ -31,6 +35,7 @@ class BuiltIn:
 
     name: str
     parameters: dict[str, Value]
+    pace: ClassVar[None] = None
 
     def scene(self) -> Scene:
         """Return the scene with these parameters."""
@@ -44,6 +49,7 @@ class Text:
     """The text of a scene file in TOML."""
 
     text: str
+    pace: ClassVar[None] = None
 
     def scene(self) -> Scene:
         """Return the scene; other files it names are not read."""

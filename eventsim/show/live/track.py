@@ -69,7 +69,7 @@ class Track:
         try:
             rows = simulation.advance_to(target, events)
         except CollapseError as error:
-            rows = simulation.log.rows[self.count :]
+            rows = simulation.log.rows[self.count :].copy()
             self.ended = str(error)
         self._append(rows)
         if self.ended is None and simulation.time >= target:
@@ -98,7 +98,7 @@ class Track:
     def kick(self, disk: int, velocity: tuple[float, float]) -> None:
         """Give a disk another velocity, now; raise EventsimError for a disk that does not exist."""
         self.simulation.set_velocity(disk, velocity)
-        self._append(self.simulation.log.rows[self.count :])
+        self._append(self.simulation.log.rows[self.count :].copy())
         # The next mark must not lie before the kick: a simulation that goes back forgets what was done to it.
         self._marks.append(Mark(self.horizon, self.count, self.simulation.snapshot()))
 
@@ -127,6 +127,16 @@ class Track:
             self._blocks.append(rows)
             self._ends.append(self.count + len(rows))
             self.horizon = max(self.horizon, self.time_of(self.count - 1))
+
+    def _cut(self, count: int) -> None:
+        """Forget all rows but the first `count`."""
+        while self._ends and self._ends[-1] > count:
+            self._ends.pop()
+            block = self._blocks.pop()
+            keep = count - self.count
+            if keep > 0:
+                self._blocks.append(block[:keep])
+                self._ends.append(count)
 
     def _mark(self) -> None:
         if not self._marks or self.ended is not None or self.count - self._marks[-1].count < self._spacing:

@@ -1,0 +1,80 @@
+"""`eventsim live`: the view in the browser."""
+
+from __future__ import annotations
+
+import click
+
+from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.errors import EventsimError
+
+PORT = 8642
+
+
+@click.command()
+@scene_options(required=False)
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=PORT,
+    show_default=True,
+    help="Port on this machine; 0: any that is free.",
+)
+@click.option("--no-browser", is_flag=True, help="Only print the address; open no browser.")
+@json_option
+@quiet_option
+def command(
+    scene: str | None,
+    settings: tuple[str, ...],
+    seed: int | None,
+    port: int,
+    no_browser: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Open the live view in the browser: disks that a menu, a built-in scene or SCENE begins with.
+
+    The page plays, pauses, reverses, steps from event to event; while it is paused, disks can be thrown and moved. It
+    measures what it shows, compares it with a per-frame engine side by side, and downloads scene and log. The server
+    simulates a few seconds ahead and sends events; the page draws what lies between them, exactly. It listens on
+    127.0.0.1 alone and ends with Ctrl-C. What the keys until and events of a scene say is not heeded: it goes on.
+
+    \b
+    Examples:
+      eventsim live
+      eventsim live break
+      eventsim live my.toml --set restitution=0.9 --port 9000 --no-browser
+
+    \b
+    Keys of --json (printed once the page can be opened):
+      scene, address           as typed (null without); where the page is
+
+    Exit codes: 0 ended by Ctrl-C; 2 bad usage, scene or file, a port that is taken, or aiohttp is missing.
+    """
+    import asyncio
+    import webbrowser
+
+    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.words import as_json_text
+
+    if scene is None and (settings or seed is not None):
+        raise click.UsageError("--set and --seed shape a scene: name one")
+    chosen = None if scene is None else chosen_scene(scene, settings, seed)
+    try:
+        from eventsim.show.live.server import serve
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0] != "aiohttp":
+            raise
+        raise EventsimError("the live view needs aiohttp: pip install 'eventsim-disks[live]'") from None
+
+    def tell(address: str) -> None:
+        if as_json:
+            click.echo(as_json_text({"scene": scene, "address": address}))
+        elif not quiet:
+            click.echo(f"the live view is at {address} (Ctrl-C ends it)")
+        if not no_browser:
+            webbrowser.open(address)
+
+    try:
+        asyncio.run(serve(chosen, port, tell))
+    except KeyboardInterrupt:
+        click.echo("", err=True)  # after the ^C that the terminal shows

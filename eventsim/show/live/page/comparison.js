@@ -1,0 +1,70 @@
+"use strict";
+/* The comparison: the same start in the per-frame engine, and what it does differently lit up. */
+
+const STUCK_FRAMES = 10, MISSED = "#d55e00", ASTRAY = "#e69f00";
+
+class Comparison {
+  /* exact, other: the two worlds; frame: the time of a frame. */
+  constructor(canvas, exact, other, stage, frame) {
+    this.exact = exact;
+    this.other = other;
+    this.frame = frame;
+    this.drawing = new Drawing(canvas, other, stage);
+    this.begun = sums(other, other.state(0)).energy;
+  }
+
+  /* Draw the other world, disks that overlap ringed in red, disks astray in yellow. The exact state is in exact.now. */
+  draw(view) {
+    const before = this._overlapping(this.other.state(Math.max(view.time - STUCK_FRAMES * this.frame, 0)));
+    this.drawing.draw({ ...view, marked: -1 });
+    const state = this.other.now, overlapping = this._overlapping(state);
+    this.astray = this._astray(state);
+    this.stuck = new Set([...overlapping.keys()].filter((pair) => before.has(pair)));
+    this.overlapping = overlapping.size;
+    this.energy = sums(this.other, state).energy;
+    this._ring(state, this.astray, ASTRAY);
+    this._ring(state, new Set([...overlapping.values()].flat()), MISSED);
+  }
+
+  /* What to say below the two pictures. */
+  told(time) {
+    const exact = this.exact.eventsUntil(time), other = this.other.eventsUntil(time), drift = this.begun ? 100 * (this.energy / this.begun - 1) : 0;
+    const difference = exact >= other ? `<b>${exact - other}</b> missed` : `<b>${other - exact}</b> too many`;
+    return {
+      exact: `<strong>event-driven</strong><br>${exact.toLocaleString("en")} contacts, each at its time`,
+      other: `<strong>per frame</strong><br>${other.toLocaleString("en")} contacts: ${difference}<br>` +
+        `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b>${this.astray.size}</b> of ${this.other.count} astray; ` +
+        `energy <b>${drift >= 0 ? "+" : "−"}${number(Math.abs(drift))} %</b>`,
+    };
+  }
+
+  /* Pairs that overlap by more than a thousandth of their reach: number of the pair -> its disks. */
+  _overlapping(state) {
+    const found = new Map(), radius = this.other.disks.radius, n = this.other.count;
+    for (let i = 0; i < n; i++) {
+      for (let j = i + 1; j < n; j++) {
+        const reach = 0.999 * (radius[i] + radius[j]), dx = state.x[i] - state.x[j], dy = state.y[i] - state.y[j];
+        if (dx * dx + dy * dy < reach * reach) found.set(i * n + j, [i, j]);
+      }
+    }
+    return found;
+  }
+
+  /* Disks that are further than their radius from where they should be. */
+  _astray(state) {
+    const found = new Set(), right = this.exact.now, radius = this.other.disks.radius;
+    for (let i = 0; i < this.other.count; i++) {
+      if (Math.hypot(state.x[i] - right.x[i], state.y[i] - right.y[i]) > radius[i]) found.add(i);
+    }
+    return found;
+  }
+
+  _ring(state, disks, colour) {
+    const { context, ratio } = this.drawing;
+    context.strokeStyle = colour;
+    context.lineWidth = 3 * ratio;
+    context.beginPath();
+    for (const i of disks) this.drawing._circle(state.x[i], state.y[i], this.other.disks.radius[i]);
+    context.stroke();
+  }
+}
