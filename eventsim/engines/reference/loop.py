@@ -31,6 +31,7 @@ class ReferenceSession:
     """
 
     name = "reference"
+    predictor, resolver = Predictor, Resolver
 
     def __init__(
         self,
@@ -43,15 +44,18 @@ class ReferenceSession:
         self.stage = stage
         self.counters = Counters()
         self.state = EngineState(stage, number)
-        self.calendar = Calendar()
+        self.calendar = self._new_calendar()
         chosen = plan(stage) if isinstance(grid, str) else grid
         self.cells = None if chosen is None else Cells(stage, chosen)
         self.reason: str | None = None
         self._check = check
         self._wraps_in_vain = 0
-        self._predictor = Predictor(stage, self.state, self.calendar, self.cells)
-        self._resolver = Resolver(stage, self.state, self.counters, keep_rows)
+        self._predictor = self.predictor(stage, self.state, self.calendar, self.cells)
+        self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
         self._predict_afresh()
+
+    def _new_calendar(self) -> Calendar:
+        return Calendar()
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""

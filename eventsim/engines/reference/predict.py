@@ -35,7 +35,7 @@ class Predictor:
         self._state = state
         self._push = calendar.push
         self._cells = cells
-        self._radius: list[float] = stage.radius.tolist()
+        self._radius: list[Real] = stage.radius.tolist()
         self._borders = _borders(stage)
         first = len(stage.boundaries)
         self._features = tuple(

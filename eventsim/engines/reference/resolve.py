@@ -37,11 +37,13 @@ a wall); inelastic ones of this length are a collapse."""
 class Resolver:
     """Resolves the contacts of one stage; counts them, books momentum, and keeps their rows if asked to."""
 
+    at_once = AT_ONCE
+
     def __init__(self, stage: Stage, state: EngineState, counters: Counters, keep_rows: bool) -> None:
         self._stage = stage
         self._state = state
         self._counters = counters
-        self._radius: list[float] = stage.radius.tolist()
+        self._radius: list[Real] = stage.radius.tolist()
         self._mass: list[float] | None = None if stage.mass is None else stage.mass.tolist()
         self._same_mass: float = stage.common_mass
         self._keep_rows = keep_rows
@@ -81,7 +83,7 @@ class Resolver:
         ua, wa = state.speed(a, t)
         ub, wb = state.speed(b, t)
         dx, dy = self._apart(event, xa, ya, xb, yb)
-        share_a, share_b = (0.5, 0.5) if self._mass is None else mass_fractions(self._mass[a], self._mass[b])
+        share_a, share_b = self._shares(a, b)
         restitution = self._restitution(stage.pair_restitution, t, a, b)
         ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
         state.anchor(a, t, xa, ya, ua, wa)
@@ -232,7 +234,7 @@ class Resolver:
         """Note a contact of disk i; of idle ones, which change nothing, a third at the same instant is too many."""
         state = self._state
         weight = self.at_once_limit // 3 + 1 if idle else 1
-        again = t - state.contact_time[i] <= AT_ONCE * t
+        again = t - state.contact_time[i] <= self.at_once * t
         state.at_once[i] = state.at_once[i] + weight if again else weight
         state.contact_time[i] = t
 
@@ -247,6 +249,10 @@ class Resolver:
 
     def _finite(self, i: int) -> bool:
         return 0.0 < self._mass_of(i) < math.inf
+
+    def _shares(self, a: int, b: int) -> tuple[Real, Real]:
+        """Of the sum of two masses."""
+        return (0.5, 0.5) if self._mass is None else mass_fractions(self._mass[a], self._mass[b])
 
     def _reduced(self, a: int, b: int) -> float:
         return 0.5 * self._same_mass if self._mass is None else reduced_mass(self._mass[a], self._mass[b])

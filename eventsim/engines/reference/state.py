@@ -19,12 +19,14 @@ class EngineState:
 
     t, x, y, vx, vy: the anchor of each flight, t a remainder in the present epoch.  count: the invalidation counts.
     wraps_x, wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was
-    (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.
+    (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.  number: makes
+    a number of the engine's type from a float.
     """
 
     def __init__(self, stage: Stage, number: Any = float) -> None:
         n = stage.n
         self.n = n
+        self.number = number
         self.x: list[Real] = [number(value) for value in stage.x.tolist()]
         self.y: list[Real] = [number(value) for value in stage.y.tolist()]
         self.vx: list[Real] = [number(value) for value in stage.vx.tolist()]

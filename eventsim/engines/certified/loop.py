@@ -1,0 +1,49 @@
+"""The reference loop on balls, at one precision: it goes on until a comparison cannot be answered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from eventsim.engines.base import Motion
+from eventsim.engines.certified.ball import Ball, radius_of
+from eventsim.engines.certified.calendar import CertifiedCalendar
+from eventsim.engines.certified.predict import CertifiedPredictor
+from eventsim.engines.certified.resolve import CertifiedResolver
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.record.events import Floats
+from eventsim.scene.stage import Stage
+
+
+class CertifiedLoop(ReferenceSession):
+    """One attempt at a proof; number makes balls from floats."""
+
+    name = "certified"
+    predictor, resolver = CertifiedPredictor, CertifiedResolver
+
+    def __init__(self, stage: Stage, keep_rows: bool, number: Callable[[float], Ball]) -> None:
+        super().__init__(stage, keep_rows=keep_rows, grid=None, number=number)
+
+    def _new_calendar(self) -> Any:
+        return CertifiedCalendar(self.is_stale)
+
+    @property
+    def clock(self) -> tuple[int, float]:
+        """Where the clock stands: (epoch, remainder), the remainder rounded."""
+        return self.state.epoch, float(self.state.now)
+
+    def motion(self) -> Motion:
+        """Where all disks are now, rounded."""
+        numbers = np.array([[float(number) for number in flight] for flight in self._flights()])
+        wraps = np.array([self.state.wraps_x, self.state.wraps_y], dtype=np.int64)
+        return Motion(numbers[:, 0], numbers[:, 1], numbers[:, 2], numbers[:, 3], wraps[0], wraps[1])
+
+    def radii(self) -> Floats:
+        """How far the true x, y, vx, vy may be from the middles of their balls: (n, 4); length, and length / time."""
+        return np.array([[radius_of(number) for number in flight] for flight in self._flights()])
+
+    def _flights(self) -> list[tuple[Any, ...]]:
+        state = self.state
+        return [(*state.place(i, state.now), *state.speed(i, state.now)) for i in range(state.n)]

@@ -1,0 +1,53 @@
+"""Contacts are resolved on balls; rows and counters get the floats nearest to them."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any
+
+from eventsim.engines.certified.ball import Ball, Undecided
+from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.resolve import MISSING, Resolver
+from eventsim.formulas.impulse import mass_fractions
+from eventsim.record.events import Kind
+
+
+class CertifiedResolver(Resolver):
+    """Resolves on balls; a cluster only while all its numbers are known to be rational."""
+
+    at_once = 2.0**-900
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self._number = self._state.number
+        self._radius = [self._number(radius) for radius in self._stage.radius.tolist()]
+
+    def _shares(self, a: int, b: int) -> tuple[Any, Any]:
+        if self._mass is None:
+            return 0.5, 0.5
+        mass_a, mass_b = self._mass[a], self._mass[b]
+        if mass_a in (0.0, math.inf) or mass_b in (0.0, math.inf):
+            return mass_fractions(mass_a, mass_b)
+        total = self._number(mass_a) + mass_b
+        return mass_a / total, mass_b / total
+
+    def _restitution(self, restitution: float, t: Ball, a: int, b: int) -> Any:
+        return self._number(super()._restitution(restitution, t, a, b))
+
+    def _joint(self, component: list[Event]) -> list[int]:
+        raise Undecided("a cluster whose numbers are not rational")
+
+    def _note_overlap(self, a: int, b: int, distance: Ball) -> None:
+        """Disks on balls do not overlap."""
+
+    def _book(self, jx: Any, jy: Any) -> None:
+        super()._book(float(jx), float(jy))
+
+    def _book_wall(self, mass: float, du: Any, dw: Any) -> Any:
+        return super()._book_wall(mass, float(du), float(dw))
+
+    def _row(self, t: Ball, kind: Kind, a: int, b: int, wall: int, impulse: Any, joint: int) -> None:
+        super()._row(t, kind, a, b, wall, impulse, joint)
+        if self._keep_rows:
+            self.rows[-1] = tuple(float(value) if isinstance(value, Ball) else value for value in self.rows[-1])
