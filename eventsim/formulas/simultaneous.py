@@ -42,12 +42,24 @@ Vector = tuple[Fraction, Fraction]
 def resolve_together(
     contacts: Sequence[JointContact], velocities: Sequence[tuple[float, float]], masses: Sequence[float]
 ) -> Outcome:
-    """Resolve a cluster: immovable disks at walls, then the massive disks, then the tracers against what these have become.
+    """Resolve a cluster; its velocities are rounded once.
 
-    The impulse between an immovable disk and a wall is nan: it has no finite size.  Raises SqueezedError where no impulses
-    part the contacts.
+    The impulse between an immovable disk and a wall is nan: it has no finite size.
     """
     exact: list[Vector] = [(Fraction(u), Fraction(w)) for u, w in velocities]
+    after, magnitudes, active = resolve_exactly(contacts, exact, masses)
+    return Outcome([(_float(u), _float(w)) for u, w in after], magnitudes, active)
+
+
+def resolve_exactly(
+    contacts: Sequence[JointContact], velocities: Sequence[Vector], masses: Sequence[float]
+) -> tuple[list[Vector], list[float], list[bool]]:
+    """Resolve a cluster without rounding: immovable disks at walls, then the massive ones, then the tracers against these.
+
+    Directions and restitutions of the contacts may be rational.  Returns velocities, magnitudes of the impulses (rounded;
+    nan between an immovable disk and a wall) and which contacts took part.
+    """
+    exact = list(velocities)
     impulses = [Fraction(0)] * len(contacts)
     tracers = {body for body, mass in enumerate(masses) if mass == 0.0}
     immovable = {body for body, mass in enumerate(masses) if math.isinf(mass)}
@@ -63,8 +75,7 @@ def resolve_together(
         magnitudes[k] = math.nan
     for body in sorted(tracers):
         _resolve_alone(body, [k for k, c in enumerate(contacts) if body in (c.a, c.b)], contacts, exact, impulses)
-    active = [value > 0 for value in impulses]
-    return Outcome([(_float(u), _float(w)) for u, w in exact], magnitudes, active)
+    return exact, magnitudes, [value > 0 for value in impulses]
 
 
 def _resolve_alone(

@@ -8,7 +8,8 @@ from typing import Any
 
 from flint import arb, ctx, fmpq
 
-from eventsim.engines.certified.fingerprint import Fingerprint, of_rational, product, quotient, root, total
+from eventsim.engines.certified.fingerprint import Fingerprint, product, quotient, root, total
+from eventsim.engines.certified.fingerprint import of_rational as fingerprint_of
 
 LONGEST_RATIONAL = 4096
 """Bits of a numerator or denominator beyond which a traced number is no longer kept as a rational."""
@@ -139,15 +140,14 @@ class Traced(Ball):
         """What the number is, as the expression that it was made by."""
         if self._fingerprint is None:
             assert self._rational is not None
-            self._fingerprint = of_rational(self._rational)
+            self._fingerprint = fingerprint_of(self._rational)
         return self._fingerprint
 
     def _exactly(self, rational: Fraction) -> Traced:
-        fingerprint = None
         if max(rational.numerator.bit_length(), rational.denominator.bit_length()) > LONGEST_RATIONAL:
-            fingerprint = of_rational(rational)
-        value = arb(fmpq(rational.numerator, rational.denominator))
-        return Traced(value, rational if fingerprint is None else None, fingerprint)
+            fingerprint = fingerprint_of(rational)
+            return Traced(arb(fmpq(rational.numerator, rational.denominator)), None, fingerprint)
+        return of_rational(rational)
 
     def __add__(self, other: Any) -> Any:
         if not isinstance(other, Traced):
@@ -214,7 +214,7 @@ class Traced(Ball):
     def _unclear(self, other: Any) -> int:
         other = other if isinstance(other, Traced) else traced(other)
         if self._rational is not None and other._rational is not None:
-            return (self._rational > other._rational) - (self._rational < other._rational)
+            return int(self._rational > other._rational) - int(self._rational < other._rational)
         if self.fingerprint == other.fingerprint:
             return 0
         return super()._unclear(other)
@@ -228,6 +228,11 @@ def ball(x: float) -> Ball:
 def traced(x: float) -> Traced:
     """A float as a traced number."""
     return Traced(arb(x), Fraction(x))
+
+
+def of_rational(x: Fraction) -> Traced:
+    """A rational as a traced number."""
+    return Traced(arb(fmpq(x.numerator, x.denominator)), x)
 
 
 def radius_of(number: Ball | float) -> float:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.engines.base import Motion
+from eventsim.engines.base import Motion, Stop
 from eventsim.engines.certified.ball import Ball, radius_of
 from eventsim.engines.certified.calendar import CertifiedCalendar
 from eventsim.engines.certified.predict import CertifiedPredictor
@@ -21,10 +21,27 @@ class CertifiedLoop(ReferenceSession):
     """One attempt at a proof; number makes balls from floats."""
 
     name = "certified"
-    predictor, resolver = CertifiedPredictor, CertifiedResolver
+    predictor = CertifiedPredictor
+    resolver = CertifiedResolver
 
     def __init__(self, stage: Stage, keep_rows: bool, number: Callable[[float], Ball]) -> None:
+        self._begun = False
         super().__init__(stage, keep_rows=keep_rows, grid=None, number=number)
+
+    def advance(self, stop: Stop, budget: int) -> str | None:
+        """Simulate until the stop or for about `budget` steps.
+
+        Raises Undecided where a comparison has no answer at this precision; the events so far are proven.
+        """
+        if not self._begun:
+            self._begun = True
+            self._predict_afresh()
+        return super().advance(stop, budget)
+
+    def _predict_afresh(self) -> None:
+        """Fill the calendar; not before the first step, so that a loop exists even if its first prediction is undecided."""
+        if self._begun:
+            super()._predict_afresh()
 
     def _new_calendar(self) -> Any:
         return CertifiedCalendar(self.is_stale)

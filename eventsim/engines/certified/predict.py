@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,10 @@ from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.walls.face import Face
-from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
 MARGIN, SURE = 2.0**-24, 2.0**-34
-"""What the screen allows for, relative to the size of the numbers: its own rounding is far below, and so are the balls it trusts."""
+"""What the screen allows for, relative to the numbers; its own rounding is far below it, and so are the balls that it trusts."""
 
 
 class Screen:
@@ -86,8 +85,8 @@ class CertifiedPredictor(Predictor):
     def __init__(self, stage: Stage, state: EngineState, calendar: Any, cells: Cells | None) -> None:
         super().__init__(stage, state, calendar, cells)
         number = state.number
-        self._exact_push = calendar.push
-        self._push = self._push_and_note
+        self._add = calendar.push
+        self._push: Callable[[Event], None] = self._push_and_note
         self._radius = [number(radius) for radius in stage.radius.tolist()]
         self._features = tuple(
             (place, _in_balls(shape, number), delay_to) for place, shape, delay_to in self._features
@@ -115,7 +114,7 @@ class CertifiedPredictor(Predictor):
 
     def _push_and_note(self, event: Event) -> None:
         """Push an event; one of a single disk bounds how long its present flight can last."""
-        self._exact_push(event)
+        self._add(event)
         if event.b < 0 or event.rank == 0:
             latest = bounds(event.time)[1] * (1.0 + MARGIN)
             self._screen.held_up[event.a] = min(self._screen.held_up[event.a], latest)
@@ -123,8 +122,8 @@ class CertifiedPredictor(Predictor):
 
 def _in_balls(shape: Any, number: Any) -> Any:
     """A wall shape in balls; the derived numbers of a face from its corners."""
-    exact = type(shape)(*map(number, shape))
-    if isinstance(exact, Face):
-        norm2 = exact.nx * exact.nx + exact.ny * exact.ny
-        return exact._replace(norm=norm2.sqrt(), norm2=norm2, along2=exact.ex * exact.ex + exact.ey * exact.ey)
-    return exact
+    exact: Any = type(shape)(*map(number, shape))
+    if not isinstance(shape, Face):
+        return exact
+    norm2 = exact.nx * exact.nx + exact.ny * exact.ny
+    return exact._replace(norm=norm2.sqrt(), norm2=norm2, along2=exact.ex * exact.ex + exact.ey * exact.ey)

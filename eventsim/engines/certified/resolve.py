@@ -6,10 +6,10 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from eventsim.engines.certified.ball import Ball, Undecided
-from eventsim.engines.reference.calendar import Event
-from eventsim.engines.reference.resolve import MISSING, Resolver
+from eventsim.engines.certified.ball import Ball, Undecided, of_rational
+from eventsim.engines.reference.resolve import Resolver
 from eventsim.formulas.impulse import mass_fractions
+from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_exactly
 from eventsim.record.events import Kind
 
 
@@ -35,8 +35,15 @@ class CertifiedResolver(Resolver):
     def _restitution(self, restitution: float, t: Ball, a: int, b: int) -> Any:
         return self._number(super()._restitution(restitution, t, a, b))
 
-    def _joint(self, component: list[Event]) -> list[int]:
-        raise Undecided("a cluster whose numbers are not rational")
+    def _together(self, contacts: list[JointContact], before: list[tuple[Any, Any]], masses: list[float]) -> Outcome:
+        exact = [
+            contact._replace(dx=_rational(contact.dx), dy=_rational(contact.dy), restitution=_rational(contact.restitution))
+            for contact in contacts
+        ]
+        flights = [(_rational(u), _rational(w)) for u, w in before]
+        after, impulses, active = resolve_exactly(exact, flights, masses)
+        velocities: list[tuple[Any, Any]] = [(of_rational(u), of_rational(w)) for u, w in after]
+        return Outcome(velocities, impulses, active)
 
     def _note_overlap(self, a: int, b: int, distance: Ball) -> None:
         """Disks on balls do not overlap."""
@@ -51,3 +58,14 @@ class CertifiedResolver(Resolver):
         super()._row(t, kind, a, b, wall, impulse, joint)
         if self._keep_rows:
             self.rows[-1] = tuple(float(value) if isinstance(value, Ball) else value for value in self.rows[-1])
+
+
+def _rational(number: Any) -> Any:
+    """The number as a Fraction.
+
+    Raises Undecided where it is not known to be rational.
+    """
+    rational = number.rational if isinstance(number, Ball) else Fraction(number)
+    if rational is None:
+        raise Undecided("the contacts of a cluster involve numbers that are not known to be rational")
+    return rational

@@ -31,7 +31,8 @@ class ReferenceSession:
     """
 
     name = "reference"
-    predictor, resolver = Predictor, Resolver
+    predictor: type[Predictor] = Predictor
+    resolver: type[Resolver] = Resolver
 
     def __init__(
         self,

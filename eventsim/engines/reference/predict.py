@@ -33,7 +33,7 @@ class Predictor:
 
     def __init__(self, stage: Stage, state: EngineState, calendar: Calendar, cells: Cells | None) -> None:
         self._state = state
-        self._push = calendar.push
+        self._push: Callable[[Event], None] = calendar.push
         self._cells = cells
         self._radius: list[Real] = stage.radius.tolist()
         self._borders = _borders(stage)

@@ -17,7 +17,7 @@ from eventsim.formulas.impulse import (
     wall_update,
 )
 from eventsim.formulas.real import Real, sqrt
-from eventsim.formulas.simultaneous import JointContact, resolve_together
+from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
 from eventsim.formulas.walls.face import Face, face_normal
 from eventsim.formulas.walls.round import round_normal
 from eventsim.record.events import Kind
@@ -150,7 +150,7 @@ class Resolver:
                 nx, ny = self._normal(-1 - event.b, event.image[0], xa, ya)
                 e = self._restitution(stage.wall_restitution, t, event.a, event.a)
                 contacts.append(JointContact(number[event.a], None, nx, ny, e))
-        outcome = resolve_together(contacts, before, [self._mass_of(i) for i in disks])
+        outcome = self._together(contacts, before, [self._mass_of(i) for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
         changed = sorted({i for k in active for i in component[k][2:4] if i >= 0})
         for i in changed:
@@ -166,6 +166,10 @@ class Resolver:
             self._note_joint(component[k], contacts[k], outcome.impulses[k], first)
         self._counters.clusters += 1
         return changed
+
+    def _together(self, contacts: list[JointContact], before: list[tuple[Real, Real]], masses: list[float]) -> Outcome:
+        """The law of simultaneous contacts in the engine's numbers."""
+        return resolve_together(contacts, before, masses)
 
     def _note_joint(self, event: Event, contact: JointContact, impulse: float, first: int) -> None:
         """Book and log one contact of a cluster that is resolved."""

@@ -1,0 +1,5 @@
+"""The certified engine: the reference loop on ball arithmetic, where a comparison is answered or the precision is doubled."""
+
+from eventsim.engines.certified.session import Attempt, CertifiedSession
+
+__all__ = ["Attempt", "CertifiedSession"]

@@ -1,0 +1,168 @@
+"""A proof in the making: the loop on balls, begun again with more bits wherever a comparison could not be answered."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from eventsim.engines.base import Counters, Motion, Snapshot, Stop
+from eventsim.engines.certified.ball import Undecided, ball, traced, working_precision
+from eventsim.engines.certified.loop import CertifiedLoop
+from eventsim.errors import EventsimError
+from eventsim.formulas.walls.face import Face
+from eventsim.record.events import ROW, Floats, Rows
+from eventsim.scene.stage import Stage
+
+FIRST_BITS, MOST_BITS = 1024, 2**17
+"""The precision of the first attempt; one beyond which no attempt is made."""
+
+SETTLED = 2.0**-60
+"""Radii of this part of the largest coordinate and speed change no float that is logged, or its last bit now and then."""
+
+
+class Attempt(NamedTuple):
+    """How far the loop came with so many bits; traced: with numbers that know where they come from, for ties."""
+
+    bits: int
+    traced: bool
+    events: int
+
+
+class CertifiedSession:
+    """The certified engine in the middle of a run.
+
+    bits: of the first attempt.  most_bits: of the last one.  What two attempts in a row, the second one with twice the bits,
+    cannot decide is taken for a tie: then numbers are traced, which decides ties of rational numbers and of equal
+    expressions; where this does not help either the run stops as `undecided tie`.
+    """
+
+    def __init__(
+        self, stage: Stage, keep_rows: bool = True, bits: int = FIRST_BITS, most_bits: int = MOST_BITS
+    ) -> None:
+        _refuse_parabolas(stage)
+        self.stage = stage
+        self.reason: str | None = None
+        self.attempts: list[Attempt] = []
+        self._keep_rows = keep_rows
+        self._first_bits, self._most_bits = bits, max(bits, most_bits)
+        self._stopped: str | None = None
+        self._emitted = 0
+        self._begin(bits, False)
+
+    def _begin(self, bits: int, trace: bool) -> None:
+        self.bits, self.traced = bits, trace
+        self._held: list[Rows] = []
+        with working_precision(bits):
+            self._loop = CertifiedLoop(self.stage, self._keep_rows, traced if trace else ball)
+
+    @property
+    def counters(self) -> Counters:
+        """How often what happened, in the present attempt."""
+        return self._loop.counters
+
+    @property
+    def proven(self) -> int:
+        """Events whose order is proven."""
+        return max([self._loop.counters.events, *(attempt.events for attempt in self.attempts)])
+
+    @property
+    def clock(self) -> tuple[int, float]:
+        """Where the clock stands: (epoch, remainder)."""
+        return self._loop.clock
+
+    def advance(self, stop: Stop, budget: int) -> str | None:
+        """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
+        with working_precision(self.bits):
+            try:
+                self._stopped = self._loop.advance(stop, budget)
+                self.reason = self._loop.reason
+            except Undecided as undecided:
+                self._stopped = self._go_on_from(undecided, self._loop.counters.events)
+            else:
+                if self._stopped is not None and not self._is_settled() and 2 * self.bits <= self._most_bits:
+                    self._note_attempt(self._loop.counters.events)
+                    self._begin(2 * self.bits, self.traced)
+                    self._stopped = None
+        return self._stopped
+
+    def _note_attempt(self, events: int) -> None:
+        self.attempts.append(Attempt(self.bits, self.traced, events))
+
+    def _go_on_from(self, undecided: Undecided, events: int) -> str | None:
+        """Begin again in a way that may decide; the reason to stop where there is none left."""
+        before = [attempt.events for attempt in self.attempts if attempt.traced == self.traced]
+        farther = not before or events > max(before)
+        self._note_attempt(events)
+        if farther and 2 * self.bits <= self._most_bits:
+            self._begin(2 * self.bits, self.traced)
+            return None
+        if not farther and not self.traced:
+            self._begin(self._first_bits, True)
+            return None
+        cause = "more bits do not help" if not farther else f"{self.bits} bits are the most allowed"
+        self.reason = f"after {events} proven events a comparison has no answer, and {cause}: {str(undecided)[:120]}"
+        return "undecided tie"
+
+    def take_rows(self) -> Rows:
+        """The proven rows since the last call whose floats are settled, an array of ROW."""
+        self._held.append(self._loop.take_rows())
+        if self._stopped is None and not self._is_settled():
+            return np.zeros(0, ROW)
+        rows = np.concatenate(self._held)
+        self._held = []
+        fresh = rows[rows["event"] >= self._emitted]
+        self._emitted += len(fresh)
+        return fresh
+
+    def _is_settled(self) -> bool:
+        """Whether the balls are so small that the floats that are logged are right."""
+        motion, radii = self.motion(), self.radii()
+        size = max(float(np.abs(motion.x).max()), float(np.abs(motion.y).max()))
+        speed = max(float(np.abs(motion.vx).max()), float(np.abs(motion.vy).max()))
+        return bool(radii[:, :2].max() <= SETTLED * size and radii[:, 2:].max() <= SETTLED * speed)
+
+    def motion(self) -> Motion:
+        """Where all disks are now, rounded to floats."""
+        with working_precision(self.bits):
+            return self._loop.motion()
+
+    def radii(self) -> Floats:
+        """The radii of the balls that x, y, vx, vy of each disk are proven to lie in: (n, 4)."""
+        with working_precision(self.bits):
+            return self._loop.radii()
+
+    def kick(self, i: int, vx: float, vy: float) -> None:
+        """Refuse: a proof goes from the start to the end.
+
+        Raises EventsimError.
+        """
+        raise EventsimError("the certified engine proves a run from its start: it takes no kicks")
+
+    def snapshot(self) -> Snapshot:
+        """Refuse: balls begin again from the start.
+
+        Raises EventsimError.
+        """
+        raise EventsimError("the certified engine proves a run from its start: it has no snapshots")
+
+    def restore(self, saved: Snapshot) -> None:
+        """Refuse, like `snapshot`.
+
+        Raises EventsimError.
+        """
+        raise EventsimError("the certified engine proves a run from its start: it has no snapshots")
+
+
+def _refuse_parabolas(stage: Stage) -> None:
+    """Raise EventsimError where a parabola can meet something round: that is found by bisection, which encloses nothing."""
+    if stage.gravity is None:
+        return
+    rounded = any(not isinstance(feature.shape, Face) for feature in stage.features)
+    posts = stage.mass is not None and bool(np.isinf(stage.mass).any())
+    if rounded or posts:
+        what = "walls with ends or round parts" if rounded else "immovable disks"
+        raise EventsimError(
+            f"the certified engine cannot prove this scene: it has gravity and {what}, and a parabola meets something round at "
+            "a root of a quartic, which is found by bisection in floats; leave out one of the two"
+        )

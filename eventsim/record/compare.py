@@ -1,0 +1,85 @@
+"""How far two logs tell the same story: the same contacts, in the same order for each disk."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.record.events import Floats, Rows
+
+Contact: TypeAlias = tuple[int, int, int, int]
+
+
+class Agreement(NamedTuple):
+    """Which rows of two logs are the same contact: row pairs[k, 0] of the one is row pairs[k, 1] of the other, (K, 2).
+
+    difference: the first row of the one that is not what happens next in the other; None where no difference was seen, be
+    it that one of the logs ended.
+    """
+
+    pairs: NDArray[np.int64]
+    difference: int | None
+
+
+class Comparison:
+    """Compares two logs block by block, as they grow.
+
+    Rows are the same contact where kind, disks and wall are.  Contacts that share no disk may be in another order: what
+    counts is the sequence of every disk.
+    """
+
+    def __init__(self) -> None:
+        self._waiting: tuple[deque[tuple[int, Contact]], dict[int, deque[tuple[int, Contact]]]] = (deque(), {})
+        self._rows = [0, 0]
+        self.pairs: list[tuple[int, int]] = []
+        self.difference: int | None = None
+
+    def add(self, one: Rows, other: Rows) -> None:
+        """Go on with the next rows of both logs."""
+        mine, queues = self._waiting
+        for contact in _contacts(other):
+            for disk in contact[1:3]:
+                if disk >= 0:
+                    queues.setdefault(disk, deque()).append((self._rows[1], contact))
+            self._rows[1] += 1
+        for contact in _contacts(one):
+            mine.append((self._rows[0], contact))
+            self._rows[0] += 1
+        while mine and self.difference is None:
+            row, contact = mine[0]
+            ahead = [queues.get(disk) for disk in contact[1:3] if disk >= 0]
+            if any(queue and queue[0][1] != contact for queue in ahead):
+                self.difference = row
+            elif all(ahead):
+                partners = [queue.popleft()[0] for queue in ahead if queue]
+                self.pairs.append((row, partners[0]))
+                mine.popleft()
+            else:
+                break
+
+    def agreement(self) -> Agreement:
+        """What has been found so far."""
+        return Agreement(np.array(self.pairs, np.int64).reshape(-1, 2), self.difference)
+
+
+def agreement(one: Rows, other: Rows) -> Agreement:
+    """How far two logs agree; arrays of ROW."""
+    comparison = Comparison()
+    comparison.add(one, other)
+    return comparison.agreement()
+
+
+def deviations(one: Rows, other: Rows, pairs: NDArray[np.int64]) -> Floats:
+    """The largest difference of a coordinate, one a pair of rows that are the same contact; length."""
+    mine, theirs = one[pairs[:, 0]], other[pairs[:, 1]]
+    largest: Floats = np.fmax.reduce([np.abs(mine[name] - theirs[name]) for name in ("xa", "ya", "xb", "yb")])
+    return largest
+
+
+def _contacts(rows: Rows) -> list[Contact]:
+    return list(
+        zip(rows["kind"].tolist(), rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True)
+    )
