@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.engines import ENGINES, Engine
+from eventsim.engines import AUTO, ENGINES, Engine
 from eventsim.engines.base import Counters, OnEvent, Progress, Run, Snapshot, Stop
 from eventsim.engines.drive import Wishes, memory_log, provenance_of, state_of
 from eventsim.errors import CollapseError, EventsimError, SceneError
@@ -33,6 +33,7 @@ def simulate(
     digest: bool = False,
     progress: Progress | None = None,
     on_event: OnEvent | None = None,
+    measure: bool | float = False,
     command: str | None = None,
     **options: Any,
 ) -> Run:
@@ -41,7 +42,8 @@ def simulate(
     until, events: given here, they replace what the scene says.  engine: a name of `ENGINES`, or "auto".  log: False
     (counters only), True (in memory) or a path (.csv, .jsonl, .npz, .parquet; streamed; `compact` leaves out what replay
     computes).  digest: compute the digest also where no log is kept.  progress(fraction, events, time): called a few times a
-    second.  on_event(rows): called with each block of new rows.  options: the engine's own, such as check=True.
+    second.  on_event(rows): called with each block of new rows.  measure: True, or the time at the beginning to leave out, for
+    `run.measures`, in constant memory and without a log.  options: the engine's own, such as check=True.
 
     Simultaneous contacts are never cut apart, so a run that stops by `events` may have a few events more.
 
@@ -50,7 +52,28 @@ def simulate(
     """
     stop = stop_of(scene, until, events)
     wishes = Wishes(log=log, compact=compact, digest=digest, progress=progress, on_event=on_event, command=command)
-    return engine_named(engine).run(scene, stop, wishes, **options)
+    if measure is False:
+        return engine_named(engine).run(scene, stop, wishes, **options)
+    from eventsim.measure import Meter  # only who measures pays for it
+
+    meter = Meter(scene, None if measure is True else measure)
+    wishes.on_event = _both(meter.write, on_event)
+    run = engine_named(engine).run(scene, stop, wishes, **options)
+    run.measures = meter.finish(run.time - scene.start_time)
+    return run
+
+
+def _both(first: OnEvent, second: OnEvent | None) -> OnEvent:
+    """One after the other."""
+    if second is None:
+        return first
+    also = second
+
+    def tell(rows: Rows) -> None:
+        first(rows)
+        also(rows)
+
+    return tell
 
 
 def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:
@@ -69,7 +92,7 @@ def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:
 def engine_named(name: str) -> Engine:
     """The engine of a name; "auto" is the one that suits."""
     if name == "auto":
-        return ENGINES["reference"]
+        return AUTO
     if name not in ENGINES:
         raise EventsimError(f"engine {name!r} does not exist; there are: auto, {', '.join(ENGINES)}")
     return ENGINES[name]

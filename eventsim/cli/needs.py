@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from eventsim.engines.auto import first_engine
 from eventsim.engines.reference.cells import images_of, plan
 from eventsim.scene.disks import Disks
 from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.stage import stage_of
 from eventsim.scene.validate import touching_by_rounding
 from eventsim.scene.walls import wall_names
-from eventsim.simulation import engine_named
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
@@ -141,7 +141,7 @@ def needs_of(scene: Scene) -> Needs:
         touching_notes=tuple(touching_by_rounding(scene)),
         until=scene.until,
         events=scene.events,
-        engine=engine_named("auto").name,
+        engine=first_engine(stage),
     )
 
 

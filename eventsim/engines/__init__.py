@@ -9,6 +9,7 @@ from typing import Any
 
 from eventsim.engines.base import Run, Session, Stop
 from eventsim.engines.drive import Wishes, drive
+from eventsim.errors import EventsimError
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
 
@@ -33,6 +34,31 @@ def _reference(*args: Any, **options: Any) -> Session:
     return ReferenceSession(*args, **options)
 
 
+def _fast(*args: Any, **options: Any) -> Session:
+    from eventsim.engines.auto import MISSING, has_compiler
+
+    if not has_compiler():
+        raise EventsimError(MISSING)
+    from eventsim.engines.fast import FastSession
+
+    return FastSession(*args, **options)
+
+
+def _auto(*args: Any, **options: Any) -> Session:
+    from eventsim.engines.auto import AutoSession
+
+    return AutoSession(*args, **options)
+
+
+def _certified(*args: Any, **options: Any) -> Session:
+    try:
+        from eventsim.engines.certified import CertifiedSession
+    except ModuleNotFoundError:
+        text = "the certified engine needs python-flint, which is not installed: pip install 'eventsim-disks[certify]'"
+        raise EventsimError(text) from None
+    return CertifiedSession(*args, **options)
+
+
 def _stepped(module: str, session: str) -> Callable[..., Session]:
     """How to open a session of a stepped engine, loaded by the run that needs it."""
 
@@ -51,5 +77,13 @@ STEPPED: dict[str, Engine] = {
 }
 """The engines that advance in steps of a length `dt`; what event-driven runs are validated against."""
 
-ENGINES: dict[str, Engine] = {"reference": Engine("reference", _reference), **STEPPED}
+AUTO = Engine("auto", _auto)
+"""The reference engine, and the fast one when the job proves long."""
+
+ENGINES: dict[str, Engine] = {
+    "reference": Engine("reference", _reference),
+    "fast": Engine("fast", _fast),
+    "certified": Engine("certified", _certified),
+    **STEPPED,
+}
 """name -> engine; every engine is run(scene, stop) -> Run."""

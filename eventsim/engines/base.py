@@ -19,6 +19,7 @@ from eventsim.scene import Scene
 from eventsim.scene.stage import Stage
 
 if TYPE_CHECKING:
+    from eventsim.measure import Measures
     from eventsim.record.replay import Replay
     from eventsim.record.trajectory import Trajectory
 
@@ -120,8 +121,18 @@ class Session(Protocol):
     """An engine in the middle of a run."""
 
     stage: Stage
-    counters: Counters
-    reason: str | None
+
+    @property
+    def name(self) -> str:
+        """The engine's."""
+
+    @property
+    def counters(self) -> Counters:
+        """How often what happened."""
+
+    @property
+    def reason(self) -> str | None:
+        """A sentence on why it stopped, where there is more to say."""
 
     @property
     def clock(self) -> tuple[int, float]:
@@ -150,7 +161,7 @@ class Session(Protocol):
 class Run:
     """What a simulation gives: the state it ended in, the log if one was kept, how good it is and why it stopped.
 
-    log_path: where the log was streamed to.  stopped: `until`, `events`, `quiet` (no event ahead), `collapse`, `digits`,
+    log_path: where the log was streamed to.  measures: where they were asked for.  stopped: `until`, `events`, `quiet` (no event ahead), `collapse`, `digits`,
     `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s: simulating only; compile_s and
     write_s apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its log.
     """
@@ -168,6 +179,7 @@ class Run:
     compile_s: float = 0.0
     log_path: Path | None = None
     trajectory: Trajectory | None = None
+    measures: Measures | None = None
     _log: EventLog | None = None
     _replay: Replay | None = None
 

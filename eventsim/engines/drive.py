@@ -71,6 +71,7 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
     if path is not None:
         sinks.append(open_sink(path, provenance, compact=wishes.compact))
     digester = Digester() if wishes.rows and (wishes.digest or wishes.log is not False) else None
+    compiled_before = _compile_seconds(session)
     try:
         stopped, elapsed, written = _simulate(session, stop, wishes, sinks, digester)
         began = perf_counter()
@@ -82,21 +83,28 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
             sink.abandon()
         raise
     log = None if memory is None else memory.log()
+    compiled = _compile_seconds(session)
     return Run(
         scene=scene,
-        engine=engine,
+        engine=session.name if engine == "auto" else engine,
         state=state_of(session, stop, stopped),
         counters=session.counters,
         residuals=residuals_of(session),
         stopped=stopped,
         reason=session.reason,
         digest=None if digester is None else digester.hexdigest(),
-        elapsed_s=elapsed,
+        elapsed_s=elapsed - (compiled - compiled_before),
+        compile_s=compiled,
         write_s=written,
         log_path=path,
         trajectory=getattr(session, "trajectory", None),  # stepped engines have one
         _log=log,
     )
+
+
+def _compile_seconds(session: Session) -> float:
+    """Seconds that a compiled engine has spent on compiling so far; 0 for others."""
+    return float(getattr(session, "compile_s", 0.0))
 
 
 def provenance_of(session: Session, engine: str, scene: Scene, command: str | None = None) -> Provenance:

@@ -6,12 +6,15 @@ import hashlib
 import math
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from time import perf_counter
 from types import ModuleType
 from typing import Any
 
 from numba import config, njit, types
+from numba.core import event
 from numba.extending import overload, register_jitable
 
 from eventsim.formulas import contact, crossing, impulse, motion, parabola, real
@@ -40,6 +43,42 @@ def _hash_of_sources() -> str:
         for path in sorted(folder.rglob("*.py")):
             digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def is_warm() -> bool:
+    """Whether kernels from these sources have been compiled before; a scene may still need some of its own."""
+    return next(_FOLDER.rglob("*.nbi"), None) is not None
+
+
+@contextmanager
+def timed_compiling(note: Callable[[float], None]) -> Iterator[None]:
+    """Report the seconds spent on compiling inside; say so first where somebody watches."""
+    with event.install_listener("numba:compile", _Watcher(note)):
+        yield
+
+
+class _Watcher(event.Listener):  # type: ignore[misc]
+    """Sums up the outermost of nested compilations."""
+
+    told = False
+
+    def __init__(self, note: Callable[[float], None]) -> None:
+        self._note = note
+        self._depth = 0
+        self._began = 0.0
+
+    def on_start(self, event: Any) -> None:
+        if self._depth == 0:
+            self._began = perf_counter()
+            if not _Watcher.told and sys.stderr.isatty():
+                print("compiling the fast engine (once) ...", file=sys.stderr)
+            _Watcher.told = True
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        self._depth -= 1
+        if self._depth == 0:
+            self._note(perf_counter() - self._began)
 
 
 inline = njit(forceinline=True, error_model="numpy")
@@ -79,7 +118,7 @@ def _register(module: ModuleType, **options: Any) -> None:
                 register_jitable(**options)(function)
 
 
-for _module in (motion, crossing, contact, impulse):
+for _module in (motion, contact, impulse):
     _register(_module, forceinline=True, error_model="numpy")
-for _module in (parabola, face, round):
+for _module in (crossing, parabola, face, round):
     _register(_module, error_model="numpy")

@@ -122,7 +122,7 @@ class Grid(NamedTuple):
     STATUS_IDLE,
 ) = range(9)
 """Why a kernel returned: its steps are done; no event before the limit; enough events; the row buffer is full; contacts of equal
-time; a full cell; a disk has left the grid; an instant does not end; a long time without events."""
+time; a full cell, or a disk that has left the grid; an instant does not end; a long time without events."""
 
 DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS = range(12)
 """Places in `counts`; ROW_COUNT: rows written into the buffer by the last call, ROOM: how many fit; DISK: the one that a status is about."""

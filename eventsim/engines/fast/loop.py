@@ -33,7 +33,6 @@ from eventsim.engines.fast.layout import (
     STATUS_EVENTS,
     STATUS_FULL,
     STATUS_IDLE,
-    STATUS_LEFT,
     STATUS_LIMIT,
     STATUS_ROWS,
     STATUS_STUCK,
@@ -193,14 +192,13 @@ def fill(arrays, grid, rules, now):
 
 
 @kernel
-def predict_all(arrays, grid, rules, counts, now):
-    """Schedule the earliest event of every disk in an emptied calendar."""
+def predict_some(arrays, grid, rules, counts, begin, end, now, floor):
+    """Predict the disks in places begin, ..., end - 1, which are in the calendar, anew; events before `floor` do not count."""
     m = pointers(arrays)
-    day = _first_day(m, grid, now)
-    counts[DAY] = day
-    for i in range(grid.n):
-        predict(m, grid, rules, i, now, now)
-        push(m, grid, i, day)
+    for i in range(begin, end):
+        take(m, i)
+        predict(m, grid, rules, i, now, floor)
+        push(m, grid, i, counts[DAY])
 
 
 @kernel
@@ -229,12 +227,3 @@ def turn_over(arrays, grid, rules, end):
         vx, vy = speed(m, rules, i, end)
         anchor(m, i, end - end, x, y, vx, vy)
         store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - end)
-
-
-@kernel
-def renew(arrays, grid, rules, counts, i, now, floor):
-    """Predict disk i, which is in the calendar, anew; events before `floor` do not count."""
-    m = pointers(arrays)
-    take(m, i)
-    predict(m, grid, rules, i, now, floor)
-    push(m, grid, i, counts[DAY])

@@ -111,8 +111,14 @@ def _crossing(m, grid, rules, i, now, x, y, u, w, gx):
         delay = delay_x if delay_x < delay_y else delay_y
         code = code_x if delay_x < delay_y else code_y
         return now + (delay if delay > 0.0 else 0.0), code
-    ax, ay = pull(m, i, gx, rules.classes), pull(m, i, rules.gy, rules.classes)
-    slack_x, slack_y = slack(grid.side_x, gx), slack(grid.side_y, gx)
+    return _falling_crossing(m, grid, rules, i, now, x, y, u, w, low_x, low_y)
+
+
+@part
+def _falling_crossing(m, grid, rules, i, now, x, y, u, w, low_x, low_y):
+    """The same along a parabola."""
+    ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    slack_x, slack_y = slack(grid.side_x, rules.gx), slack(grid.side_y, rules.gx)
     delay, code = crossing_delay(x, u, ax, low_x + grid.side_x + slack_x, -1.0), RIGHT
     other = crossing_delay(x, u, ax, low_x - slack_x, 1.0)
     delay, code = (other, LEFT) if other < delay else (delay, code)

@@ -134,8 +134,8 @@ def resolve_pair(m, rules, sums, i, j, t, number, slot):
 @part
 def resolve_wall(m, rules, sums, i, code, t, number, slot):
     """Resolve the contact of disk i with the wall that the code of the event stands for."""
-    number = WALL - code
-    place_, side = number // 2, -1 if number % 2 else 1
+    wall_code = WALL - code
+    place_, side = wall_code // 2, -1 if wall_code % 2 else 1
     x, y = place(m, rules, i, t)
     u, w = speed(m, rules, i, t)
     u0, w0 = u, w

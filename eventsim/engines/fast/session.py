@@ -9,10 +9,11 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.fast import layout
+from eventsim.engines.fast.compiled import timed_compiling
 from eventsim.engines.fast.instant import contacts_at, due_at
 from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid, Rules
-from eventsim.engines.fast.loop import fill, predict_all, renew, run, schedule, turn_over
+from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.order import along_a_curve
 from eventsim.engines.fast.plan import LOOK_AHEAD, MANY_DISKS, Sizes, cell_sizes, day_length, days_of, shortest_day
 from eventsim.engines.fast.shapes import KINDS, WIDTH
@@ -20,7 +21,7 @@ from eventsim.engines.fast.state import FastState, aligned
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.loop import components, endless, row_order
 from eventsim.engines.reference.resolve import AT_ONCE_ELASTIC, AT_ONCE_INELASTIC, Resolver
-from eventsim.formulas.clock import next_window, remainder_since, window_length
+from eventsim.formulas.clock import FIRST_WINDOW, next_window, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import clock_times
@@ -31,6 +32,9 @@ BUFFER = 1 << 15
 
 FEW_DISKS = 24
 """Below it, looking at all disks is as fast as cells."""
+
+COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
+"""What a snapshot has one number of for every disk."""
 
 FOREVER = 1 << 62
 FEW_STEPS = 256
@@ -75,18 +79,26 @@ class FastSession:
         self._buffer = np.zeros(BUFFER if keep_rows else 0, ROW)
         self._counts[layout.ROOM] = BUFFER if keep_rows else FOREVER
         self._blocks: list[Rows] = []
+        self.compile_s = 0.0
         self._days = self._steps = 0
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
-        self.restore(saved if saved is not None else start_of(stage))
+        if saved is None:
+            self._begin()
+        else:
+            self.restore(saved)
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
-        self._counts[layout.EVENTS] = self.counters.events
+        self._take_counters()
         try:
-            return self._advance(stop, budget)
+            with timed_compiling(self._note_compiling):
+                return self._advance(stop, budget)
         finally:
             self._tell_counters()
+
+    def _note_compiling(self, seconds: float) -> None:
+        self.compile_s += seconds
 
     def _advance(self, stop: Stop, budget: int) -> str | None:
         state, counts = self.state, self._counts
@@ -111,6 +123,8 @@ class FastSession:
                 if status == layout.STATUS_IDLE and not empty:
                     self._schedule()
                 elif turns and not (empty and stop.until is None):
+                    if stop.until is None and state.window_rows == 0 and self._drifts():
+                        return "quiet"
                     self._turn_over()
                 else:
                     self._pass_to(until)
@@ -153,10 +167,10 @@ class FastSession:
         self._arrays = self._arrays._replace(several=state.several.reshape(-1))
         places = {int(state.place_of[i]) for i in changed}
         for i in places:
-            renew(self._arrays, self._grid, self._rules, self._counts, i, now, now)
+            self._predict(i, i + 1, now)
         for i in waiting:
             if i not in places:  # its contact came to nothing: it flies on
-                renew(self._arrays, self._grid, self._rules, self._counts, i, now, math.nextafter(now, math.inf))
+                self._predict(i, i + 1, math.nextafter(now, math.inf))
         return next((i for i in changed if state.at_once[i] >= resolver.at_once_limit), None)
 
     def _generation(self) -> list[Event]:
@@ -192,9 +206,15 @@ class FastSession:
         rows, resolver.rows = resolver.rows, []
         if rows:
             self._blocks.append(rows_from(rows, self.stage.epoch_length, self.stage.start_time))
-        counters = self.counters
-        self._counts[layout.EVENTS] = counters.events
-        self._counts[layout.PAIRS], self._counts[layout.WALLS] = counters.pair_contacts, counters.wall_contacts
+        self._take_counters()
+
+    def _take_counters(self) -> None:
+        """Let the kernels go on from what the counters say."""
+        counts, counters = self._counts, self.counters
+        counts[layout.EVENTS] = counters.events
+        counts[layout.PAIRS], counts[layout.WALLS] = counters.pair_contacts, counters.wall_contacts
+        counts[layout.WRAPS], counts[layout.CROSSINGS] = counters.wraps, counters.crossings
+        counts[layout.STALE] = counters.stale
         self._sums[layout.DEEPEST] = counters.deepest_overlap
         self._sums[layout.OUTER_X], self._sums[layout.OUTER_Y] = counters.outer_momentum
 
@@ -230,7 +250,8 @@ class FastSession:
         self._set_now(0.0)
         if self._grid.day_length < shortest_day(state.window_end):
             self._choose_days()
-        predict_all(self._arrays, self._grid, self._rules, self._counts, 0.0)
+        schedule(self._arrays, self._grid, self._counts, 0.0)
+        self._predict(0, state.n, 0.0)
 
     def _set_now(self, now: float) -> None:
         self.state.now = now
@@ -261,12 +282,20 @@ class FastSession:
             if fill(self._arrays, self._grid, self._rules, now):
                 break
             self._depth = 2 * cells.depth
-        predict_all(self._arrays, self._grid, self._rules, self._counts, now)
+        self._due[:] = now
+        schedule(self._arrays, self._grid, self._counts, now)
+        self._predict(0, stage.n, now)
         self._schedule()
 
+    def _predict(self, begin: int, end: int, floor: float) -> None:
+        """Predict the disks in these places anew; what is before `floor` does not count."""
+        predict_some(self._arrays, self._grid, self._rules, self._counts, begin, end, self.state.now, floor)
+
     def _chosen_sizes(self, now: float) -> Sizes | None:
-        if not isinstance(self._sizes, str):
-            return self._sizes
+        if self._sizes is None:
+            return None
+        if isinstance(self._sizes, Sizes):
+            return self._sizes._replace(depth=max(self._sizes.depth, self._depth))
         if self.stage.n < FEW_DISKS:
             return None
         motion = self.motion()
@@ -300,6 +329,13 @@ class FastSession:
         """Make the calendar anew, with days of a fitting length."""
         self._choose_days()
         schedule(self._arrays, self._grid, self._counts, self.state.now)
+
+    def _drifts(self) -> bool:
+        """Whether all disks have one velocity and nothing to meet: they would wrap for ever."""
+        stage, state = self.stage, self.state
+        if stage.gravity is not None or stage.boundaries or stage.features:
+            return False
+        return bool(np.ptp(state.vx.every()) == 0.0 and np.ptp(state.vy.every()) == 0.0)
 
     def _pass_to(self, until: float) -> None:
         if self.state.now < until < math.inf:
@@ -339,8 +375,8 @@ class FastSession:
         resolver = self._opened_resolver()
         resolver.kick(i, vx, vy)
         self._keep(resolver)
-        place, now = int(self.state.place_of[i]), self.state.now
-        renew(self._arrays, self._grid, self._rules, self._counts, place, now, now)
+        place = int(self.state.place_of[i])
+        self._predict(place, place + 1, self.state.now)
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
@@ -357,16 +393,8 @@ class FastSession:
             window=s.window,
             window_rows=s.window_rows,
             now=s.now,
-            t=s.t.every(),
-            x=s.x.every(),
-            y=s.y.every(),
-            vx=s.vx.every(),
-            vy=s.vy.every(),
-            wraps_x=s.wraps_x.every(),
-            wraps_y=s.wraps_y.every(),
             met=tuple(s.met[i] for i in range(s.n)),
-            contact_time=s.contact_time.every(),
-            at_once=s.at_once.every(),
+            **{name: tuple(getattr(s, name).every().tolist()) for name in COLUMNS},
         )
 
     def restore(self, saved: Snapshot) -> None:
@@ -375,38 +403,28 @@ class FastSession:
         s.epoch, s.window, s.window_rows = saved.epoch, saved.window, saved.window_rows
         s.window_end = window_length(s.window, s.epoch_length)
         self._set_now(saved.now)
-        for name in ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once"):
+        for name in COLUMNS:
             getattr(s, name).set_all(getattr(saved, name))
         s.words[:, layout.MET] = layout.NOBODY
         s.several_used = 0
         for i, met in enumerate(saved.met):
             if met:
                 s.met[i] = met
-        self._predict_afresh()
+        with timed_compiling(self._note_compiling):
+            self._predict_afresh()
 
-
-def start_of(stage: Stage) -> Snapshot:
-    """The beginning of a run."""
-    zeros = np.zeros(stage.n)
-    none = np.zeros(stage.n, np.int64)
-    from eventsim.formulas.clock import FIRST_WINDOW
-
-    return Snapshot(
-        epoch=0,
-        window=FIRST_WINDOW,
-        window_rows=0,
-        now=0.0,
-        t=zeros,
-        x=stage.x,
-        y=stage.y,
-        vx=stage.vx,
-        vy=stage.vy,
-        wraps_x=none,
-        wraps_y=none,
-        met=(),
-        contact_time=np.full(stage.n, -math.inf),
-        at_once=none,
-    )
+    def _begin(self) -> None:
+        """Go to the beginning, where all but the flights is zero."""
+        s, stage = self.state, self.stage
+        s.epoch, s.window, s.window_rows = 0, FIRST_WINDOW, 0
+        s.window_end = window_length(s.window, s.epoch_length)
+        self._set_now(0.0)
+        for name in ("x", "y", "vx", "vy"):
+            getattr(s, name).set_all(getattr(stage, name))
+        s.contact_time.set_all(-math.inf)
+        s.words[:, layout.MET] = layout.NOBODY
+        with timed_compiling(self._note_compiling):
+            self._predict_afresh()
 
 
 def _rules(stage: Stage) -> Rules:

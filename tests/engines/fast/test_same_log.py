@@ -1,0 +1,174 @@
+"""The fast engine writes the reference engine's log, bit for bit."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import eventsim as es
+from eventsim.engines.base import Session, Stop
+from eventsim.engines.fast import FastSession
+from eventsim.engines.fast.plan import Sizes
+from eventsim.engines.reference import ReferenceSession
+from eventsim.record.digest import digest_of
+from eventsim.record.events import ROW, Rows
+from eventsim.scene.gallery import gallery, names
+from eventsim.scene.stage import Stage, stage_of
+
+pytest.importorskip("numba")
+
+BUDGET = 3000
+COUNTERS = ("events", "pair_contacts", "wall_contacts", "clusters", "wraps", "turnovers", "deepest_overlap", "outer_momentum")
+QUICK = ("two-disks", "break", "newton-cradle", "corner", "collapse", "gas", "periodic-fluid", "obstacle")
+
+
+def rows_of(session: Session, stop: Stop) -> tuple[Rows, str]:
+    blocks, stopped = [], None
+    while stopped is None:
+        stopped = session.advance(stop, BUDGET)
+        blocks.append(session.take_rows())
+    return np.concatenate(blocks), stopped
+
+
+def assert_same(stage: Stage, stop: Stop, **options: object) -> None:
+    reference, fast = ReferenceSession(stage), FastSession(stage, **options)
+    expected, why = rows_of(reference, stop)
+    rows, stopped = rows_of(fast, stop)
+    differ = next((k for k in range(min(len(rows), len(expected))) if rows[k].tolist()[:10] != expected[k].tolist()[:10]), None)
+    assert (len(rows), differ) == (len(expected), None)
+    for name in ROW.names:
+        assert np.array_equal(rows[name], expected[name], equal_nan=ROW[name].kind == "f"), name
+    assert stopped == why
+    assert digest_of(rows) == digest_of(expected)
+    for name in COUNTERS:
+        assert getattr(fast.counters, name) == getattr(reference.counters, name), name
+    assert fast.clock == reference.clock
+    for one, other in zip(fast.motion(), reference.motion(), strict=True):
+        assert np.array_equal(one, other)
+
+
+SLOW = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in names()]
+"""Most scenes need kernels of their own, which take seconds to compile."""
+
+
+@pytest.mark.parametrize("name", SLOW)
+def test_a_gallery_scene_has_one_log(name: str) -> None:
+    scene = gallery(name)
+    assert_same(stage_of(scene), Stop(scene.until, scene.events))
+
+
+def lattice_gas(
+    columns: int, rows: int, spacing: float, rng: np.random.Generator, domain: str, quantised: bool, spread: float
+) -> es.Scene:
+    """Disks of radius up to 1/2 on a square lattice, with velocities that may be small multiples of 1/4."""
+    n = columns * rows
+    size = (columns * spacing, rows * spacing)
+    place = np.stack([(np.arange(n) % columns + 0.5) * spacing, (np.arange(n) // columns + 0.5) * spacing], axis=1)
+    velocity = rng.integers(-2, 3, (n, 2)) / 4.0 if quantised else rng.normal(size=(n, 2))
+    radius = 0.5 * (1.0 - spread * rng.random(n))
+    domains = {"periodic": es.Periodic, "channel": es.Channel, "box": es.Box}
+    made = es.Open() if domain == "open" else domains[domain](size)
+    return es.Scene(disks=es.Disks(place, velocity, radius), domain=made)
+
+
+random_gases = given(
+    seed=st.integers(0, 2**32 - 1),
+    columns=st.integers(1, 12),
+    rows=st.integers(1, 9),
+    spacing=st.sampled_from([1.0, 1.03125, 1.25, 1.5, 2.7]),
+    quantised=st.booleans(),
+    spread=st.sampled_from([0.0, 0.6]),
+)
+few = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+@pytest.mark.parametrize("domain", ["periodic", "box", pytest.param("channel", marks=pytest.mark.slow)])
+@few
+@random_gases
+def test_a_random_gas_has_one_log(
+    domain: str, seed: int, columns: int, rows: int, spacing: float, quantised: bool, spread: float
+) -> None:
+    scene = lattice_gas(columns, rows, spacing, np.random.default_rng(seed), domain, quantised, spread)
+    assert_same(stage_of(scene), Stop(until=30.0, events=1000))
+
+
+def test_scalar_kernel_and_lanes_and_two_cell_sizes_agree() -> None:
+    stage = stage_of(lattice_gas(12, 12, 1.25, np.random.default_rng(5), "periodic", False, 0.0))
+    stop = Stop(events=3000)
+    digests = {
+        digest_of(rows_of(FastSession(stage, **options), stop)[0])
+        for options in (
+            {"lanes": False},
+            {"lanes": None},
+            {"sizes": Sizes((0.0, 0.0), 6, 6, (2.5, 2.5), 16)},
+            {"sizes": None},
+        )
+    }
+    assert len(digests) == 1
+
+
+def test_a_run_handed_over_at_any_time_has_one_log() -> None:
+    stage = stage_of(lattice_gas(8, 8, 1.25, np.random.default_rng(9), "periodic", True, 0.0))
+    whole, _ = rows_of(ReferenceSession(stage), Stop(events=2500))
+    first = ReferenceSession(stage)
+    begun, _ = rows_of(first, Stop(events=700))
+    middle = FastSession(stage, saved=first.snapshot())
+    middle.counters.copy_from(first.counters)
+    between, _ = rows_of(middle, Stop(events=1600))
+    last = ReferenceSession(stage)
+    last.restore(middle.snapshot())
+    last.counters.copy_from(middle.counters)
+    ended, _ = rows_of(last, Stop(events=2500))
+    assert digest_of(np.concatenate([begun, between, ended])) == digest_of(whole)
+
+
+def test_looking_and_stopping_changes_no_bit() -> None:
+    stage = stage_of(lattice_gas(9, 9, 1.1, np.random.default_rng(2), "box", False, 0.0))
+    whole, _ = rows_of(FastSession(stage), Stop(until=20.0))
+    session = FastSession(stage)
+    parts = []
+    for k in range(1, 41):
+        parts.append(rows_of(session, Stop(until=0.5 * k))[0])
+        session.motion()
+    assert digest_of(np.concatenate(parts)) == digest_of(whole)
+
+
+def test_a_kick_is_logged_alike() -> None:
+    stage = stage_of(lattice_gas(6, 6, 1.5, np.random.default_rng(4), "box", False, 0.0))
+    logs = []
+    for session in (ReferenceSession(stage), FastSession(stage)):
+        before, _ = rows_of(session, Stop(until=2.0))
+        session.kick(7, 3.0, -1.0)
+        after, _ = rows_of(session, Stop(until=6.0))
+        logs.append(digest_of(np.concatenate([before, after])))
+    assert logs[0] == logs[1]
+
+
+def test_golden_digests_hold() -> None:
+    golden = Path(__file__).parents[2] / "gallery" / "golden"
+    known = json.loads((golden / "digests.json").read_text())
+    for name in ("break", "newton-cradle", "corner"):
+        run = es.simulate(gallery(name), engine="fast", log=True)
+        assert run.log is not None
+        assert run.log.digest() == known[name]["digest"]
+
+
+def test_auto_hands_over_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None:
+    from eventsim.engines import auto
+
+    monkeypatch.setattr(auto, "PATIENCE", 0.0)
+    monkeypatch.setattr(auto, "COLD", 0.0)
+    monkeypatch.setattr(auto, "WARM", 0.0)
+    scene = lattice_gas(9, 9, 1.1, np.random.default_rng(2), "box", False, 0.0)
+    mixed = es.simulate(scene, until=20.0, log=True)
+    pure = es.simulate(scene, until=20.0, log=True, engine="reference")
+    assert mixed.log is not None and pure.log is not None
+    assert mixed.log.digest() == pure.log.digest()
+    assert mixed.engine == "fast"
+    assert math.isclose(mixed.time, 20.0)
