@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
+
+Loop = TypeVar("Loop", bound=Callable[..., Any])
 
 try:
     import numba
@@ -15,11 +17,11 @@ try:
 except ImportError:
     COMPILED = False
 
-    def kernel(function: Callable[..., Any]) -> Any:
+    def kernel(function: Loop) -> Loop:
         """Leave a loop as it is."""
         return function
 
-    part: Any = kernel
+    part = kernel
 else:
     COMPILED = True
     config: Any = numba.config  # its settings are made when it is imported
@@ -34,15 +36,17 @@ else:
 
     _FOLDER = str(_folder())
 
-    def kernel(function: Callable[..., Any]) -> Any:
+    def kernel(function: Loop) -> Loop:
         """Compile a loop that Python calls; kept on disk where that is possible."""
         before = config.CACHE_DIR
         config.CACHE_DIR = _FOLDER  # read when the function is decorated
         try:
-            return njit(error_model="numpy", cache=True)(function)
+            return cast(Loop, njit(error_model="numpy", cache=True)(function))
         except RuntimeError:  # no folder to write to
-            return njit(error_model="numpy")(function)
+            return cast(Loop, njit(error_model="numpy")(function))
         finally:
             config.CACHE_DIR = before
 
-    part = njit(error_model="numpy", inline="never")
+    def part(function: Loop) -> Loop:
+        """Compile what loops call."""
+        return cast(Loop, njit(error_model="numpy")(function))

@@ -63,13 +63,14 @@ class FramesSession(SteppedSession):
         super().__init__(stage, keep_rows, FRAME if dt is None else dt)
         self._apart = memory == "apart"
         self._met = np.zeros((stage.n, stage.n), np.bool_)
+        self._held = np.zeros(stage.n, np.int64)
         self._run(0, 0)  # compiles, so that no stopwatch sees it
 
     def _run(self, steps: int, most_events: int) -> int:
         self._make_room(3 * self.stage.n)
         first = self.clock_of_steps.steps
         done: int = run_frames(
-            self.disks, self.ground, self.found, self._met, self._apart, self.dt, first, steps, most_events
+            self.disks, self.ground, self.found, self._met, self._held, self._apart, self.dt, first, steps, most_events
         )
         return done
 
@@ -80,6 +81,7 @@ class FramesSession(SteppedSession):
         pairs = np.array(memory, np.int64).reshape(-1, 2)
         self._met[:] = False
         self._met[pairs[:, 0], pairs[:, 1]] = True
+        self._held[:] = self._met.sum(axis=1)
 
 
 def _demand_known(stage: Stage) -> None:
@@ -112,6 +114,7 @@ def run_frames(
     ground: Ground,
     found: Found,
     met: NDArray[np.bool_],
+    held: NDArray[np.int64],
     apart: bool,
     dt: float,
     first: int,
@@ -131,8 +134,8 @@ def run_frames(
         now = (first + k + 1) * dt
         for i in range(n):
             if not flip_at_borders(m, ground, found, i, now):
-                meet_closest(m, found, met, i, now)
-        forget(m, met, apart)
+                meet_closest(m, found, met, held, i, now)
+        forget(m, met, held, apart)
     return frames
 
 
@@ -158,7 +161,9 @@ def flip_at_borders(m: Moving, ground: Ground, found: Found, i: int, now: float)
 
 
 @part
-def meet_closest(m: Moving, found: Found, met: NDArray[np.bool_], i: int, now: float) -> None:
+def meet_closest(
+    m: Moving, found: Found, met: NDArray[np.bool_], held: NDArray[np.int64], i: int, now: float
+) -> None:
     """Look at the two closest circles of circle i; resolve overlaps that are not in the memory."""
     one, two = -1, -1
     near, far = math.inf, math.inf
@@ -183,6 +188,8 @@ def meet_closest(m: Moving, found: Found, met: NDArray[np.bool_], i: int, now: f
             found.sums[DEEPEST] = max(found.sums[DEEPEST], 1.0 - distance / reach)
             impulse = exchange(m, i, j, dx / distance, dy / distance)
             met[i, j] = met[j, i] = True
+            held[i] += 1
+            held[j] += 1
             note_pair(found, m, i, j, now, impulse)
 
 
@@ -202,15 +209,15 @@ def exchange(m: Moving, i: int, j: int, nx: float, ny: float) -> float:
 
 
 @part
-def forget(m: Moving, met: NDArray[np.bool_], apart: bool) -> None:
-    """Let pairs leave the memory: all of them, or those that are apart."""
-    if not apart:
-        met[:] = False
-        return
+def forget(m: Moving, met: NDArray[np.bool_], held: NDArray[np.int64], apart: bool) -> None:
+    """Let pairs leave the memory: all of them, or those that are apart; held: pairs of each circle in it."""
     for i in range(len(m.x)):
+        if held[i] == 0:
+            continue
         for j in range(len(m.x)):
             if met[i, j]:
                 dx, dy = m.x[j] - m.x[i], m.y[j] - m.y[i]
                 reach = m.radius[i] + m.radius[j]
-                if not dx * dx + dy * dy < reach * reach:
+                if not apart or not dx * dx + dy * dy < reach * reach:
                     met[i, j] = False
+                    held[i] -= 1
