@@ -9,9 +9,12 @@ from eventsim.cli.options import json_option, quiet_option, scene_options
 
 @click.command()
 @scene_options(required=True)
+@click.option("--horizon", is_flag=True, help="Simulate a little, to estimate until when float64 is right.")
 @json_option
 @quiet_option
-def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool) -> None:
+def command(
+    scene: str, settings: tuple[str, ...], seed: int | None, horizon: bool, as_json: bool, quiet: bool
+) -> None:
     """Validate SCENE, and explain what it has and which machinery it gets for that.
 
     A scene with problems is answered with all of them at once, each naming the key or the disks, the value
@@ -21,6 +24,7 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bo
     Examples:
       eventsim check my.toml
       eventsim check gas --set n=50
+      eventsim check gas --horizon         until which contact its trajectory can be believed
       eventsim check my.toml --quiet       says nothing; the exit code tells
 
     \b
@@ -42,6 +46,8 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bo
       touching_pairs              pairs at contact at the start
       touching_notes              starting overlaps so small that they count as touching
       until, events, engine       the stop of the scene; what auto chooses
+      horizon                     null without --horizon; {event, time} of the first contact that runs from
+                                  starts a last bit apart disagree on (null: none), {events, until} compared
       explanation                 topic -> words, as the text prints them
 
     Exit codes: 0 valid; 2 bad usage, scene or file.
@@ -55,8 +61,20 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, as_json: bo
 
     chosen = chosen_scene(scene, settings, seed)
     needs = needs_of(chosen)
+    estimate = None
+    if horizon:
+        from eventsim.engines.base import Stop
+        from eventsim.engines.horizon import horizon as horizon_of
+
+        estimate = horizon_of(chosen, Stop(chosen.until, chosen.events))
     if as_json:
+        told = None if estimate is None else asdict(estimate)
         words = dict(explanation(needs))
-        click.echo(as_json_text({"scene": scene, "name": chosen.name, **asdict(needs), "explanation": words}))
+        data = {"scene": scene, "name": chosen.name, **asdict(needs), "horizon": told, "explanation": words}
+        click.echo(as_json_text(data))
     elif not quiet:
         click.echo(page(scene, chosen.name, needs))
+        if estimate is not None:
+            from eventsim.cli.summary import horizon_words
+
+            click.echo(f"  horizon: {horizon_words(estimate)}")

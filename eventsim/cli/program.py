@@ -19,7 +19,10 @@ VERBS = {
     "check": "Validate a scene; explain what it needs and what will be used.",
     "gallery": "List, show or copy the built-in scenes.",
     "state": "Positions and velocities at any times, from a log.",
+    "measure": "Pressure, temperature, collision rates, free paths, ... with error bars and theory.",
+    "sweep": "Run a scene for many values and seeds; one table of measures.",
     "animate": "Draw a run as a movie, a strip of moments, or a page that plays it.",
+    "certify": "Prove the order of events with ball arithmetic; tell where float64 first differs.",
     "figure": "Draw what a log says: trajectories, speeds, free paths, residuals, ...",
     "live": "Open the live view in the browser: play, throw, measure, compare.",
 }

@@ -23,6 +23,7 @@ EXITS = {"collapse": STOPPED_EARLY, "digits": STOPPED_EARLY, "interrupted": INTE
 @click.option("--state", metavar="FILE", help="Write the final state to FILE (.csv or .npz).")
 @click.option("--engine", default="auto", show_default=True, metavar="NAME", help="Which engine simulates.")
 @click.option("--digest", is_flag=True, help="Compute the log's digest also where no log is kept.")
+@click.option("--horizon", is_flag=True, help="Estimate until when the float64 trajectory is the true one.")
 @json_option
 @quiet_option
 def command(
@@ -36,6 +37,7 @@ def command(
     state: str | None,
     engine: str,
     digest: bool,
+    horizon: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -50,6 +52,7 @@ def command(
       eventsim run my.toml --until 10 --log my.csv          a scene of your own, every event kept
       eventsim run galperin --set mass_ratio=10000 --json   pi from a hundred to one
       eventsim run gas --events 5000 --state end.csv        where all disks are in the end
+      eventsim run gas --events 5000 --horizon              how long to believe every single contact
 
     \b
     Keys of --json:
@@ -64,6 +67,9 @@ def command(
       residuals                energy (relative change; null where it is not conserved),
                                momentum (share of sum m |v| not booked at walls),
                                max_overlap (deepest overlap at a contact, in reaches)
+      horizon                  null without --horizon; {event, time: of the first contact that runs from
+                               starts a last bit apart disagree on, null where none; events, until:
+                               how far they were compared}
       stopped, reason          until | events | quiet (no event ahead) | collapse | digits |
                                interrupted; and why, in words
       log, state               the files written (null without)
@@ -103,14 +109,20 @@ def command(
             progress=progress,
             command=click.get_current_context().obj,
         )
+    estimate = None
+    if horizon:
+        from eventsim.engines.horizon import horizon as horizon_of
+        from eventsim.simulation import stop_of
+
+        estimate = horizon_of(run.scene, stop_of(chosen, until, events))
     if state_path is not None:
         from eventsim.record.states import write_states
 
         write_states(state_path, run.scene, [run.state])
     if as_json:
-        click.echo(as_json_text(summary_data(asked, run, log_path, state_path)))
+        click.echo(as_json_text(summary_data(asked, run, log_path, state_path, estimate)))
     elif not quiet:
-        click.echo(summary_text(asked, run, log_path, state_path))
+        click.echo(summary_text(asked, run, log_path, state_path, estimate))
     if run.stopped in EXITS:
         if as_json or quiet:
             click.echo(f"stopped early: {run.reason or run.stopped}", err=True)

@@ -11,9 +11,12 @@ from eventsim.cli.words import aligned, plural, scene_line, short, title
 
 if TYPE_CHECKING:
     from eventsim.engines.base import Run
+    from eventsim.engines.horizon import Horizon
 
 
-def summary_data(asked: str, run: Run, log: Path | None, state: Path | None) -> dict[str, object]:
+def summary_data(
+    asked: str, run: Run, log: Path | None, state: Path | None, horizon: Horizon | None = None
+) -> dict[str, object]:
     """Return the keys that `eventsim run --help` documents."""
     return {
         "scene": asked,
@@ -33,6 +36,7 @@ def summary_data(asked: str, run: Run, log: Path | None, state: Path | None) -> 
         "events_per_s": _rate(run),
         "digest": run.digest,
         "residuals": asdict(run.residuals),
+        "horizon": None if horizon is None else asdict(horizon),
         "stopped": run.stopped,
         "reason": run.reason,
         "log": None if log is None else str(log),
@@ -40,7 +44,9 @@ def summary_data(asked: str, run: Run, log: Path | None, state: Path | None) -> 
     }
 
 
-def summary_text(asked: str, run: Run, log: Path | None, state: Path | None) -> str:
+def summary_text(
+    asked: str, run: Run, log: Path | None, state: Path | None, horizon: Horizon | None = None
+) -> str:
     """Return the summary as aligned lines."""
     counters, residuals = run.counters, run.residuals
     rows = [
@@ -54,6 +60,8 @@ def summary_text(asked: str, run: Run, log: Path | None, state: Path | None) -> 
     ]
     if counters.pair_contacts == 0:
         rows = [row for row in rows if row[0] != "overlap"]
+    if horizon is not None:
+        rows.append(("horizon", horizon_words(horizon)))
     if run.digest is not None:
         rows.append(("digest", run.digest))
     if log is not None:
@@ -61,6 +69,21 @@ def summary_text(asked: str, run: Run, log: Path | None, state: Path | None) -> 
     if state is not None:
         rows.append(("state", str(state)))
     return f"{title(asked, run.scene.name)}: {scene_line(run.scene)}\n{aligned(rows)}"
+
+
+def horizon_words(horizon: Horizon) -> str:
+    """Return what a reader may believe of a float64 trajectory."""
+    if horizon.event is not None and horizon.time is not None:
+        return (
+            f"the trajectory is right until about event {horizon.event:,}, t = {short(horizon.time)}; "
+            "after that only its statistics are"
+        )
+    if horizon.events == 0:
+        return "no event was there to be compared"
+    return (
+        f"not reached in {plural(horizon.events, 'event')}, to t = {short(horizon.until)}: "
+        "starts that differ in the last bit still tell the same story there"
+    )
 
 
 def _rate(run: Run) -> float | None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.engines.base import Motion, Stop
-from eventsim.engines.certified.ball import Ball, radius_of
+from eventsim.engines.certified.ball import Ball, deviation, radius_of
 from eventsim.engines.certified.calendar import CertifiedCalendar
 from eventsim.engines.certified.predict import CertifiedPredictor
 from eventsim.engines.certified.resolve import CertifiedResolver
@@ -60,6 +60,10 @@ class CertifiedLoop(ReferenceSession):
     def radii(self) -> Floats:
         """How far the true x, y, vx, vy may be from the middles of their balls: (n, 4); length, and length / time."""
         return np.array([[radius_of(number) for number in flight] for flight in self._flights()])
+
+    def distances(self) -> Floats:
+        """How far the true x, y, vx, vy may be from the floats of `motion`: (n, 4); length, and length / time."""
+        return np.array([[deviation(number, float(number)) for number in flight] for flight in self._flights()])
 
     def _flights(self) -> list[tuple[Any, ...]]:
         state = self.state

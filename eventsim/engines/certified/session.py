@@ -37,6 +37,8 @@ class CertifiedSession:
     expressions; where this does not help either the run stops as `undecided tie`.
     """
 
+    name = "certified"
+
     def __init__(
         self, stage: Stage, keep_rows: bool = True, bits: int = FIRST_BITS, most_bits: int = MOST_BITS
     ) -> None:
@@ -131,6 +133,11 @@ class CertifiedSession:
         """The radii of the balls that x, y, vx, vy of each disk are proven to lie in: (n, 4)."""
         with working_precision(self.bits):
             return self._loop.radii()
+
+    def distances(self) -> Floats:
+        """How far the true x, y, vx, vy of each disk may be from `motion`: (n, 4), radius and rounding to a float."""
+        with working_precision(self.bits):
+            return self._loop.distances()
 
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Refuse: a proof goes from the start to the end.

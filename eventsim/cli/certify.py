@@ -1,0 +1,168 @@
+"""`eventsim certify`: prove the order of a scene's events, and tell how far float64 has it right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
+from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.target import LOG_SUFFIXES, writable
+
+if TYPE_CHECKING:
+    from eventsim.engines.certified.proof import Proof
+
+DISKS_SHOWN = 8
+USUAL_EVENTS = 1000
+
+
+@click.command()
+@scene_options(required=True)
+@click.option("--events", type=click.IntRange(min=1), metavar="N", help="Prove this many events (1000 without a stop).")
+@click.option("--until", type=float, metavar="T", help="Prove what happens up to this time.")
+@click.option("--log", metavar="FILE", help=f"Keep the certified log in FILE, one of {', '.join(LOG_SUFFIXES)}.")
+@click.option("--bits", type=click.IntRange(64, 2**20), default=1024, show_default=True, help="Of the first attempt.")
+@click.option("--most-bits", type=click.IntRange(64, 2**20), default=2**17, show_default=True, help="Of the last one.")
+@json_option
+@quiet_option
+def command(
+    scene: str,
+    settings: tuple[str, ...],
+    seed: int | None,
+    events: int | None,
+    until: float | None,
+    log: str | None,
+    bits: int,
+    most_bits: int,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Prove what happens in SCENE: every number is a ball that the true one lies in, every comparison is certain.
+
+    Where balls overlap, the run begins again with twice as many bits. Ties are decided where the numbers are rational
+    or come from equal expressions. Needs the extra `certify`. Gravity together with anything round (posts, ends of
+    segments, arcs, containers) cannot be proven and is refused.
+
+    \b
+    Examples:
+      eventsim certify gas --events 500
+      eventsim certify break --log certified.csv
+      eventsim certify newton-cradle --json
+
+    \b
+    Keys of --json:
+      scene, name              as typed; the name inside the scene (null without)
+      proven, time             events whose order is certain; the scene's clock after them
+      bits, traced             of the last attempt; whether numbers were traced to decide ties
+      attempts                 the ones before: [{bits, traced, events}]
+      enclosures               of the end: [{x, y, vx, vy, x_error, y_error, vx_error, vy_error}], one a disk;
+                               the true number lies within its error
+      difference               {event, time}: the first event that float64 has otherwise (null: none)
+      agreed, deviation        events that float64 has in the same order; its largest error of a
+                               coordinate at these contacts
+      stopped, reason          until | events | quiet | collapse | undecided tie | interrupted; and why
+      elapsed_s, log           seconds of the proof; the file written (null without)
+
+    Exit codes: 0 proven; 2 bad usage, scene or file; 3 an undecided tie or a collapse; 130 interrupted.
+    """
+    path = writable(log, "--log", LOG_SUFFIXES)
+
+    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.words import as_json_text
+    from eventsim.engines.base import Stop
+    from eventsim.errors import EventsimError
+
+    try:
+        from eventsim.engines.certified.proof import prove
+    except ModuleNotFoundError:
+        raise EventsimError("certify needs python-flint: pip install 'eventsim-disks[certify]'") from None
+
+    chosen = chosen_scene(scene, settings, seed)
+    stop = Stop(until, events)
+    if until is None and events is None:
+        stop = Stop(chosen.until, chosen.events)
+        if stop.until is None and stop.events is None:
+            stop = Stop(None, USUAL_EVENTS)
+    typed = click.get_current_context().obj
+    with ProgressBar(quiet=quiet) as progress:
+        proof = prove(chosen, stop, False if path is None else path, bits, most_bits, progress, typed)
+    if as_json:
+        click.echo(as_json_text(_data(scene, proof, path)))
+    elif not quiet:
+        click.echo(_text(scene, proof, path))
+    if proof.run.stopped == "interrupted":
+        click.get_current_context().exit(INTERRUPTED)
+    if proof.run.stopped in ("undecided tie", "collapse", "digits"):
+        if as_json or quiet:
+            click.echo(f"stopped early: {proof.run.reason or proof.run.stopped}", err=True)
+        click.get_current_context().exit(STOPPED_EARLY)
+
+
+def _data(asked: str, proof: Proof, log: Path | None) -> dict[str, object]:
+    state, names = proof.run.state, ("x", "y", "vx", "vy")
+    enclosures = []
+    for place, speed, errors in zip(state.position, state.velocity, proof.enclosures, strict=True):
+        values = dict(zip(names, (*place.tolist(), *speed.tolist()), strict=True))
+        enclosures.append(values | {f"{name}_error": error for name, error in zip(names, errors.tolist(), strict=True)})
+    difference = None
+    if proof.difference is not None:
+        difference = {"event": proof.difference, "time": proof.difference_time}
+    return {
+        "scene": asked,
+        "name": proof.run.scene.name,
+        "proven": proof.proven,
+        "time": state.time,
+        "bits": proof.bits,
+        "traced": proof.traced,
+        "attempts": [attempt._asdict() for attempt in proof.attempts],
+        "enclosures": enclosures,
+        "difference": difference,
+        "agreed": proof.agreed,
+        "deviation": proof.deviation,
+        "stopped": proof.run.stopped,
+        "reason": proof.run.reason,
+        "elapsed_s": proof.run.elapsed_s,
+        "log": None if log is None else str(log),
+    }
+
+
+def _text(asked: str, proof: Proof, log: Path | None) -> str:
+    from eventsim.cli.words import aligned, plural, scene_line, short, title
+
+    run = proof.run
+    each = f", {run.elapsed_s / proof.proven * 1e3:.2g} ms an event" if proof.proven else ""
+    rows = [
+        ("proven", f"{plural(proof.proven, 'event')}, to t = {short(run.state.time)}{each}"),
+        ("bits", f"{proof.bits}{', numbers traced' if proof.traced else ''}{_attempts(proof)}"),
+        ("float64", _float64(proof)),
+        ("end", f"every coordinate known to {proof.enclosures[:, :2].max():.1e}"),
+        ("stopped", run.stopped if run.reason is None else f"early ({run.stopped}): {run.reason}"),
+    ]
+    if log is not None:
+        rows.append(("log", f"{log}: {plural(proof.proven, 'row')}"))
+    lines = [f"{title(asked, run.scene.name)}: {scene_line(run.scene)}", aligned(rows)]
+    if len(run.state.position) <= DISKS_SHOWN:
+        for i, (place, errors) in enumerate(zip(run.state.position, proof.enclosures, strict=True)):
+            x, y = (f"{value!r} +- {error:.1e}" for value, error in zip(place.tolist(), errors[:2], strict=True))
+            lines.append(f"  disk {i}: x = {x}, y = {y}")
+    return "\n".join(lines)
+
+
+def _attempts(proof: Proof) -> str:
+    from eventsim.cli.words import plural
+
+    parts = [f"{a.bits}{' traced' if a.traced else ''}: {plural(a.events, 'event')}" for a in proof.attempts]
+    return f" (before: {'; '.join(parts)})" if parts else ""
+
+
+def _float64(proof: Proof) -> str:
+    from eventsim.cli.words import plural, short
+
+    error = f"largest error at a contact until there {proof.deviation:.1e}"
+    if proof.difference is None:
+        return f"has {plural(proof.agreed, 'event')} in the same order; {error}"
+    assert proof.difference_time is not None
+    return f"first differs at event {proof.difference}, t = {short(proof.difference_time)}; {error}"
