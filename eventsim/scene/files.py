@@ -71,7 +71,7 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
     What has its default is left out. A mass of inf is written as "inf", so that the tables fit into JSON.
     """
     data: dict[str, Any] = {}
-    for key in ("name", "until", "events", "contact_duration"):
+    for key in ("name", "until", "events", "contact_duration", "equilibration"):
         value = getattr(scene, key)
         if value is not None:
             data[key] = value

@@ -26,6 +26,7 @@ class Scene:
         gravity: acceleration (x, y), length / time^2; None without.
         restitution: None where every contact is elastic.
         contact_duration: time; a contact within it after a disk's previous one is elastic; None without.
+        equilibration: time from the start that measurements leave out; None: they find out.
         until: stop time on the scene's clock, or None.
         events: number of events to stop after, or None.
         start_time: what the clock shows at the start.
@@ -38,6 +39,7 @@ class Scene:
     gravity: Point | None
     restitution: Restitution | None
     contact_duration: float | None
+    equilibration: float | None
     until: float | None
     events: int | None
     start_time: float
@@ -55,6 +57,7 @@ class Scene:
         events: int | None = None,
         start_time: float = 0.0,
         name: str | None = None,
+        equilibration: float | None = None,
         *,
         names: DiskNames | None = None,
     ) -> None:
@@ -74,6 +77,7 @@ class Scene:
             "gravity": None if pull == (0.0, 0.0) else pull,
             "restitution": as_restitution(restitution),
             "contact_duration": optional_number(contact_duration, "contact_duration"),
+            "equilibration": optional_number(equilibration, "equilibration"),
             "until": optional_number(until, "until"),
             "events": optional_whole(events, "events"),
             "start_time": number(start_time, "start_time"),

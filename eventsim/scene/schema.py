@@ -107,6 +107,7 @@ SCENE = Schema(
         Optional("gravity"): POINT,
         Optional("restitution"): number,
         Optional("contact_duration"): number,
+        Optional("equilibration"): number,
     }
 )
 RESTITUTION = Schema({Optional("pair"): number, Optional("wall"): number})

@@ -88,6 +88,8 @@ def _scalar_problems(scene: Scene) -> Iterator[str]:
                 yield f"{key} = {value}: must be from 0 to 1"
     if scene.contact_duration is not None and not 0.0 <= scene.contact_duration < math.inf:
         yield f"contact_duration = {scene.contact_duration}: must be a finite time, at least 0"
+    if scene.equilibration is not None and not 0.0 <= scene.equilibration < math.inf:
+        yield f"equilibration = {scene.equilibration}: must be a finite time, at least 0"
     if not math.isfinite(scene.start_time):
         yield f"start_time = {scene.start_time}: must be finite"
     elif scene.until is not None and not scene.start_time <= scene.until < math.inf:

@@ -1,0 +1,81 @@
+"""Mean squared displacement and velocity autocorrelation over all lags, in constant memory.
+
+The order-n scheme without averaging: level l keeps the last few samples that are 2^l apart, so lags grow like powers of two.
+Source: D. Dubbeldam, D. C. Ford, D. E. Ellis, R. Q. Snurr, Mol. Simul. 35, 1084 (2009), doi:10.1080/08927020902818039.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from eventsim.record.events import Floats
+
+LAGS_PER_LEVEL = 8
+MOST_LEVELS = 40
+FEWEST_ORIGINS = 4
+"""Non-overlapping stretches of the run that a lag must have."""
+
+
+class Correlations(NamedTuple):
+    """Arrays (lags,): lag, time; mean squared displacement, length^2, and its error; <v(0) v(t)> and its error."""
+
+    lag: Floats
+    msd: Floats
+    msd_error: Floats
+    vacf: Floats
+    vacf_error: Floats
+
+
+class Correlator:
+    """Correlates samples that are `interval` apart; each is displacement and velocity (W, 2) of the watched disks."""
+
+    def __init__(self, interval: float) -> None:
+        self.interval = interval
+        self._taken = [0] * MOST_LEVELS
+        self._kept: list[tuple[Floats, Floats] | None] = [None] * MOST_LEVELS
+        # per level and lag: number of origins, sums and sums of squares of both means over disks
+        self._sums = np.zeros((MOST_LEVELS, LAGS_PER_LEVEL + 1, 5))
+
+    def add(self, way: Floats, velocity: Floats) -> None:
+        """Add samples (S, W, 2)."""
+        for level in range(MOST_LEVELS):
+            if not len(way):
+                return
+            self._add_level(level, way, velocity)
+            # every second sample of the level goes one level up, whatever the cut into blocks
+            begin = self._taken[level] % 2
+            self._taken[level] += len(way)
+            way, velocity = way[begin::2], velocity[begin::2]
+
+    def _add_level(self, level: int, way: Floats, velocity: Floats) -> None:
+        kept = self._kept[level]
+        if kept is not None:
+            way, velocity = np.concatenate([kept[0], way]), np.concatenate([kept[1], velocity])
+        old = 0 if kept is None else len(kept[0])
+        for step in range(1 if level == 0 else LAGS_PER_LEVEL // 2 + 1, LAGS_PER_LEVEL + 1):
+            low = max(old, step)
+            if low >= len(way):
+                continue
+            moved = way[low:] - way[low - step : len(way) - step]
+            squared = np.einsum("swk,swk->s", moved, moved) / way.shape[1]
+            product = np.einsum("swk,swk->s", velocity[low:], velocity[low - step : len(way) - step]) / way.shape[1]
+            self._sums[level, step] += (
+                len(squared), squared.sum(), (squared**2).sum(), product.sum(), (product**2).sum(),
+            )  # fmt: skip
+        self._kept[level] = way[-LAGS_PER_LEVEL:].copy(), velocity[-LAGS_PER_LEVEL:].copy()
+
+    def result(self) -> Correlations:
+        """The averages over all origins.  Origins less than a lag apart overlap, so they count as one for the error."""
+        levels, steps = np.nonzero(self._sums[:, :, 0] >= FEWEST_ORIGINS * np.arange(LAGS_PER_LEVEL + 1).clip(1))
+        order = np.argsort(steps * 2.0**levels)
+        levels, steps = levels[order], steps[order]
+        origins, d1, d2, v1, v2 = self._sums[levels, steps].T
+        means, errors = [], []
+        for first, second in ((d1, d2), (v1, v2)):
+            mean = first / origins
+            spread = np.maximum(second / origins - mean * mean, 0.0)
+            means.append(mean)
+            errors.append(np.sqrt(spread / np.maximum(origins / steps - 1.0, 1.0)))
+        return Correlations(steps * 2.0**levels * self.interval, means[0], errors[0], means[1], errors[1])

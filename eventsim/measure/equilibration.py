@@ -1,0 +1,85 @@
+"""Whether and when a run has settled: how much of its beginning to leave out, and reasons for doubt."""
+
+from __future__ import annotations
+
+import math
+
+from eventsim.measure.blocking import ErrorBar, block_average
+from eventsim.measure.ensemble import Ensemble
+from eventsim.record.events import Floats
+
+BATCHES = 64
+"""Stretches into which the run is cut to look for the end of the transient; it must end in the first half."""
+
+DRIFT = 3.5
+"""Standard errors between the two halves that chance hardly explains: 1 in 2000."""
+
+DENSE = 0.5
+"""Packing fraction from which disks may stay in the cages that they started in."""
+
+SLOW = 0.68, 0.74
+"""Packing fractions around melting (0.700 to 0.716), where order relaxes by diffusion over the whole system.
+
+Source: E. P. Bernard, W. Krauth, Phys. Rev. Lett. 107, 155704 (2011), doi:10.1103/PhysRevLett.107.155704.
+"""
+
+FEWEST_DISKS = 16
+"""With fewer, a disk need not come far to have been everywhere."""
+
+
+def settled_after(series: Floats) -> int:
+    """How many entries of a series (n,) belong to the transient: those whose loss makes the mean most certain.
+
+    Source: K. P. White, Simulation 69, 323 (1997), doi:10.1177/003754979706900601 (MSER).
+    """
+    size = len(series) // BATCHES
+    if size < 1:
+        return 0
+    batches = series[: size * BATCHES].reshape(BATCHES, size).mean(axis=1)
+    best = min(range(BATCHES // 2), key=lambda first: float(batches[first:].var()) / (BATCHES - first))
+    # one batch is no transient: the mean of a steady series moves about as much by chance
+    return best * size if best > 1 else 0
+
+
+def doubts(ensemble: Ensemble, virial: Floats, bar: ErrorBar, late: bool, moved: float) -> list[str]:
+    """Reasons why a steady state may not have been reached, a clause each; none: nothing speaks against it.
+
+    virial: series of the part that is kept.  bar: its mean.  late: the transient reaches to the middle of the run.
+    moved: root mean square displacement over the run, length.
+    """
+    found = []
+    if late:
+        found.append("the pressure still changes in the second half of the run")
+    if math.isnan(bar.error):
+        found.append("the run is too short for error bars")
+    elif not bar.independent:
+        found.append("no block length was found beyond which blocks are independent")
+    half = len(virial) // 2
+    first, second = block_average(virial[:half]), block_average(virial[half:])
+    spread = math.hypot(first.error, second.error)
+    if abs(first.mean - second.mean) > DRIFT * spread > 0.0:
+        away = abs(first.mean - second.mean) / spread
+        found.append(f"the pressure drifts: its halves differ by {away:.1f} standard errors")
+    found += _caged(ensemble, moved)
+    return found
+
+
+def _caged(ensemble: Ensemble, moved: float) -> list[str]:
+    eta, diameter = ensemble.packing_fraction, ensemble.diameter
+    if eta is None or eta < DENSE or ensemble.n < FEWEST_DISKS or diameter == 0.0:
+        return []
+    if moved < diameter:
+        return [f"disks have moved {moved / diameter:.2g} diameters only: they remember where they started"]
+    size = ensemble.scene.domain.size
+    if SLOW[0] < eta < SLOW[1] and size is not None and moved < max(size):
+        share = moved / max(size)
+        return [
+            f"near melting order relaxes by diffusion over the whole system,"
+            f" and disks have moved {share:.2g} of its length only"
+        ]
+    return []
+
+
+def transient(discarded: float, duration: float) -> bool:
+    """Whether the search for the end of the transient ran into its bound."""
+    return discarded >= (0.5 - 1.5 / BATCHES) * duration

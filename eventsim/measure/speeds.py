@@ -1,0 +1,79 @@
+"""How speeds are distributed, against Maxwell at fixed energy."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from eventsim.measure.blocking import ratio_average
+from eventsim.measure.ensemble import Ensemble
+from eventsim.measure.tally import DISK_TIME, FASTEST, PER_SPECIES, SPEED_BINS, Tally
+from eventsim.measure.theory import survival
+from eventsim.record.events import Floats
+
+WELL_KNOWN = 0.2
+"""Relative error below which a bin says something about the fit: rare speeds have no reliable error bars."""
+
+FEWEST_FREEDOMS = 4
+"""With fewer the energy fixes the speeds."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedHistogram:
+    """The share of time that disks of one species spend at speeds between edges (bins + 1,).
+
+    density: per speed, (bins,), with its error.  theory: the same of Maxwell's distribution (at fixed energy), or None.
+    """
+
+    species: int
+    edges: Floats
+    density: Floats
+    error: Floats
+    theory: Floats | None
+
+    @property
+    def misfit(self) -> float | None:
+        """Root mean square of (measured - theory) / error; about 1 where theory holds; None without theory."""
+        good = (self.error > 0.0) & (self.error < WELL_KNOWN * self.density)
+        if self.theory is None or not good.any():
+            return None
+        return float(np.sqrt((((self.density - self.theory)[good] / self.error[good]) ** 2).mean()))
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data."""
+        return {
+            "species": self.species,
+            "edges": self.edges.tolist(),
+            "density": self.density.tolist(),
+            "error": self.error.tolist(),
+            "theory": None if self.theory is None else self.theory.tolist(),
+            "misfit": self.misfit,
+        }
+
+
+def speed_histograms(ensemble: Ensemble, tally: Tally, bins: Floats, kt: float) -> tuple[SpeedHistogram, ...]:
+    """One histogram for each species, from the series (time bins, channels)."""
+    result = []
+    for kind, species in enumerate(ensemble.species):
+        if not math.isfinite(species.mass):
+            continue
+        edges = np.linspace(0.0, FASTEST * tally.thermal_speed / math.sqrt(species.mass), SPEED_BINS + 1)
+        flown = bins[:, tally.first_species + PER_SPECIES * kind + DISK_TIME]
+        first = tally.first_speed + (SPEED_BINS + 1) * kind
+        bars = [ratio_average(bins[:, first + k], flown) for k in range(SPEED_BINS)]
+        width = edges[1]
+        theory = None
+        if ensemble.simple and ensemble.at_rest and ensemble.freedoms >= FEWEST_FREEDOMS:
+            above = [_above(ensemble, speed, kt, species.mass) for speed in edges.tolist()]
+            theory = -np.diff(above) / width
+        density = np.array([bar.mean for bar in bars]) / width
+        error = np.array([bar.error for bar in bars]) / width
+        result.append(SpeedHistogram(kind, edges, density, np.nan_to_num(error), theory))
+    return tuple(result)
+
+
+def _above(ensemble: Ensemble, speed: float, kt: float, mass: float) -> float:
+    return survival(speed, kt, mass, ensemble.thermal_share(mass), 0.5 * ensemble.freedoms - 1.0)
