@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventsim.engines.auto import has_compiler
 from eventsim.errors import EventsimError
 from eventsim.record.events import State
 from eventsim.record.replay import Replay
@@ -42,8 +43,11 @@ SECONDS = 10.0
 CROSSING_SECONDS = 5.0
 """Where there is no such span: how long a disk of usual speed takes to cross the picture."""
 
-MOST_PER_FRAME = 400
-"""Disks for which the per-frame engine, in Python and all pairs, keeps pace with a screen."""
+MOST_PER_FRAME = 1000
+"""Disks in a comparison: the per-frame engine, and the page that looks for overlaps, go through all pairs in each frame."""
+
+MANY = 500
+"""Disks from which on the fast engine is worth its start: with fewer, the reference engine is ahead of any viewer."""
 
 
 class World:
@@ -123,7 +127,7 @@ class World:
             box = self.scene.domain
             assert isinstance(box, Box)
             needed = (state.position + self.scene.disks.radius[:, None] - np.array(box.origin)).max(axis=0)
-            width, height = np.nextafter(np.maximum(message.size, needed), np.inf).tolist()
+            width, height = np.maximum(message.size, np.nextafter(needed, np.inf)).tolist()
             scene = self._scene_from(state, Box((width, height), box.origin))
             await self._begin(scene, self._rate, "resize", self.speed)
 
@@ -143,12 +147,7 @@ class World:
         tracks = [track]
         if rate is not None:
             try:
-                if len(scene.disks) > MOST_PER_FRAME:
-                    raise EventsimError(
-                        f"the per-frame engine compares every disk with every other in each frame: it is for at most "
-                        f"{MOST_PER_FRAME} disks, and there are {len(scene.disks)}"
-                    )
-                tracks.append(Track(scene, "frames", returns=False, step=speed / rate))
+                tracks.append(await asyncio.to_thread(_per_frame, scene, speed / rate))
             except EventsimError as error:
                 notice = f"nothing to compare with: {error}"
         self.scene, self.tracks = scene, tracks
@@ -242,7 +241,7 @@ class World:
 
 def _scouted(scene: Scene, pace: float | None) -> tuple[Track, float, dict[str, Any], list[PackedColumn]]:
     """Return the track of a scene, its usual speed, and header and columns of the description that a page draws it from."""
-    track = Track(scene)
+    track = Track(scene, "fast" if len(scene.disks) >= MANY and has_compiler() else "reference")
     track.advance(LEAD_SECONDS * (pace or _usual_speed(scene)), SCOUT_EVENTS)
     replay = Replay(track.log())
     stage = stage_description(replay, replay.span[1])
@@ -258,6 +257,13 @@ def _scouted(scene: Scene, pace: float | None) -> tuple[Track, float, dict[str, 
         "stage": stage,
     }
     return track, speed, header, start_columns(replay)
+
+
+def _per_frame(scene: Scene, frame: float) -> Track:
+    """Return the track of the per-frame engine; raise EventsimError for scenes that are not for it."""
+    if len(scene.disks) > MOST_PER_FRAME:
+        raise EventsimError(f"a comparison is for at most {MOST_PER_FRAME} disks, and there are {len(scene.disks)}")
+    return Track(scene, "frames", returns=False, dt=frame)
 
 
 def _resizable(scene: Scene) -> bool:

@@ -33,8 +33,8 @@ class Comparison {
     return {
       exact: `<strong>event-driven</strong><br>${exact.toLocaleString("en")} contacts, each at its time`,
       other: `<strong>per frame</strong><br>${other.toLocaleString("en")} contacts: ${difference}<br>` +
-        `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b>${this.astray.size}</b> of ${this.other.count} astray; ` +
-        `energy <b>${drift >= 0 ? "+" : "−"}${number(Math.abs(drift))} %</b>`,
+        `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b class="astray">${this.astray.size}</b> of ${this.other.count} astray; ` +
+        `energy <b>${drift < 0 ? "−" : "+"}${Math.abs(drift).toFixed(2)} %</b>`,
     };
   }
 

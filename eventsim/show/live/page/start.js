@@ -1,7 +1,7 @@
 "use strict";
 /* The start of the page: menu, link and player brought together. */
 
-const RESIZE_MS = 350, MARGIN = 4, LEAST = 60, LONGEST_FILE = 900_000;
+const RESIZE_MS = 350, WAIT_MS = 1500, MARGIN = 4, LEAST = 60, LONGEST_FILE = 900_000;
 
 class LiveView {
   constructor(root) {
@@ -89,6 +89,8 @@ class LiveView {
     this.acts = [];
     this.asked = this.size();
     this._address(message);
+    clearTimeout(this.waiting);
+    this.waiting = setTimeout(() => this._notice("Preparing; an engine that runs for the first time is compiled."), WAIT_MS);
     this.link.ask(message);
   }
 
@@ -107,7 +109,7 @@ class LiveView {
       cut: () => this.player.cut(header.count, header.time),
       control: () => this._follow(header),
       error: () => { this._notice(header.text); if (this.joining) { this.joining = false; this.init(); } },
-      done: () => { if (this.link.pending === 0 && this.resume) { const { time, playing } = this.resume; this.resume = null; this.player.await(time, playing); } },
+      done: () => { clearTimeout(this.waiting); if (this.link.pending === 0 && this.resume) { const { time, playing } = this.resume; this.resume = null; this.player.await(time, playing); } },
     };
     heard[header.type]();
   }
@@ -139,6 +141,7 @@ class LiveView {
     const stage = { ...header.stage, species }, playing = this.player && this.player.playing && header.why === "resize";
     if (this.current && this.current.scene === "menu" && header.resizable) stage.shown = [-MARGIN, -MARGIN, stage.size[0] + MARGIN, stage.size[1] + MARGIN];
     const description = { ...header, stage, begin, app: this, colour: "mass", dark: false, trails: false, flash: false, arrows: false };
+    clearTimeout(this.waiting);
     this.joining = false;
     this.done = false;
     this.edition = header.edition;
