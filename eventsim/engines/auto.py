@@ -43,7 +43,7 @@ def first_engine(stage: Stage) -> str:
 class AutoSession:
     """A session of the engine that suits, another one after the job has proved long.
 
-    stage: what is simulated.  keep_rows: whether the log is wanted.
+    stage: what is simulated.  keep_rows: whether the log is wanted.  at_work: the name of the engine in use.
     """
 
     def __init__(self, stage: Stage, keep_rows: bool = True, **options: Any) -> None:
@@ -51,17 +51,13 @@ class AutoSession:
         self._keep_rows = keep_rows
         self._spent = 0.0
         self._may_change = not options
+        self.at_work = "reference" if options else first_engine(stage)
         self._session: Session
-        if not options and first_engine(stage) == "fast":
+        if self.at_work == "fast":
             self._session = _fast(stage, keep_rows)
         else:
             self._session = ReferenceSession(stage, keep_rows, **options)
         self._rows: list[Rows] = []
-
-    @property
-    def name(self) -> str:
-        """The engine that is at work now."""
-        return self._session.name
 
     @property
     def compile_s(self) -> float:
@@ -88,7 +84,7 @@ class AutoSession:
         began = perf_counter()
         stopped = self._session.advance(stop, budget)
         self._spent += perf_counter() - began
-        if stopped is None and self._may_change and self.name == "reference" and self._spent > PATIENCE:
+        if stopped is None and self._may_change and self.at_work == "reference" and self._spent > PATIENCE:
             self._reconsider(stop)
         return stopped
 
@@ -119,6 +115,7 @@ class AutoSession:
     def _hand_over(self) -> None:
         before = self._session
         self._rows.append(before.take_rows())
+        self.at_work = "fast"
         self._session = _fast(self.stage, self._keep_rows, saved=before.snapshot())
         self._session.counters.copy_from(before.counters)
 

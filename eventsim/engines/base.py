@@ -123,10 +123,6 @@ class Session(Protocol):
     stage: Stage
 
     @property
-    def name(self) -> str:
-        """The engine's."""
-
-    @property
     def counters(self) -> Counters:
         """How often what happened."""
 

@@ -86,7 +86,7 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
     compiled = _compile_seconds(session)
     return Run(
         scene=scene,
-        engine=session.name if engine == "auto" else engine,
+        engine=getattr(session, "at_work", engine),  # of `auto`, the one that came last
         state=state_of(session, stop, stopped),
         counters=session.counters,
         residuals=residuals_of(session),

@@ -72,7 +72,7 @@ def wrap(m, rules, i, code, t):
     """Take a disk to the other side of the domain: its coordinate becomes exactly 0 or the period."""
     x, y = place(m, rules, i, t)
     vx, vy = speed(m, rules, i, t)
-    if code == WRAP_RIGHT or code == WRAP_LEFT:
+    if code >= WRAP_LEFT:  # the codes of x come first
         step = 1 if code == WRAP_RIGHT else -1
         x = 0.0 if step > 0 else rules.width
         store(m.disks, i * WORDS + WRAPS_X, word(m.disks, i * WORDS + WRAPS_X) + step)

@@ -57,7 +57,7 @@ def timed_compiling(note: Callable[[float], None]) -> Iterator[None]:
         yield
 
 
-class _Watcher(event.Listener):  # type: ignore[misc]
+class _Watcher(event.Listener):
     """Sums up the outermost of nested compilations."""
 
     told = False
@@ -113,9 +113,9 @@ def _sqrt(x):  # without annotations: numba compares them with those of the lamb
 
 def _register(module: ModuleType, **options: Any) -> None:
     for function in vars(module).values():
-        if callable(function) and getattr(function, "__module__", None) == module.__name__:
-            if not isinstance(function, type):
-                register_jitable(**options)(function)
+        own = getattr(function, "__module__", None) == module.__name__
+        if own and callable(function) and not isinstance(function, type):
+            register_jitable(**options)(function)
 
 
 for _module in (motion, contact, impulse):

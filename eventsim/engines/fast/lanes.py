@@ -67,7 +67,11 @@ def _transposed(builder, rows, odd):
     low = [_mix(builder, pairs[k], pairs[k + 1], [0, 1, 2, 3, 8, 9, 10, 11]) for k in (0, 2)]
     high = [_mix(builder, pairs[k], pairs[k + 1], [4, 5, 6, 7, 12, 13, 14, 15]) for k in (0, 2)]
     outer, inner = [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]
-    return _mix(builder, *low, outer), _mix(builder, *low, inner), _mix(builder, *high, outer)
+    return (
+        _mix(builder, low[0], low[1], outer),
+        _mix(builder, low[0], low[1], inner),
+        _mix(builder, high[0], high[1], outer),
+    )
 
 
 @intrinsic

@@ -19,9 +19,9 @@ def remember(m, i, partner, kx, ky):
 def _among_several(m, i, partner, kx, ky):
     row = word(m.disks, i * WORDS + MET_KX)
     while row >= 0:
-        if word(m.several, 4 * row) == partner:
-            if word(m.several, 4 * row + 1) == kx and word(m.several, 4 * row + 2) == ky:
-                return True
+        same_image = word(m.several, 4 * row + 1) == kx and word(m.several, 4 * row + 2) == ky
+        if same_image and word(m.several, 4 * row) == partner:
+            return True
         row = word(m.several, 4 * row + 3)
     return False
 

@@ -83,6 +83,8 @@ class FastSession:
         self._days = self._steps = 0
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
+        self._grid: Grid
+        self._arrays: Any
         if saved is None:
             self._begin()
         else:
@@ -146,6 +148,11 @@ class FastSession:
                 self._schedule()
             self._days = self._steps = 0
         return status
+
+    @property
+    def memory(self) -> int:
+        """Bytes of the arrays that kernels work in."""
+        return self.state.place_of.nbytes + sum(array.nbytes for array in self._arrays if array is not None)
 
     @property
     def _due(self) -> Floats:

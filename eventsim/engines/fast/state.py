@@ -147,6 +147,20 @@ class FastState(EngineState):
     labels: which disk is at a place.  several: chains of whom disks met in joint contacts.
     """
 
+    x: Any
+    y: Any
+    vx: Any
+    vy: Any
+    t: Any
+    contact_time: Any
+    wraps_x: Any
+    wraps_y: Any
+    at_once: Any
+    count: Any
+    met: Any
+    gravity_x: Any
+    gravity_y: Any
+
     def __init__(self, stage: Stage, order: NDArray[np.int64], counts: NDArray[np.int64]) -> None:
         n = stage.n
         self.n = n
@@ -165,16 +179,16 @@ class FastState(EngineState):
             )
         self.several: Integers = np.empty((64, 4), np.int32)
         self.several_used = 0
-        self.x, self.y = self._reals(X), self._reals(Y)  # type: ignore[assignment]
-        self.vx, self.vy = self._reals(VX), self._reals(VY)  # type: ignore[assignment]
-        self.t, self.contact_time = self._reals(T), self._reals(CONTACT_TIME)  # type: ignore[assignment]
-        self.wraps_x, self.wraps_y = self._integers(WRAPS_X), self._integers(WRAPS_Y)  # type: ignore[assignment]
-        self.at_once = self._integers(AT_ONCE)  # type: ignore[assignment]
-        self.count = CountColumn(self.words[:n, COUNT], self.place_of)  # type: ignore[assignment]
-        self.met = MetColumn(self)  # type: ignore[assignment]
+        self.x, self.y = self._reals(X), self._reals(Y)
+        self.vx, self.vy = self._reals(VX), self._reals(VY)
+        self.t, self.contact_time = self._reals(T), self._reals(CONTACT_TIME)
+        self.wraps_x, self.wraps_y = self._integers(WRAPS_X), self._integers(WRAPS_Y)
+        self.at_once = self._integers(AT_ONCE)
+        self.count = CountColumn(self.words[:n, COUNT], self.place_of)
+        self.met = MetColumn(self)
         gx, gy = stage.gravity or (None, None)
-        self.gravity_x = AccelerationColumn(gx, stage.mass)  # type: ignore[assignment]
-        self.gravity_y = AccelerationColumn(gy, stage.mass)  # type: ignore[assignment]
+        self.gravity_x = AccelerationColumn(gx, stage.mass)
+        self.gravity_y = AccelerationColumn(gy, stage.mass)
         self.epoch_length = stage.epoch_length
         self.window_cap = stage.window_cap
 
@@ -184,7 +198,7 @@ class FastState(EngineState):
         return self.words[: self.n, LABEL]
 
     @property
-    def window_rows(self) -> int:  # type: ignore[override]
+    def window_rows(self) -> int:
         """Rows logged in the present window."""
         return int(self._counts[WINDOW_ROWS])
 

@@ -168,7 +168,8 @@ def test_auto_hands_over_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None
     scene = lattice_gas(9, 9, 1.1, np.random.default_rng(2), "box", False, 0.0)
     mixed = es.simulate(scene, until=20.0, log=True)
     pure = es.simulate(scene, until=20.0, log=True, engine="reference")
-    assert mixed.log is not None and pure.log is not None
+    assert mixed.log is not None
+    assert pure.log is not None
     assert mixed.log.digest() == pure.log.digest()
     assert mixed.engine == "fast"
     assert math.isclose(mixed.time, 20.0)

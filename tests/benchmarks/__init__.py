@@ -1,0 +1,1 @@
+"""Rates of the engines; not part of the test run."""

@@ -1,0 +1,140 @@
+"""Rates side by side: fast, reference, and a yardstick where one is given; repeats in turn, medians, ratios within the run.
+
+    python -m tests.benchmarks.rates [--n 1000 10000] [--eta 0.2 0.5 0.7] [--yardstick FOLDER] [--csv FILE]
+
+The gas: equal disks of diameter 1 from a triangular lattice with Maxwell velocities, in a periodic box.
+The yardstick is a folder with a module `yardstick` that has `System(n, eta)` with `advance(contacts) -> seconds`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import importlib
+import math
+import statistics
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+import eventsim as es
+from eventsim.engines import ENGINES
+from eventsim.engines.base import Stop
+from eventsim.scene.stage import stage_of
+
+COLUMNS = ("n", "eta", "engine", "log", "contacts", "rate_median", "rate_min", "rate_max", "of_yardstick", "bytes_per_disk")
+BUDGET = 1 << 20
+Advance = Callable[[int], float]
+"""Advance by so many contacts; the seconds that took."""
+
+
+def lattice_gas(n: int, eta: float, seed: int = 1) -> es.Scene:
+    """About n disks: whole rows, an even number of them."""
+    rows = 2 * max(1, round(math.sqrt(n * 2 / math.sqrt(3)) / 2))
+    columns = max(1, round(n / rows))
+    spacing = math.sqrt(math.pi / (2 * math.sqrt(3)) / eta)
+    row, column = np.divmod(np.arange(rows * columns), columns)
+    position = np.stack([(column + 0.25 + 0.5 * (row % 2)) * spacing, (row + 0.5) * spacing * math.sqrt(3) / 2], axis=1)
+    velocity = np.random.default_rng(seed).normal(size=position.shape)
+    velocity -= velocity.mean(axis=0)
+    size = (columns * spacing, rows * spacing * math.sqrt(3) / 2)
+    return es.Scene(disks=es.Disks(position, velocity, radius=0.5), domain=es.Periodic(size))
+
+
+def engine_advance(name: str, scene: es.Scene, log: bool) -> Advance:
+    """How to advance a session of an engine."""
+    session = ENGINES[name].open(stage_of(scene), keep_rows=log)
+
+    def advance(contacts: int) -> float:
+        stop = Stop(events=session.counters.events + contacts)
+        began = perf_counter()
+        while session.advance(stop, BUDGET) is None:
+            session.take_rows()
+        session.take_rows()
+        return perf_counter() - began
+
+    return advance
+
+
+def bytes_per_disk(scene: es.Scene) -> int:
+    """The memory of the fast engine's arrays."""
+    from eventsim.engines.fast import FastSession
+
+    return FastSession(stage_of(scene), keep_rows=False).memory // len(scene.disks)
+
+
+def measure(n: int, eta: float, contacts: int, repeats: int, folder: str | None, warm_up: float) -> list[dict[str, object]]:
+    """The rows of the table for one gas."""
+    scene = lattice_gas(n, eta)
+    engines: dict[tuple[str, bool], Advance] = {
+        ("fast", False): engine_advance("fast", scene, False),
+        ("fast", True): engine_advance("fast", scene, True),
+    }
+    share = {key: 1.0 for key in engines}
+    if n <= 10_000:
+        engines["reference", False] = engine_advance("reference", scene, False)
+        share["reference", False] = 0.01
+    if folder is not None:
+        sys.path.insert(0, folder)
+        engines["yardstick", False] = importlib.import_module("yardstick").System(n, eta).advance
+        share["yardstick", False] = 1.0
+    rates: dict[tuple[str, bool], list[float]] = {key: [] for key in engines}
+    for key, advance in engines.items():
+        advance(int(share[key] * warm_up * n) + 1)
+    for _ in range(repeats):
+        for key, advance in engines.items():
+            part = max(1, int(share[key] * contacts))
+            rates[key].append(part / advance(part))
+    base = statistics.median(rates["yardstick", False]) if folder is not None else None
+    rows = []
+    for key, found in rates.items():
+        middle = statistics.median(found)
+        rows.append(
+            {
+                "n": len(scene.disks),
+                "eta": eta,
+                "engine": key[0],
+                "log": "on" if key[1] else "off",
+                "contacts": max(1, int(share[key] * contacts)),
+                "rate_median": round(middle),
+                "rate_min": round(min(found)),
+                "rate_max": round(max(found)),
+                "of_yardstick": "" if base is None else round(middle / base, 3),
+                "bytes_per_disk": bytes_per_disk(scene) if key == ("fast", False) else "",
+            }
+        )
+    return rows
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--n", type=lambda text: int(float(text)), nargs="+", default=[100, 1000, 10_000])
+    parser.add_argument("--eta", type=float, nargs="+", default=[0.2, 0.5, 0.7])
+    parser.add_argument("--contacts", type=lambda text: int(float(text)), default=1_000_000)
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--warm-up", type=float, default=10.0, help="contacts per disk before the clock starts")
+    parser.add_argument("--yardstick", help="folder of the yardstick")
+    parser.add_argument("--csv", type=Path, help="write the table here as well")
+    chosen = parser.parse_args()
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    table = []
+    print(" ".join(f"{name:>14}" for name in COLUMNS))
+    for n in chosen.n:
+        for eta in chosen.eta:
+            for row in measure(n, eta, chosen.contacts, chosen.repeats, chosen.yardstick, chosen.warm_up):
+                table.append({**row, "commit": commit})
+                print(" ".join(f"{row[name]!s:>14}" for name in COLUMNS), flush=True)
+    if chosen.csv is not None:
+        chosen.csv.parent.mkdir(parents=True, exist_ok=True)
+        with chosen.csv.open("w", newline="") as stream:
+            writer = csv.DictWriter(stream, [*COLUMNS, "commit"])
+            writer.writeheader()
+            writer.writerows(table)
+
+
+if __name__ == "__main__":
+    main()
