@@ -90,8 +90,9 @@ class Rules(NamedTuple):
 class Grid(NamedTuple):
     """Disks, cells and the calendar.
 
-    n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell; deep: None where it is the usual one.  low: the corner of the grid.
-    days: buckets, a power of two.  lanes: eight pairs at a time, or None.  look_ahead: days at which memory is prefetched, or None.
+    n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell; deep: None where it is the usual
+    one.  low: the corner of the grid.  days: buckets, a power of two.  lanes: eight pairs at a time, or None.  look_ahead: days
+    at which memory is prefetched, or None.
     """
 
     n: int
@@ -110,22 +111,15 @@ class Grid(NamedTuple):
     look_ahead: object
 
 
-(
-    STATUS_BUDGET,
-    STATUS_LIMIT,
-    STATUS_EVENTS,
-    STATUS_ROWS,
-    STATUS_TIE,
-    STATUS_FULL,
-    STATUS_LEFT,
-    STATUS_STUCK,
-    STATUS_IDLE,
-) = range(9)
-"""Why a kernel returned: its steps are done; no event before the limit; enough events; the row buffer is full; contacts of equal
-time; a full cell, or a disk that has left the grid; an instant does not end; a long time without events."""
+STATUS_BUDGET, STATUS_LIMIT, STATUS_EVENTS, STATUS_ROWS = 0, 1, 2, 3
+"""Why a kernel returned: its steps are done; no event before the limit; enough events; the row buffer is full."""
+
+STATUS_TIE, STATUS_FULL, STATUS_STUCK, STATUS_IDLE = 4, 5, 6, 7
+"""Contacts of equal time; a full cell, or a disk that has left the grid; an instant does not end; a long time without events."""
 
 DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS = range(12)
-"""Places in `counts`; ROW_COUNT: rows written into the buffer by the last call, ROOM: how many fit; DISK: the one that a status is about."""
+"""Places in `counts`.  ROW_COUNT: rows written into the buffer by the last call; ROOM: how many fit; DISK: the one that a
+status is about."""
 
 NOW, DEEPEST, OUTER_X, OUTER_Y = range(4)
 """Places in `sums`: the time, the deepest overlap, momentum from outside."""
