@@ -178,7 +178,8 @@ class ReferenceSession:
         return remainder_since(self.state.epoch, self.stage.epoch_length, until, self.stage.start_time)
 
     def _give_up(self, i: int) -> str:
-        stopped, self.reason = endless(self.stage, i, self.state.place(i, self.state.now))
+        x, y = self.state.place(i, self.state.now)
+        stopped, self.reason = endless(self.stage, i, (float(x), float(y)))
         return stopped
 
     @property
