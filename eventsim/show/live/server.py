@@ -114,8 +114,14 @@ class House:
                 await self._world(request).log_to(str(path))
             except EventsimError as error:
                 raise web.HTTPNotFound(text=str(error)) from None
-            response = web.FileResponse(path, headers=_attachment(path.name))
+            response = web.StreamResponse(headers=_attachment(path.name))
+            response.content_length = path.stat().st_size
+            response.content_type = "application/octet-stream"
             await response.prepare(request)
+            with path.open("rb") as file:
+                while block := file.read(MOST_BYTES):
+                    await response.write(block)
+            await response.write_eof()
             return response
 
     def _world(self, request: web.Request) -> World:
