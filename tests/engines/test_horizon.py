@@ -1,0 +1,51 @@
+"""The horizon of float64, against the first event at which float64 leaves the proven order."""
+
+import pytest
+
+from eventsim.engines.base import Stop
+from eventsim.engines.certified import CertifiedSession
+from eventsim.engines.horizon import horizon
+from eventsim.record.compare import agreement
+from eventsim.scene.gallery import gallery
+from eventsim.scene.stage import stage_of
+from tests.engines.scenes import lattice_gas, rows_of
+
+SHAPES = ((8, 0.2), (16, 0.3), (24, 0.4), (16, 0.5), (12, 0.1))
+
+
+def true_difference(scene, events):
+    session = CertifiedSession(stage_of(scene))
+    while session.advance(Stop(None, events), 1 << 62) is None:
+        pass
+    return agreement(session.take_rows(), rows_of(scene, events=events + 100)).difference
+
+
+@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(10), marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("n", "eta"), SHAPES)
+def test_the_horizon_is_neither_late_nor_half(n, eta, seeds):
+    for seed in seeds:
+        scene = lattice_gas(n, eta, seed=seed)
+        true, told = true_difference(scene, 60 * n), horizon(scene, Stop(None, 100 * n))
+        assert true is not None
+        assert told.event is not None
+        print(f"n = {n}, eta = {eta}, seed {seed}: true {true}, told {told.event}")
+        assert 0.5 * true <= told.event <= 1.1 * true
+
+
+def test_the_horizon_has_the_time_of_its_event():
+    scene = lattice_gas(16, 0.3, seed=1)
+    told = horizon(scene, Stop(None, 1000))
+    assert told.time == rows_of(scene, events=1000)["time"][told.event]
+
+
+def test_a_run_that_ends_before_has_no_horizon():
+    told = horizon(lattice_gas(16, 0.3, seed=1), Stop(None, 100))
+    assert (told.event, told.time) == (None, None)
+    assert told.events >= 100
+    scene = gallery("two-disks")
+    assert horizon(scene, Stop(scene.until, None)).event is None
+
+
+def test_the_horizon_is_the_same_twice():
+    scene = lattice_gas(8, 0.3, seed=4)
+    assert horizon(scene, Stop(None, 500)) == horizon(scene, Stop(None, 500))
