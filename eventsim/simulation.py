@@ -59,7 +59,8 @@ def simulate(
     meter = Meter(scene, None if measure is True else measure)
     wishes.on_event = _both(meter.write, on_event)
     run = engine_named(engine).run(scene, stop, wishes, **options)
-    run.measures = meter.finish(run.time - scene.start_time)
+    if run.time > scene.start_time:
+        run.measures = meter.finish(run.time - scene.start_time)
     return run
 
 

@@ -56,7 +56,8 @@ def measured(
         click.get_current_context().exit(INTERRUPTED)
     if run.reason is not None and not quiet:
         click.echo(f"stopped early: {run.reason}", err=True)
-    assert run.measures is not None
+    if run.measures is None:
+        raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
     return run.measures, structure_of(scene, run.state) if structure else None
 
 

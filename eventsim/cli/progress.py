@@ -28,6 +28,10 @@ class ProgressBar:
 
     def __call__(self, fraction: float | None, events: int, time: float) -> None:
         """Show the fraction done (None: unknown), the number of events so far and the scene's clock."""
+        self.show(fraction, f"{events:,} events, clock {time:.6g}")
+
+    def show(self, fraction: float | None, text: str) -> None:
+        """Show the fraction done (None: unknown) and a text beside the bar."""
         if not self._wanted:
             return
         if self._bar is None or self._task is None:
@@ -36,7 +40,7 @@ class ProgressBar:
             self._bar, self._task = _new_bar()
         done = None if fraction is None else min(max(fraction, 0.0), 1.0)
         total = None if done is None else 1.0
-        self._bar.update(self._task, completed=done, total=total, events=f"{events:,}", clock=f"{time:.6g}")
+        self._bar.update(self._task, completed=done, total=total, text=text)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -53,10 +57,30 @@ def _new_bar() -> tuple[Progress, TaskID]:
     bar = Progress(
         BarColumn(),
         TaskProgressColumn(),
-        TextColumn("{task.fields[events]} events, clock {task.fields[clock]}"),
+        TextColumn("{task.fields[text]}"),
         TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
     )
     bar.start()
-    return bar, bar.add_task("", total=None, events="0", clock="")
+    return bar, bar.add_task("", total=None, text="")
+
+
+class TaskBar:
+    """A callback (done, all) that draws a bar of tasks; nothing where stderr is not a terminal."""
+
+    def __init__(self, quiet: bool = False) -> None:
+        self._bar = ProgressBar(quiet)
+
+    def __enter__(self) -> TaskBar:
+        return self
+
+    def __call__(self, done: int, total: int) -> None:
+        """Show how many of the tasks are done."""
+        self._bar.show(done / total, f"{done:,} of {total:,} runs")
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Take the bar away."""
+        self._bar.__exit__(kind, error, trace)

@@ -54,6 +54,17 @@ class ParquetSink(FileSink):
             self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
 
 
+def write_plain_table(path: Path, columns: dict[str, list[Any]], metadata: dict[str, str]) -> None:
+    """Write a table that is no log; None is null.  A column of mixed types becomes text."""
+    arrays = {}
+    for name, values in columns.items():
+        try:
+            arrays[name] = pa.array(values)
+        except (pa.ArrowInvalid, pa.ArrowTypeError):
+            arrays[name] = pa.array([None if value is None else str(value) for value in values])
+    pq.write_table(pa.table(arrays).replace_schema_metadata(metadata), path)
+
+
 def read_parquet(path: Path) -> EventLog:
     """Read a parquet log; raise LogError where it is none."""
     try:

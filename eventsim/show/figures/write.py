@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
 
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from eventsim.errors import EventsimError
 from eventsim.record.log import EventLog
@@ -24,16 +26,19 @@ def write_figure(log: EventLog, kind: str, path: str | PathLike[str]) -> None:
     Raises EventsimError where there is no such kind, the log does not hold what the figure shows, the suffix is unknown
     or the file cannot be written.
     """
-    file = Path(path)
-    suffix = suffix_of(file, SUFFIXES, "a figure")
     if kind not in TITLES:
         raise EventsimError(f"there is no figure {kind!r}; there are {', '.join(TITLES)}")
     module = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}")
-    # A file that depends on the log alone: no date, no random names inside an svg.
+    save_figure(lambda figure: module.draw(figure, log.expand()), Path(path))
+
+
+def save_figure(draw: Callable[[Figure], None], file: Path) -> None:
+    """Write the figure that `draw` fills, to a file that depends on nothing else: no date, no random names inside an svg."""
+    suffix = suffix_of(file, SUFFIXES, "a figure")
     with rc_context({"svg.hashsalt": "eventsim", "svg.fonttype": "path"}):
         figure = new_figure()
         FigureCanvasAgg(figure)
-        module.draw(figure, log.expand())
+        draw(figure)
         dates = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
         with whole_file(file) as part:
             figure.savefig(part, format=suffix[1:], metadata=dates[suffix])

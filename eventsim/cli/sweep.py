@@ -1,0 +1,136 @@
+"""`eventsim sweep`: a scene for many values and seeds; one table of measures."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import click
+
+from eventsim.cli.exits import BAD_INPUT, INTERRUPTED
+from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.target import writable
+
+if TYPE_CHECKING:
+    from eventsim.scene import Scene
+
+TABLE_SUFFIXES = (".csv", ".parquet")
+FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
+
+SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given several times: every combination."
+
+
+@click.command()
+@click.argument("scene")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUES", help=SETTINGS_HELP)
+@click.option("--replicas", type=click.IntRange(min=1), default=1, show_default=True, help="Runs of each combination.")
+@click.option("--seed", type=click.IntRange(min=0), default=1, metavar="S", help="Every run's seed is derived from it.")
+@click.option("--out", required=True, metavar="FILE", help="The table: FILE.csv or .parquet.")
+@click.option("--figure", metavar="FILE", help="Draw Z against the packing fraction to FILE.png, .svg or .pdf.")
+@click.option("--until", type=float, metavar="T", help="Stop every run at this time.")
+@click.option("--events", type=click.IntRange(min=1), metavar="N", help="Stop every run after N events.")
+@click.option("--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this time at the beginnings.")
+@click.option("--engine", default="auto", show_default=True, metavar="NAME", help="Which engine simulates.")
+@click.option("--workers", type=click.IntRange(min=1), metavar="W", help="Processes; default: one for each core.")
+@click.option("--dask", metavar="ADDRESS", help="Let a Dask cluster do it, such as tcp://host:8786.")
+@json_option
+@quiet_option
+def command(
+    scene: str,
+    settings: tuple[str, ...],
+    replicas: int,
+    seed: int,
+    out: str,
+    figure: str | None,
+    until: float | None,
+    events: int | None,
+    discard: float | None,
+    engine: str,
+    workers: int | None,
+    dask: str | None,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Run SCENE for every combination of values, several times each, and write one table of measures.
+
+    One row a run: the settings, replica and seed, what `eventsim measure` measures with its errors and theory, and
+    in the column `failed` the reason where a run could not be done. The table does not depend on how many workers
+    there are, nor on interrupts: the same command again goes on where the last one was stopped (FILE.journal).
+
+    \b
+    Examples:
+      eventsim sweep periodic-fluid --set packing_fraction=0.1:0.6:6 --replicas 4 --events 200000 --out z.csv --figure z.png
+      eventsim sweep gas.toml --set gas.0.count=100,1000 --set restitution=0.9,0.95 --out cooling.parquet
+      eventsim sweep gas.toml --set gas.0.radius=0.01:0.02:11 --out gas.csv --dask tcp://head:8786
+
+    \b
+    Keys of --json:
+      scene, out, figure     as typed; the files written (figure: null without)
+      runs, failed           rows of the table; how many of them failed
+      equilibrated           how many of the others nothing speaks against
+      elapsed_s              seconds
+
+    Exit codes: 0 done; 2 bad usage, scene or file, or every run failed; 130 interrupted (what was done is kept).
+    """
+    target = writable(out, "--out", TABLE_SUFFIXES)
+    drawn = writable(figure, "--figure", FIGURE_SUFFIXES)
+    assert target is not None
+    if dask is not None and workers is not None:
+        raise click.UsageError("--workers is for this machine, --dask for a cluster: give one of them")
+
+    from functools import partial
+    from time import perf_counter
+
+    from eventsim.cli.progress import TaskBar
+    from eventsim.cli.words import as_json_text, plural
+    from eventsim.sweep import sweep
+    from eventsim.sweep.dask import dask_executor
+    from eventsim.sweep.grid import grid_of
+
+    began = perf_counter()
+    grid = grid_of(settings)
+    try:
+        with dask_executor(dask) as executor, TaskBar(quiet=quiet) as progress:
+            rows = sweep(
+                partial(_scene, scene),
+                grid,
+                replicas=replicas,
+                seed=seed,
+                until=until,
+                events=events,
+                discard=discard,
+                engine=engine,
+                out=target,
+                workers=workers or os.cpu_count() or 1,
+                executor=executor,
+                progress=progress,
+                name=scene,
+            )
+    except KeyboardInterrupt:
+        click.echo(f"interrupted; the same command again goes on from here ({target}.journal)", err=True)
+        click.get_current_context().exit(INTERRUPTED)
+    if drawn is not None:
+        from eventsim.show.figures.equation_of_state import write_equation_of_state
+
+        write_equation_of_state(rows, drawn, scene)
+    failed = sum(row["failed"] is not None for row in rows)
+    settled = sum(row.get("equilibrated") is True for row in rows)
+    if as_json:
+        data = {"scene": scene, "out": str(target), "figure": None if drawn is None else str(drawn)}
+        counts = {"runs": len(rows), "failed": failed, "equilibrated": settled}
+        click.echo(as_json_text({**data, **counts, "elapsed_s": perf_counter() - began}))
+    elif not quiet:
+        why = next((f" (the first: {row['failed']})" for row in rows if row["failed"] is not None), "")
+        click.echo(
+            f"{plural(len(rows), 'run')} of {scene} in {target}: {settled} equilibrated, {failed} failed{why};"
+            f" {perf_counter() - began:.3g} s"
+        )
+    if failed == len(rows):
+        click.get_current_context().exit(BAD_INPUT)
+
+
+def _scene(scene: str, settings: tuple[str, ...], seed: int | None) -> Scene:
+    """The scene of a task, in whichever process."""
+    from eventsim.cli.choose import chosen_scene
+
+    return chosen_scene(scene, settings, seed)

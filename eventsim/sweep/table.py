@@ -1,0 +1,88 @@
+"""The table of a sweep: one row a run, as CSV or Parquet, with where it comes from."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from eventsim.errors import EventsimError
+from eventsim.record.files.sink import PART
+from eventsim.sweep.task import Cell, Row
+
+SUFFIXES = (".csv", ".parquet")
+FORMAT = 1
+
+
+def check_suffix(path: Path) -> Path:
+    """The path of a table; EventsimError where it is none that can be written."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise EventsimError(f"{path}: a table is written as {' or '.join(SUFFIXES)}")
+    if not path.parent.is_dir():
+        raise EventsimError(f"{path}: there is no directory {path.parent}")
+    return path
+
+
+def columns_of(rows: Sequence[Row]) -> list[str]:
+    """All columns, in the order in which the rows bring them."""
+    return list(dict.fromkeys(key for row in rows for key in row))
+
+
+def write_table(path: Path, rows: Sequence[Row], provenance: Mapping[str, object]) -> None:
+    """Write rows to .csv (missing: empty; a first line that begins with "# " carries the provenance) or .parquet."""
+    text = json.dumps(provenance)
+    part = path.with_name(path.name + PART)
+    try:
+        if path.suffix.lower() == ".csv":
+            with part.open("w", newline="", encoding="utf-8") as file:
+                file.write(f"# {text}\n")
+                writer = csv.DictWriter(file, columns_of(rows), restval="", lineterminator="\n")
+                writer.writeheader()
+                writer.writerows({key: _text(value) for key, value in row.items()} for row in rows)
+        else:
+            from eventsim.record.files.parquet import write_plain_table
+
+            columns = {key: [_missing(row.get(key)) for row in rows] for key in columns_of(rows)}
+            write_plain_table(part, columns, {"eventsim_sweep": text})
+        os.replace(part, path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise EventsimError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+
+def load_table(path: str | Path) -> list[Row]:
+    """The rows of a table that was written as .csv; missing entries are None."""
+    try:
+        with Path(path).open(newline="", encoding="utf-8") as file:
+            lines = (line for line in file if not line.startswith("# "))
+            return [{key: _cell(text) for key, text in row.items()} for row in csv.DictReader(lines)]
+    except OSError as error:
+        raise EventsimError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+
+
+def _text(value: Cell) -> str:
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def _missing(value: Cell) -> Cell:
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _cell(text: str) -> Cell:
+    if text == "":
+        return None
+    if text in ("true", "false"):
+        return text == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

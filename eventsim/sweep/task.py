@@ -1,0 +1,92 @@
+"""One task of a sweep: make the scene, run it, measure it, and say it in a row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from eventsim import __version__
+from eventsim.errors import EventsimError
+from eventsim.scene.scene import Scene
+from eventsim.simulation import simulate
+from eventsim.sweep.grid import Task
+
+Cell: TypeAlias = float | int | str | bool | None
+Row: TypeAlias = dict[str, Cell]
+
+MakeScene: TypeAlias = Callable[[tuple[str, ...], int | None], Scene]
+"""(settings, seed) -> scene; it travels to other processes, so it must be picklable: partial(load_scene, path) is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What all tasks have in common.  until, events: None for what the scene says.  discard: as of `Meter`."""
+
+    make: MakeScene
+    until: float | None = None
+    events: int | None = None
+    discard: float | None = None
+    engine: str = "auto"
+
+
+def row_of(plan: Plan, task: Task) -> Row:
+    """The row of a task: settings, provenance, measures with errors; one that fails says why in the column `failed`.
+
+    Only what the scene, the seed and the version determine is in it: no times of the day, no speed of the machine.
+    """
+    row = first_cells(task)
+    try:
+        row |= _measured(plan, task)
+    except EventsimError as error:
+        row["failed"] = " ".join(str(error).split())
+    except (ArithmeticError, LookupError, TypeError, ValueError, MemoryError) as error:
+        row["failed"] = f"{type(error).__name__}: {error}"
+    return row
+
+
+def first_cells(task: Task) -> Row:
+    """What every row of a task begins with."""
+    row: Row = {key: _cell(value) for key, value in task.settings}
+    return row | {"replica": task.replica, "seed": task.seed, "version": __version__, "failed": None}
+
+
+def _measured(plan: Plan, task: Task) -> Row:
+    scene = plan.make(task.overrides, task.seed)
+    measure = True if plan.discard is None else plan.discard
+    run = simulate(scene, until=plan.until, events=plan.events, engine=plan.engine, measure=measure)
+    if run.stopped == "interrupted":
+        raise KeyboardInterrupt
+    measures = run.measures
+    if measures is None:
+        raise EventsimError("no time passes in this run")
+    row: Row = {
+        "disks": measures.disks,
+        "packing_fraction": measures.packing_fraction,
+        "events": run.counters.events,
+        "pair_contacts": run.counters.pair_contacts,
+        "time": run.time,
+        "stopped": run.stopped,
+        "energy_residual": run.residuals.energy,
+        "momentum_residual": run.residuals.momentum,
+        "max_overlap": run.residuals.max_overlap,
+        "discarded": measures.discarded,
+        "equilibrated": measures.equilibrated,
+        "doubts": "; ".join(measures.doubts) or None,
+    }
+    for quantity in measures.quantities:
+        row[quantity.name] = quantity.value
+        row[f"{quantity.name}_error"] = quantity.error
+        if quantity.theory is not None:
+            row[f"{quantity.name}_theory"] = quantity.theory
+    return row
+
+
+def _cell(text: str) -> Cell:
+    """A setting's value as a number where it is one."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
