@@ -1,0 +1,105 @@
+"""A case of the catalogue: why methods fail on a scene, what is true, and how far off an engine may be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from eventsim.engines.base import Run
+from eventsim.scene import Scene
+from eventsim.simulation import simulate
+
+GIVES_UP = ("collapse", "digits")
+"""Reasons to stop with which an engine says that it can no longer tell."""
+
+
+class GaveUpError(Exception):
+    """An engine stopped early with a reason."""
+
+    def __init__(self, stopped: str, reason: str | None) -> None:
+        super().__init__(reason or stopped)
+        self.stopped = stopped
+
+
+class TimeUpError(Exception):
+    """An engine took longer than it was given."""
+
+
+class Bench:
+    """One engine, ready for the runs of one case; keeps the worst change of energy that it saw.
+
+    limit: seconds that all runs together may take; what comes before the first events of a run, compiling, is not counted.
+    """
+
+    def __init__(self, engine: str, limit: float) -> None:
+        self.engine = engine
+        self.energy = 0.0
+        self._left = limit
+        self._since: float | None = None
+
+    def run(
+        self,
+        scene: Scene,
+        until: float | None = None,
+        events: int | None = None,
+        log: bool = False,
+        may_give_up: bool = False,
+    ) -> Run:
+        """Simulate a scene; raises GaveUpError where the engine stops early, unless that is what the case is about."""
+        self._since = None
+        run = simulate(scene, until, events, engine=self.engine, log=log, progress=self._watch)
+        change = run.residuals.energy
+        if change is not None and abs(change) > abs(self.energy):
+            self.energy = change
+        if run.stopped in GIVES_UP and not may_give_up:
+            raise GaveUpError(run.stopped, run.reason)
+        return run
+
+    def _watch(self, _share: float | None, _events: int, _time: float) -> None:
+        """Count the seconds since the last look; raises TimeUpError where none are left."""
+        now = perf_counter()
+        if self._since is not None:
+            self._left -= now - self._since
+        self._since = now
+        if self._left < 0.0:
+            raise TimeUpError
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A hard scene, or a family of them.
+
+    Attributes:
+        name: as in `eventsim stress NAME`.
+        title: what happens, in a few words.
+        why: why methods fail on it.
+        oracle: what is true, and how that is known.
+        tolerance: the largest error that counts as right, and `because`: where it comes from.
+        judge: runs an engine and returns its error: lengths in reaches, velocities in typical ones, counts as they are.
+        refusals: reasons to stop that are a right answer here.
+    """
+
+    name: str
+    title: str
+    why: str
+    oracle: str
+    tolerance: float
+    because: str
+    judge: Callable[[Bench], float]
+    refusals: tuple[str, ...] = ()
+
+
+def off(got: Any, expected: Any) -> float:
+    """The largest difference between two arrays; inf where they differ in shape or one is not finite."""
+    one, other = np.asarray(got, float), np.asarray(expected, float)
+    if one.shape != other.shape:
+        return np.inf
+    if one.size == 0:
+        return 0.0
+    with np.errstate(invalid="ignore"):
+        worst = float(np.abs(one - other).max())
+    return worst if worst == worst else np.inf
