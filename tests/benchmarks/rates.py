@@ -74,7 +74,7 @@ def measure(n: int, eta: float, contacts: int, repeats: int, folder: str | None,
         ("fast", False): engine_advance("fast", scene, False),
         ("fast", True): engine_advance("fast", scene, True),
     }
-    share = {key: 1.0 for key in engines}
+    share = dict.fromkeys(engines, 1.0)
     if n <= 10_000:
         engines["reference", False] = engine_advance("reference", scene, False)
         share["reference", False] = 0.01

@@ -118,7 +118,7 @@ STATUS_TIE, STATUS_FULL, STATUS_STUCK, STATUS_IDLE = 4, 5, 6, 7
 """Contacts of equal time; a full cell, or a disk that has left the grid; an instant does not end; a long time without events."""
 
 DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS = range(12)
-"""Places in `counts`.  ROW_COUNT: rows written into the buffer by the last call; ROOM: how many fit; DISK: the one that a
+"""Places in `counts`.  ROW_COUNT: rows in the buffer; ROOM: how many fit; DISK: the one that a
 status is about."""
 
 NOW, DEEPEST, OUTER_X, OUTER_Y = range(4)

@@ -104,7 +104,8 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
     day, now, deepest = counts[DAY], sums[NOW], sums[DEEPEST]
     begun = counts[EVENTS]
     events, walls, wraps, stale = begun, 0, 0, 0
-    bound = min(target, begun + counts[ROOM])
+    first_slot = counts[ROW_COUNT] - begun
+    bound = min(target, counts[ROOM] - first_slot)
     status = STATUS_BUDGET
     steps = 0
     while steps < budget:
@@ -137,7 +138,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             else:
                 take(m, i)
                 take(m, code)
-                overlap = resolve_pair(m, rules, sums, i, code, now, events, events - begun)
+                overlap = resolve_pair(m, rules, sums, i, code, now, events, first_slot + events)
                 deepest = overlap if overlap > deepest else deepest
                 events += 1
                 predict(m, grid, rules, code, now, now)
@@ -147,7 +148,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 status = STATUS_TIE
                 break
             take(m, i)
-            resolve_wall(m, rules, sums, i, code, now, events, events - begun)
+            resolve_wall(m, rules, sums, i, code, now, events, first_slot + events)
             walls += 1
             events += 1
         else:
@@ -169,7 +170,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
     counts[PAIRS] += events - begun - walls
     counts[WALLS] += walls
     counts[WINDOW_ROWS] += events - begun
-    counts[ROW_COUNT] = events - begun
+    counts[ROW_COUNT] += events - begun
     counts[STALE] += stale
     counts[WRAPS] += wraps
     counts[STEPS] += steps

@@ -27,7 +27,7 @@ from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import clock_times
 from eventsim.scene.stage import Stage
 
-BUFFER = 1 << 15
+BUFFER = 1 << 16
 """Rows in the buffer that kernels fill."""
 
 FEW_DISKS = 24
@@ -36,7 +36,7 @@ FEW_DISKS = 24
 COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
 """What a snapshot has one number of for every disk."""
 
-FOREVER = 1 << 62
+FOREVER, LARGEST_BUDGET = 1 << 60, 1 << 40
 FEW_STEPS = 256
 TOO_FEW_DAYS, TOO_MANY_DAYS = 0.5, 6.0
 """Days that an event may take, on the average of so many steps; outside, the length of a day is chosen anew."""
@@ -76,10 +76,11 @@ class FastSession:
         self._rules = _rules(stage)
         self._features = _features(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
-        self._buffer = np.zeros(BUFFER if keep_rows else 0, ROW)
-        self._counts[layout.ROOM] = BUFFER if keep_rows else FOREVER
+        self._buffer = np.empty(BUFFER if keep_rows else 0, ROW)
+        self._counts[layout.ROOM] = BUFFER if keep_rows else 2 * FOREVER
         self._blocks: list[Rows] = []
         self.compile_s = 0.0
+        self._dated = 0
         self._days = self._steps = 0
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
@@ -105,7 +106,7 @@ class FastSession:
     def _advance(self, stop: Stop, budget: int) -> str | None:
         state, counts = self.state, self._counts
         target = FOREVER if stop.events is None else stop.events
-        last = int(counts[layout.STEPS]) + budget
+        last = int(counts[layout.STEPS]) + min(budget, LARGEST_BUDGET)
         while counts[layout.STEPS] < last:
             until = self._remainder(stop.until)
             turns = state.window_end <= until
@@ -113,6 +114,9 @@ class FastSession:
             status = self._run(limit, target, last - int(counts[layout.STEPS]))
             if status == layout.STATUS_EVENTS:
                 return "events"
+            if status == layout.STATUS_ROWS:
+                self._flush()
+                return None  # rows are best drained while they are in the caches
             if status == layout.STATUS_TIE:
                 if (i := self._resolve_instant()) is not None:
                     return self._give_up(i)
@@ -140,7 +144,6 @@ class FastSession:
             self._arrays, self._grid, self._rules, counts, self._sums, limit, target, budget
         )
         self.state.now = float(self._sums[layout.NOW])
-        self._flush()
         self._days += int(counts[layout.DAY]) - day
         self._steps += int(counts[layout.STEPS]) - steps
         if self._steps > max(self.state.n, FEW_STEPS):
@@ -164,6 +167,7 @@ class FastSession:
         Returns a disk whose contacts at this instant do not end.
         """
         state, now = self.state, self.state.now
+        self._flush()
         generation = self._generation()
         resolver = self._opened_resolver()
         waiting = [int(i) for i in self._find(due_at)[:, 0]]
@@ -235,19 +239,29 @@ class FastSession:
         counters.deepest_overlap = float(self._sums[layout.DEEPEST])
         counters.outer_momentum = [float(self._sums[layout.OUTER_X]), float(self._sums[layout.OUTER_Y])]
 
-    def _flush(self) -> None:
-        """Empty the buffer."""
+    def _date_rows(self) -> None:
+        """Note the epoch in the rows of the buffer that do not have it yet."""
         count = int(self._counts[layout.ROW_COUNT])
-        self._counts[layout.ROW_COUNT] = 0
+        if self._keep_rows and count > self._dated:
+            self._buffer["epoch"][self._dated : count] = self.state.epoch
+        self._dated = count
+
+    def _flush(self) -> None:
+        """Hand the rows of the buffer on; the kernels get a new one."""
+        self._date_rows()
+        count = self._dated
+        self._counts[layout.ROW_COUNT] = self._dated = 0
         if count and self._keep_rows:
-            rows = self._buffer[:count].copy()
-            rows["epoch"] = self.state.epoch
+            rows = self._buffer[:count]
             rows["time"] = clock_times(rows["epoch"], rows["remainder"], self.stage.epoch_length, self.stage.start_time)
             self._blocks.append(rows)
+            self._buffer = np.empty(BUFFER, ROW)
+            self._arrays = self._arrays._replace(rows=self._buffer.view(np.uint8))
 
     def _turn_over(self) -> None:
         state = self.state
         self.counters.turnovers += 1
+        self._date_rows()
         end = state.window_end
         turn_over(self._arrays, self._grid, self._rules, end)
         state.epoch += 1 << state.window
@@ -379,6 +393,7 @@ class FastSession:
 
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of disk i from outside, now."""
+        self._flush()
         resolver = self._opened_resolver()
         resolver.kick(i, vx, vy)
         self._keep(resolver)
@@ -387,6 +402,7 @@ class FastSession:
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
+        self._flush()
         blocks, self._blocks = self._blocks, []
         if len(blocks) == 1:
             return blocks[0]
