@@ -53,6 +53,7 @@ class LivePlayer extends Player {
   await(time, playing) {
     this.pause();
     this.awaited = { time, playing, event: false, tries: 0 };
+    this._report(true);
     this._extend();
   }
 
@@ -69,6 +70,7 @@ class LivePlayer extends Player {
 
   pause() {
     super.pause();
+    this._show();
     this._report(true);
   }
 

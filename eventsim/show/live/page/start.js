@@ -96,6 +96,8 @@ class LiveView {
 
   _act(message) {
     this.acts.push(message);
+    // Done once there is a connection again; all but a throw begin a new run, whose time begins there.
+    if (this.resume && message.type !== "throw") this.resume.time = 0;
     this.link.ask(message);
   }
 
