@@ -1,0 +1,150 @@
+"""The chart: speed against accuracy on several scenes, all engines, and where each of them is the right choice."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from eventsim.engines import ENGINES, STEPPED
+from eventsim.engines.base import Session, Stop
+from eventsim.errors import EventsimError
+from eventsim.record.events import Floats
+from eventsim.scene import Scene
+from eventsim.scene.gallery import gallery
+from eventsim.scene.stage import Stage, stage_of
+from eventsim.validate.compare import Tell, truth_to_compare
+from eventsim.validate.entrants import ENTRANTS, Entrant
+from eventsim.validate.follow import follow, position_errors
+from eventsim.validate.pile import pile
+from eventsim.validate.precision import Curves, Task, curves
+from eventsim.validate.truth import best_engine, truth_of
+
+CONTACTS = 3.0
+"""Mean free times after which trajectories are compared, where the task does not say."""
+
+CHAOS_CONTACTS = 48
+CHAOS_STEPS = (0.1, 0.01)
+"""The panel on chaos: contacts per disk, and steps (in radii) of `stepped-located`."""
+
+SIZES = (30, 100, 300, 1000, 3000)
+RATE_CONTACTS, RATE_STEP = 4.0, 0.05
+"""The panel on rates: numbers of disks; mean free times that are simulated; the step (in radii) of stepped engines."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chaos:
+    """Errors against contacts per disk, per engine; slope: bits lost for each contact of a disk; horizon: where float64 ends."""
+
+    contacts: Floats
+    errors: dict[str, Floats]
+    slope: float
+    horizon: float
+
+
+@dataclass(slots=True)
+class Chart:
+    """All that the figure shows; rates: contacts per second against the number of disks, per engine."""
+
+    tasks: list[Curves] = field(default_factory=list)
+    chaos: Chaos | None = None
+    rates: dict[str, list[tuple[int, float]]] = field(default_factory=dict)
+
+    @property
+    def left_out(self) -> list[str]:
+        """Who could not take part, a sentence each, once."""
+        return list(dict.fromkeys(f"{c.task.name}: {text}" for c in self.tasks for text in c.left_out))
+
+
+def default_tasks() -> list[Task]:
+    """The scenes of the usual chart: not a home game."""
+    galperin = gallery("galperin")
+    assert galperin.until is not None
+    dense = gallery("periodic-fluid", n=100, packing_fraction=0.88)
+    return [
+        task_of(gallery("gas", n=100), "gas", "100 disks, packing 0.3, after 3 contacts a disk"),
+        Task("break", gallery("break"), "trajectory", 0.5, "15 touching disks and a cue, 0.5 s"),
+        Task("galperin", galperin, "trajectory", galperin.until, "mass ratio 100, after all 31 contacts"),
+        task_of(gallery("gas", n=100), "gas, long", "100 disks, packing 0.3, 100 contacts a disk", "pressure", 100.0),
+        task_of(dense, "dense", "100 disks, packing 0.88, 100 contacts a disk", "pressure", 100.0),
+        Task("pile", pile(), "unrest", 20.0, "20 disks that fall, e = 1/2, until they rest"),
+    ]
+
+
+def task_of(
+    scene: Scene, name: str, words: str = "", measure: str = "trajectory", contacts: float = CONTACTS
+) -> Task:
+    """The task on a scene after so many contacts a disk."""
+    truth, _, _ = truth_to_compare(scene, None)
+    return Task(name, scene, measure, scene.start_time + contacts * truth.mean_free_time, words)
+
+
+def chart_of(
+    tasks: Sequence[Task], patience_s: float, further: bool = True, tell: Tell = lambda _: None
+) -> Chart:
+    """Measure all tasks; further: also chaos and rates, on the gas."""
+    entrants = list(ENTRANTS.values())
+    chart = Chart([curves(task, entrants, patience_s, tell) for task in tasks])
+    if further:
+        tell("chaos")
+        chart.chaos = chaos()
+        chart.rates = rates(patience_s, tell)
+    return chart
+
+
+def chaos(n: int = 100) -> Chaos:
+    """Errors of the event-driven run and of located steps in a gas, contact by contact."""
+    scene = gallery("gas", n=n)
+    free = truth_to_compare(scene, scene.until)[0].mean_free_time
+    contacts = np.arange(1.0, CHAOS_CONTACTS + 1.0)
+    truth = truth_of(scene, (contacts * free).tolist())
+    errors = {"event-driven": truth.uncertainty}
+    entrant = ENTRANTS["stepped-located"]
+    for step in CHAOS_STEPS:
+        dt = step * truth.radius / truth.speed
+        run = follow(STEPPED[entrant.engine].open(truth.stage, keep_rows=False, **entrant.at(dt)), truth.times.tolist())
+        errors[f"{entrant.label}, {step:g} radii a step"] = position_errors(truth.stage, run, truth.run)
+    growing = (truth.uncertainty > 1e-13) & (truth.uncertainty < 1e-3)
+    slope = float(np.polyfit(contacts[growing], np.log2(truth.uncertainty[growing]), 1)[0]) if growing.sum() > 2 else math.nan
+    return Chaos(contacts, errors, slope, (truth.horizon - scene.start_time) / free)
+
+
+def rates(patience_s: float, tell: Tell = lambda _: None) -> dict[str, list[tuple[int, float]]]:
+    """Contacts of a gas that are simulated per second, by engine and number of disks."""
+    found: dict[str, list[tuple[int, float]]] = {}
+    for n in SIZES:
+        scene = gallery("gas", n=n)
+        stage = stage_of(scene)
+        probe = ENGINES[best_engine()].run(scene, Stop(events=4 * n))
+        free = probe.time * n / (2 * probe.counters.pair_contacts + probe.counters.wall_contacts)
+        until = RATE_CONTACTS * free
+        truth = follow(ENGINES[best_engine()].open(stage, keep_rows=False), [until])
+        contacts = truth.counters.pair_contacts + truth.counters.wall_contacts
+        speed = float(np.sqrt(np.mean(stage.vx**2 + stage.vy**2)))
+        dt = RATE_STEP * float(stage.radius[0]) / speed
+        for label, opened in _contestants(dt):
+            if label in found and found[label][-1][0] < SIZES[max(SIZES.index(n) - 1, 0)]:
+                continue  # it had no patience left
+            tell(f"rate of {label} with {n} disks")
+            try:
+                run = follow(opened(stage), [until], patience_s)
+            except EventsimError:
+                continue
+            if run.stopped is None:
+                found.setdefault(label, []).append((n, contacts / max(run.elapsed_s, 1e-9)))
+    return found
+
+
+def _contestants(dt: float) -> list[tuple[str, Callable[[Stage], Session]]]:
+    """Who takes part in the panel on rates: (label, how to open it on a stage)."""
+
+    def event_driven(name: str) -> Callable[[Stage], Session]:
+        return lambda stage: ENGINES[name].open(stage, keep_rows=False)
+
+    def stepped(entrant: Entrant) -> Callable[[Stage], Session]:
+        return lambda stage: STEPPED[entrant.engine].open(stage, keep_rows=False, **entrant.at(dt))
+
+    named = [(name, event_driven(name)) for name in ("reference", "fast")]
+    return named + [(label, stepped(ENTRANTS[label])) for label in ("stepped", "frames", "pymunk")]

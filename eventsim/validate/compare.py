@@ -1,0 +1,173 @@
+"""Validate: the event-driven run of a scene against stepped engines over a list of steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from eventsim.engines import ENGINES, STEPPED
+from eventsim.engines.base import Stop
+from eventsim.errors import EventsimError
+from eventsim.record.events import Rows
+from eventsim.scene import Scene
+from eventsim.validate.contacts import RESTARTS, Census, census, longest_stuck
+from eventsim.validate.entrants import Entrant, able
+from eventsim.validate.follow import Followed, follow, position_errors
+from eventsim.validate.gauges import collision_rate, kinetic_energy, virial_pressure
+from eventsim.validate.order import fitted_order
+from eventsim.validate.truth import Truth, best_engine, truth_of
+
+USUAL_STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
+"""Steps in the time in which a typical disk flies its radius."""
+
+CHECKS = (1.0, 2.0, 4.0, 8.0)
+"""Mean free times after which trajectories are compared."""
+
+FITTED = 1
+"""The check whose errors give the order of convergence: two contacts a disk."""
+
+PATIENCE_S = 5.0
+"""Seconds that one run may take; finer steps of the same engine are left out then."""
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One engine with one step: everything that was measured.
+
+    step: dt in the time in which a typical disk flies its radius.  ratio: pair contacts, of those of the event-driven run.
+    census: contact by contact, from exact states.  errors: at the checks, in diameters.  energy: relative change (None where
+    it is not conserved).  rate, pressure: relative to the event-driven run's.  elapsed: seconds per simulated time.
+    """
+
+    label: str
+    dt: float
+    step: float
+    pair_contacts: int
+    wall_contacts: int
+    ratio: float
+    census: Census
+    errors: tuple[float, ...]
+    energy: float | None
+    momentum: float
+    overlap: float
+    stuck: float
+    rate: float
+    pressure: float
+    elapsed: float
+    steps: int
+    pair_tests: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A scene, its event-driven run, and the lines of all engines; left_out: a sentence on each that could not take part."""
+
+    name: str
+    truth: Truth
+    engine: str
+    checks: tuple[float, ...]
+    exact: Line
+    lines: list[Line]
+    left_out: list[str]
+    orders: dict[str, float] = field(default_factory=dict)
+
+
+def compare(
+    scene: Scene,
+    entrants: Sequence[Entrant],
+    steps: Sequence[float] | None = None,
+    until: float | None = None,
+    patience_s: float = PATIENCE_S,
+    tell: Tell = lambda _: None,
+) -> Comparison:
+    """Run a scene with every engine and step; steps are times, left out: USUAL_STEPS.
+
+    Raises EventsimError where the scene has no contact to compare.
+    """
+    tell("event-driven run")
+    truth, checks, engine = truth_to_compare(scene, until)
+    ready, left_out = able(entrants, truth.stage)
+    flight = truth.radius / truth.speed
+    sizes = sorted({step * flight for step in USUAL_STEPS} if steps is None else set(steps), reverse=True)
+    exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks)
+    lines = []
+    for entrant in ready:
+        taken = 0.0
+        for place, dt in enumerate(sizes):
+            if place and taken * sizes[place - 1] / dt > patience_s:
+                left_out.append(f"{entrant.label} with steps below {sizes[place - 1]:.3g} would take more than {patience_s:g} s")
+                break
+            tell(f"{entrant.label}, dt = {dt:.3g}")
+            session = STEPPED[entrant.engine].open(truth.stage, keep_rows=True, **entrant.at(dt))
+            run = follow(session, truth.times.tolist(), patience_s)
+            taken = run.elapsed_s
+            if run.stopped is not None:
+                left_out.append(f"{entrant.label} with dt = {dt:.3g} was stopped after {patience_s:g} s")
+                break
+            found = census(truth, STEPPED[entrant.engine], entrant.at(dt), dt, entrant.late)
+            lines.append(_line(truth, entrant.label, dt, run, found, checks))
+    orders = {
+        entrant.label: fitted_order(
+            [line.dt for line in lines if line.label == entrant.label],
+            [line.errors[min(FITTED, len(checks) - 1)] for line in lines if line.label == entrant.label],
+        )
+        for entrant in ready
+    }
+    return Comparison(scene.name or "this scene", truth, engine, checks, exact, lines, left_out, orders)
+
+
+def truth_to_compare(scene: Scene, until: float | None) -> tuple[Truth, tuple[float, ...], str]:
+    """(the event-driven run, the times of the checks, the engine that did it)."""
+    engine = best_engine()
+    events = scene.events if until is None and scene.until is None else None
+    stop = Stop(scene.until if until is None else until, events)
+    if stop.until is None and stop.events is None:
+        raise EventsimError("nothing says when to stop: give --until, or a key until or events in the scene")
+    probe = ENGINES[engine].run(scene, stop)
+    begin, end = scene.start_time, probe.time
+    contacts = 2 * probe.counters.pair_contacts + probe.counters.wall_contacts
+    if not contacts or not end > begin:
+        raise EventsimError(f"nothing meets before {end:g}: there is nothing to compare")
+    free = (end - begin) * len(scene.disks) / contacts
+    scale = min(free, (end - begin) / CHECKS[-1])
+    checks = tuple(begin + check * scale for check in CHECKS)
+    restarts = np.linspace(begin, end, RESTARTS + 2)[1:-1]
+    times = sorted({*checks, *restarts.tolist(), end})
+    return truth_of(scene, times, engine), checks, engine
+
+
+def _line(truth: Truth, label: str, dt: float, run: Followed, found: Census, checks: Sequence[float]) -> Line:
+    stage, exact = truth.stage, truth.run
+    duration = float(truth.times[-1]) - truth.scene.start_time
+    energy = kinetic_energy(stage, np.column_stack([stage.vx, stage.vy]))
+    errors = position_errors(stage, run, exact)
+    places = np.searchsorted(truth.times, np.array(checks))
+
+    def relative(gauge: Callable[[Rows], float]) -> float:
+        base = gauge(exact.rows)
+        return gauge(run.rows) / base - 1.0 if base else math.nan
+
+    return Line(
+        label=label,
+        dt=dt,
+        step=dt * truth.speed / truth.radius,
+        pair_contacts=run.counters.pair_contacts,
+        wall_contacts=run.counters.wall_contacts,
+        ratio=run.counters.pair_contacts / exact.counters.pair_contacts if exact.counters.pair_contacts else math.nan,
+        census=found,
+        errors=tuple(float(errors[place]) if place < len(errors) else math.nan for place in places),
+        energy=run.residuals.energy,
+        momentum=run.residuals.momentum,
+        overlap=run.residuals.max_overlap,
+        stuck=longest_stuck(run.rows, dt) if math.isfinite(dt) else 0.0,
+        rate=relative(lambda rows: collision_rate(stage, rows, duration)),
+        pressure=relative(lambda rows: virial_pressure(stage, rows, energy, duration)),
+        elapsed=run.elapsed_s / duration,
+        steps=run.counters.steps,
+        pair_tests=run.counters.pair_tests,
+    )

@@ -1,0 +1,88 @@
+"""Follow an engine: its positions at chosen times, what it found on the way, and how long it took."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+
+from eventsim.engines.base import Counters, Residuals, Session, Stop
+from eventsim.engines.drive import state_of
+from eventsim.engines.residuals import residuals_of
+from eventsim.record.events import Floats, Rows, blank_rows
+from eventsim.scene.stage import Stage
+
+STINT = 20_000
+"""Steps between two looks at the stopwatch."""
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """What an engine did.
+
+    times: (T,) on the scene's clock, those that it reached.  position, velocity: (T, n, 2) then.  rows: its log.
+    elapsed_s: simulating only.  stopped: the reason where it did not reach the last time, else None.
+    """
+
+    times: Floats
+    position: Floats
+    velocity: Floats
+    rows: Rows
+    counters: Counters
+    residuals: Residuals
+    elapsed_s: float
+    stopped: str | None
+
+
+def follow(session: Session, times: Sequence[float], patience_s: float = float("inf")) -> Followed:
+    """Let a session run through increasing times; it is given up when it takes longer than `patience_s` seconds."""
+    blocks = [blank_rows(0)]
+    states = []
+    elapsed, stopped, before = 0.0, None, _compiled(session)
+    for time in times:
+        reason = None
+        while reason is None and elapsed < patience_s:
+            began = perf_counter()
+            reason = session.advance(Stop(until=time), STINT)
+            elapsed += perf_counter() - began
+            blocks.append(session.take_rows())
+        if reason not in ("until", "quiet"):
+            stopped = reason or "patience"
+            break
+        states.append(state_of(session, Stop(until=time), reason))
+    n = session.stage.n
+    empty: Floats = np.empty((0, n, 2))
+    return Followed(
+        times=np.array(times[: len(states)], dtype=np.float64),
+        position=np.array([state.position for state in states]) if states else empty,
+        velocity=np.array([state.velocity for state in states]) if states else empty,
+        rows=np.concatenate(blocks),
+        counters=session.counters.copy(),
+        residuals=residuals_of(session),
+        elapsed_s=max(elapsed - _compiled(session) + before, 0.0),
+        stopped=stopped,
+    )
+
+
+def _compiled(session: Session) -> float:
+    """Seconds that went into compiling so far; engines without a compiler have none."""
+    return float(getattr(session, "compile_s", 0.0))
+
+
+def distances(stage: Stage, one: Floats, other: Floats) -> Floats:
+    """How far disks are apart, length, (..., n), for positions (..., n, 2) on the scene's axes; nearest images."""
+    d = one - other
+    for axis, length in enumerate(stage.period):
+        if length is not None:
+            d[..., axis] -= length * np.round(d[..., axis] / length)
+    return np.hypot(d[..., 0], d[..., 1])
+
+
+def position_errors(stage: Stage, one: Followed, other: Followed) -> Floats:
+    """Root mean square distance at each common time, in mean diameters (in length units where all disks are points)."""
+    count = min(len(one.times), len(other.times))
+    d = distances(stage, one.position[:count], other.position[:count])
+    diameter = 2.0 * float(stage.radius.mean()) or 1.0
+    return np.asarray(np.sqrt(np.mean(d**2, axis=-1)) / diameter)

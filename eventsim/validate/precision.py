@@ -1,0 +1,266 @@
+"""Work and precision: the error of every engine against the time that it takes, over its parameter.
+
+What is called an error depends on what the scene can be asked for:
+
+    trajectory   root mean square distance of the disks from the truth at one time, in diameters
+    pressure     relative error of the virial over a long run, from the event-driven one
+    unrest       how far a pile is from rest when it should be: see `pile`
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from statistics import median
+
+import numpy as np
+
+from eventsim.engines import ENGINES, STEPPED
+from eventsim.engines.base import Counters, Session
+from eventsim.errors import EventsimError
+from eventsim.scene import Scene
+from eventsim.scene.stage import Stage, stage_of
+from eventsim.validate.entrants import Entrant, able
+from eventsim.validate.follow import Followed, follow, position_errors
+from eventsim.validate.gauges import kinetic_energy, virial_pressure
+from eventsim.validate.pile import unrest
+from eventsim.validate.truth import Truth, best_engine, neighbouring, truth_of
+
+STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
+"""Steps in the time in which a typical disk flies its radius."""
+
+BITS = (64, 96, 128, 192, 256, 512, 1024)
+DURATIONS = (0.3, 0.1, 0.05, 0.03)
+"""Precisions of balls; contact durations, in sqrt(d / g), of event-driven runs of a pile."""
+
+REPEATS, SHORT_S = 3, 0.2
+"""Runs of which the median time counts, for those that are shorter than this."""
+
+NEIGHBOURS = 5
+"""Runs that tell how much of a pressure is chance."""
+
+BOTTOM = 1e-16
+"""In diameters: an error that is shown where a run agrees with the truth to the last bit."""
+
+Tell = Callable[[str], None]
+
+
+@dataclass(slots=True)
+class Point:
+    """One engine with one parameter on one scene: error against work.
+
+    parameter: `dt` (time), `bits`, or `contact_duration` (time).  elapsed: seconds per simulated time, a median.  events,
+    steps, pair_tests, calendar: how often what was done; calendar: contacts, crossings, wraps and stale predictions taken from it.
+    """
+
+    scene: str
+    measure: str
+    label: str
+    parameter: str
+    value: float
+    error: float
+    elapsed: float
+    events: int = 0
+    steps: int = 0
+    pair_tests: int = 0
+    calendar: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A scene, what is asked of it, until when, and a few words for its panel."""
+
+    name: str
+    scene: Scene
+    measure: str
+    until: float
+    words: str = ""
+
+
+@dataclass(slots=True)
+class Curves:
+    """All points of one task; floor: the error below which nothing can be told; left_out: who could not take part, and why."""
+
+    task: Task
+    points: list[Point] = field(default_factory=list)
+    floor: float = 0.0
+    left_out: list[str] = field(default_factory=list)
+
+    def of(self, label: str) -> list[Point]:
+        """The points of one engine, in the order of their work."""
+        return sorted((point for point in self.points if point.label == label), key=lambda point: point.elapsed)
+
+    @property
+    def labels(self) -> list[str]:
+        """The engines that took part."""
+        return list(dict.fromkeys(point.label for point in self.points))
+
+
+@dataclass(frozen=True, slots=True)
+class _Runner:
+    """One engine with one parameter: how to open it, and the error of what it did."""
+
+    label: str
+    parameter: str
+    value: float
+    open: Callable[[], Session]
+    error: Callable[[Followed, Session], float]
+
+
+def curves(task: Task, entrants: Sequence[Entrant], patience_s: float, tell: Tell = lambda _: None) -> Curves:
+    """Run every engine over its parameter, engines in turn; a run that would take longer than `patience_s` is left out."""
+    tell(f"{task.name}: event-driven run")
+    result = Curves(task)
+    stage = stage_of(task.scene)
+    ready, result.left_out = able(entrants, stage)
+    if task.measure == "unrest":
+        runners = [[_rest(task, duration) for duration in DURATIONS]]
+        speed = float(np.hypot(*(stage.gravity or (1.0, 0.0)))) ** 0.5
+        error: Callable[[Followed, Session], float] = lambda run, _: unrest(stage, run.position[-1], run.velocity[-1])
+    else:
+        truth = truth_of(task.scene, [task.until])
+        speed = truth.speed
+        if task.measure == "pressure":
+            error = _pressure_error(truth)
+            result.floor = _chance(truth, error)
+            runners = _event_driven(stage, lambda run, _: result.floor)
+        else:
+            best = _proven(stage, task.until, patience_s, result) or truth.run
+            own = float(position_errors(stage, truth.run, best)[-1]) if best is not truth.run else float(truth.uncertainty[-1])
+            error = _trajectory_error(stage, best)
+            runners = _event_driven(stage, lambda run, _: own)
+            if best is not truth.run:
+                runners.append([_balls(stage, bits) for bits in BITS])
+    radius = float(np.median(stage.radius)) or 1.0
+    for entrant in ready:
+        runners.append([_step_of(stage, entrant, step * radius / speed, error) for step in STEPS])
+    begin = task.scene.start_time
+    for runner_list in runners:
+        _run_list(result, runner_list, task.until, task.until - begin, patience_s, tell)
+    _repeat(result, [runner for each in runners for runner in each], task.until, task.until - begin)
+    return result
+
+
+def _run_list(
+    result: Curves, runners: Sequence[_Runner], until: float, duration: float, patience_s: float, tell: Tell
+) -> None:
+    """Run one engine from its cheapest parameter on, as long as there is patience."""
+    taken, before = 0.0, 0.0
+    for runner in runners:
+        growth = max(before / runner.value, runner.value / before) if before else 1.0
+        if runner.parameter == "dt" and taken * growth > patience_s:
+            return
+        tell(f"{result.task.name}: {runner.label}, {runner.parameter} = {runner.value:.3g}")
+        session = runner.open()
+        run = follow(session, [until], patience_s)
+        taken, before = run.elapsed_s, runner.value
+        if run.stopped == "patience":
+            return
+        if run.stopped is None:
+            result.points.append(_point(result.task, runner, run, session, duration))
+
+
+def _point(task: Task, runner: _Runner, run: Followed, session: Session, duration: float) -> Point:
+    counters: Counters = run.counters
+    return Point(
+        scene=task.name,
+        measure=task.measure,
+        label=runner.label,
+        parameter=runner.parameter,
+        value=runner.value,
+        error=max(runner.error(run, session), BOTTOM),
+        elapsed=run.elapsed_s / duration,
+        events=counters.events,
+        steps=counters.steps,
+        pair_tests=counters.pair_tests,
+        calendar=0 if counters.steps else counters.events + counters.crossings + counters.wraps + counters.stale,
+    )
+
+
+def _repeat(result: Curves, runners: Sequence[_Runner], until: float, duration: float) -> None:
+    """Time short runs again, engines in turn, and keep the medians."""
+    times = {(point.label, point.value): [point.elapsed] for point in result.points}
+    for _ in range(REPEATS - 1):
+        for runner in runners:
+            known = times.get((runner.label, runner.value))
+            if known is not None and known[0] * duration < SHORT_S:
+                known.append(follow(runner.open(), [until]).elapsed_s / duration)
+    for point in result.points:
+        point.elapsed = median(times[point.label, point.value])
+
+
+def _event_driven(stage: Stage, error: Callable[[Followed, Session], float]) -> list[list[_Runner]]:
+    """The event-driven engines, each with its own 53 bits."""
+    runners = []
+    for name in ("reference", "fast"):
+        try:
+            ENGINES[name].open(stage)
+        except EventsimError:
+            continue
+        engine = ENGINES[name]
+        runners.append([_Runner(name, "bits", 53.0, lambda engine=engine: engine.open(stage), error)])  # type: ignore[misc]
+    return runners
+
+
+def _step_of(stage: Stage, entrant: Entrant, dt: float, error: Callable[[Followed, Session], float]) -> _Runner:
+    engine = STEPPED[entrant.engine]
+    return _Runner(entrant.label, "dt", dt, lambda: engine.open(stage, keep_rows=True, **entrant.at(dt)), error)
+
+
+def _rest(task: Task, duration: float) -> _Runner:
+    """An event-driven run of a pile with another contact duration."""
+    stage = replace(stage_of(task.scene), contact_duration=duration)
+    engine = ENGINES["reference"]
+
+    def error(run: Followed, session: Session) -> float:
+        return unrest(stage, run.position[-1], run.velocity[-1])
+
+    return _Runner("reference", "contact_duration", duration, lambda: engine.open(stage), error)
+
+
+def _balls(stage: Stage, bits: int) -> _Runner:
+    """The certified engine with so many bits and no more; its error is the radius of its balls."""
+    diameter = 2.0 * float(stage.radius.mean()) or 1.0
+
+    def error(run: Followed, session: Session) -> float:
+        radii = session.radii()[:, :2]  # type: ignore[attr-defined]
+        return float(np.sqrt(np.mean(np.sum(radii**2, axis=1)))) / diameter
+
+    engine = ENGINES["certified"]
+    return _Runner("certified", "bits", float(bits), lambda: engine.open(stage, bits=bits, most_bits=bits), error)
+
+
+def _proven(stage: Stage, until: float, patience_s: float, result: Curves) -> Followed | None:
+    """The certified run to a time; None where it is not installed, does not know the scene, or takes too long."""
+    try:
+        session = ENGINES["certified"].open(stage, keep_rows=False)
+    except EventsimError as error:
+        result.left_out.append(f"certified is left out: {error}")
+        return None
+    run = follow(session, [until], patience_s)
+    if run.stopped is not None:
+        result.left_out.append(f"certified is left out: it was stopped ({session.reason or run.stopped})")
+        return None
+    return run
+
+
+def _trajectory_error(stage: Stage, best: Followed) -> Callable[[Followed, Session], float]:
+    return lambda run, _: float(position_errors(stage, run, best)[-1])
+
+
+def _pressure_error(truth: Truth) -> Callable[[Followed, Session], float]:
+    stage = truth.stage
+    duration = float(truth.times[-1]) - truth.scene.start_time
+    energy = kinetic_energy(stage, np.column_stack([stage.vx, stage.vy]))
+    exact = virial_pressure(stage, truth.run.rows, energy, duration)
+    return lambda run, _: abs(virial_pressure(stage, run.rows, energy, duration) / exact - 1.0)
+
+
+def _chance(truth: Truth, error: Callable[[Followed, Session], float]) -> float:
+    """What the pressures of event-driven runs that start some last bits away differ by: chance; root mean square."""
+    engine = ENGINES[best_engine()]
+    errors = []
+    for bits in range(1, NEIGHBOURS + 1):
+        session = engine.open(neighbouring(truth.stage, bits), keep_rows=True)
+        errors.append(error(follow(session, truth.times.tolist()), session))
+    return float(np.sqrt(np.mean(np.square(errors))))

@@ -1,0 +1,83 @@
+"""What a comparison comes to, in sentences."""
+
+from __future__ import annotations
+
+import math
+
+from eventsim.validate.compare import Comparison, Line
+
+PERFECT_ENERGY = 1e-9
+"""Relative; a run that keeps its energy so well looks perfect to who looks at nothing else."""
+
+ENOUGH, ALL = 0.98, 0.99
+"""Shares of contacts: below the first one contacts go missing; from the second one all are found."""
+
+
+def verdict(comparison: Comparison) -> list[str]:
+    """The sentences, the most important first."""
+    sentences = [*_energy(comparison), *_complete(comparison), *_stuck(comparison), *_orders(comparison)]
+    return sentences or ["No engine lost a contact with any of these steps."]
+
+
+def _energy(comparison: Comparison) -> list[str]:
+    """The runs whose energy looks perfect while contacts go missing."""
+    blind = [
+        line
+        for line in comparison.lines
+        if line.energy is not None and abs(line.energy) < PERFECT_ENERGY and line.census.share(line.census.found) < ENOUGH
+    ]
+    if not blind:
+        return []
+    worst = min(blind, key=lambda line: line.census.share(line.census.found))
+    return [
+        f"Energy hides it: {worst.label} with a step of {worst.step:.2g} radii keeps the energy to "
+        f"{abs(worst.energy or 0.0):.0e} and finds {worst.census.share(worst.census.found):.0%} of the contacts ahead of an exact "
+        f"state, {worst.ratio:.0%} of their number over the whole run ({_angle(worst)}); {len(blind)} of "
+        f"{len(comparison.lines)} runs are of this kind."
+    ]
+
+
+def _angle(line: Line) -> str:
+    angle = line.census.angle
+    return "no angle to compare" if math.isnan(angle) else f"its angles are {angle:.2g} degrees off"
+
+
+def _complete(comparison: Comparison) -> list[str]:
+    """From which step on each engine finds all contacts."""
+    whole, never = [], []
+    for label in dict.fromkeys(line.label for line in comparison.lines):
+        lines = [line for line in comparison.lines if line.label == label]
+        good = [line for line in lines if line.census.share(line.census.found) >= ALL]
+        if good:
+            first = max(good, key=lambda line: line.dt)
+            whole.append(f"{label} at {first.step:.2g} ({first.elapsed / comparison.exact.elapsed:.2g} x the time)")
+        else:
+            best = max(lines, key=lambda line: line.census.share(line.census.found))
+            never.append(f"{label} ({best.census.share(best.census.found):.1%} at {best.step:.2g})")
+    sentences = []
+    if whole:
+        sentences.append(
+            f"{ALL:.0%} of the contacts, in radii a step and against the time of the event-driven run: {', '.join(whole)}."
+        )
+    if never:
+        sentences.append(f"Not with any of these steps: {', '.join(never)}.")
+    return sentences
+
+
+def _stuck(comparison: Comparison) -> list[str]:
+    free = comparison.truth.mean_free_time
+    worst = max(comparison.lines, key=lambda line: line.stuck, default=None)
+    if worst is None or worst.stuck <= free:
+        return []
+    return [
+        f"{worst.label} with a step of {worst.step:.2g} radii holds a disk at a wall for {worst.stuck:.3g} time units "
+        f"({worst.stuck / free:.0f} mean free times)."
+    ]
+
+
+def _orders(comparison: Comparison) -> list[str]:
+    known = {label: order for label, order in comparison.orders.items() if math.isfinite(order)}
+    if not known:
+        return []
+    orders = ", ".join(f"{label} {order:.1f}" for label, order in known.items())
+    return [f"Measured orders of convergence (position against step): {orders}."]
