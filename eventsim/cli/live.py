@@ -45,8 +45,8 @@ def command(
       eventsim live my.toml --set restitution=0.9 --port 9000 --no-browser
 
     \b
-    Keys of --json (printed once the page can be opened):
-      scene, address           as typed (null without); where the page is
+    Keys of --json:
+      scene, address           as typed (null without); where the page is: printed once it can be opened
 
     Exit codes: 0 ended by Ctrl-C; 2 bad usage, scene or file, a port that is taken, or aiohttp is missing.
     """

@@ -172,11 +172,11 @@ async def serve(given: Scene | None, port: int, ready: Callable[[str], None]) ->
 
     Raises EventsimError where the port is taken.
     """
-    runner = web.AppRunner(application(given), access_log=None)
+    runner = web.AppRunner(application(given), access_log=None, shutdown_timeout=1.0)
     await runner.setup()
     try:
         try:
-            site = web.TCPSite(runner, HOST, port, shutdown_timeout=1.0)
+            site = web.TCPSite(runner, HOST, port)
             await site.start()
         except OSError as error:
             raise EventsimError(f"port {port} cannot be used ({error.strerror}): choose another with --port") from None

@@ -31,8 +31,8 @@ LEAD_SECONDS = 3.0
 LEAD_EVENTS = 200_000
 """... and in events: a scene whose events pile up must not fill the memory ahead of those who look."""
 
-MOST_EVENTS = 2_000_000
-"""Events of one world (250 MB): all of them are kept, so that the page can go back and the log be downloaded."""
+MOST_EVENTS = 3_000_000
+"""Events of one world (400 MB): all of them are kept, so that the page can go back and the log be downloaded."""
 
 SCOUT_EVENTS = 2000
 """Events simulated before a scene is shown, which tell how fast disks get and how far they go."""

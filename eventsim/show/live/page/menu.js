@@ -88,7 +88,7 @@ class Menu {
     this.part("own").disabled = !this.own;
     this.part("rate-of-frames").hidden = !this.field("compare").checked;
     this.part("about").hidden = !entry && this.text === null;
-    this.part("about").textContent = this.text !== null ? "A scene file that you opened." : entry ? `${entry.title}. ${entry.about}` : "";
+    this.part("about").textContent = this.text !== null ? "A scene file that you opened." : entry ? `${entry.title}. ${entry.about}`.replaceAll("`", "") : "";
     const fields = this.part("parameters"), named = entry ? Object.entries(entry.parameters) : [];
     fields.hidden = named.length === 0 || this.text !== null;
     if (fields.dataset.scene === (entry ? entry.name : "")) return;
