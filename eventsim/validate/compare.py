@@ -32,6 +32,9 @@ FITTED = 1
 PATIENCE_S = 5.0
 """Seconds that one run may take; finer steps of the same engine are left out then."""
 
+COMPARED_ROWS = 2000
+"""Rows of the log that the reference engine has to confirm."""
+
 Tell = Callable[[str], None]
 
 
@@ -65,7 +68,10 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A scene, its event-driven run, and the lines of all engines; left_out: a sentence on each that could not take part."""
+    """A scene, its event-driven run, and the lines of all engines; left_out: a sentence on each that could not take part.
+
+    orders: measured, of convergence.  agrees: whether the event-driven engines write the same log.
+    """
 
     name: str
     truth: Truth
@@ -75,6 +81,7 @@ class Comparison:
     lines: list[Line]
     left_out: list[str]
     orders: dict[str, float] = field(default_factory=dict)
+    agrees: bool = True
 
 
 def compare(
@@ -118,7 +125,17 @@ def compare(
         )
         for entrant in ready
     }
-    return Comparison(scene.name or "this scene", truth, engine, checks, exact, lines, left_out, orders)
+    return Comparison(scene.name or "this scene", truth, engine, checks, exact, lines, left_out, orders, engines_agree(truth))
+
+
+def engines_agree(truth: Truth) -> bool:
+    """Whether the reference engine writes the same log, bit for bit, as the run of the truth begins with."""
+    session = ENGINES["reference"].open(truth.stage, keep_rows=True)
+    count = min(len(truth.run.rows), COMPARED_ROWS)
+    while session.advance(Stop(float(truth.times[-1]), count), COMPARED_ROWS) is None:
+        pass
+    rows = session.take_rows()[:count]
+    return rows.tobytes() == truth.run.rows[:count].tobytes()
 
 
 def truth_to_compare(scene: Scene, until: float | None) -> tuple[Truth, tuple[float, ...], str]:

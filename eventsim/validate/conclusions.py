@@ -18,8 +18,8 @@ WANTED = 1e-2
 class Advantage:
     """The event-driven engine against another one on one scene.
 
-    time_ratio: the other's time over its own, both at an error of WANTED or less; inf where only the other one fails to reach it,
-    0 where only the event-driven engine fails.  error_ratio: the other's error over its own at equal time; nan where the other one
+    time_ratio: the other's time over its own, both at an error of WANTED or less; inf where only the other one fails to
+    reach it, 0 where only the event-driven engine fails, nan where both do.  error_ratio: the other's error over its own at equal time; nan where the other one
     has no run so short.
     """
 
@@ -91,11 +91,11 @@ def _scenes(chart: Chart) -> list[str]:
         if nearest is None:
             text += f"{own[0].label} alone"
         elif nearest.time_ratio >= 1.0:
-            text += f"{own[0].label} {nearest.time_ratio:.2g} x faster than by {nearest.label}"
+            text += f"{own[0].label} {nearest.time_ratio:,.0f} x faster than by {nearest.label}"
         else:
-            text += f"{nearest.label} {1.0 / nearest.time_ratio:.2g} x faster than by {own[0].label}"
+            text += f"{nearest.label} {1.0 / nearest.time_ratio:,.1f} x faster than by {own[0].label}"
         if closest is not None:
-            text += f"; in equal time {closest.label} errs {closest.error_ratio:.0e} x as much"
+            text += f"; in equal time {closest.label}, the best, errs {closest.error_ratio:.0e} x as much"
         sentences.append(text + ".")
     return sentences
 
@@ -125,7 +125,7 @@ def _pile(chart: Chart) -> list[str]:
         if winners:
             elapsed, label = min(winners)
             sentences.append(
-                f"{curves.task.name}: here stepped engines win. {label} is as near to rest {reference.elapsed / elapsed:.2g} x "
+                f"{curves.task.name}: here stepped engines win. {label} is as near to rest {reference.elapsed / elapsed:,.0f} x "
                 "sooner: an event-driven engine pays for each of ever more contacts."
             )
         else:

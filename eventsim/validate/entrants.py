@@ -54,7 +54,8 @@ def chosen_entrants(labels: Sequence[str]) -> list[Entrant]:
 
 def able(entrants: Sequence[Entrant], stage: Stage) -> tuple[list[Entrant], list[str]]:
     """(those that can simulate a stage, a sentence on each of the others)."""
-    ready, sentences = [], []
+    ready: list[Entrant] = []
+    sentences: list[str] = []
     for entrant in entrants:
         try:
             STEPPED[entrant.engine].open(stage, keep_rows=False, **entrant.options)

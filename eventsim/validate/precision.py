@@ -43,6 +43,7 @@ BOTTOM = 1e-16
 """In diameters: an error that is shown where a run agrees with the truth to the last bit."""
 
 Tell = Callable[[str], None]
+ErrorOf = Callable[[Followed, Session], float]
 
 
 @dataclass(slots=True)
@@ -50,7 +51,8 @@ class Point:
     """One engine with one parameter on one scene: error against work.
 
     parameter: `dt` (time), `bits`, or `contact_duration` (time).  elapsed: seconds per simulated time, a median.  events,
-    steps, pair_tests, calendar: how often what was done; calendar: contacts, crossings, wraps and stale predictions taken from it.
+    steps, pair_tests, calendar: how often what was done; calendar: contacts, crossings, wraps and stale predictions
+    that were taken from it.
     """
 
     scene: str
@@ -87,8 +89,8 @@ class Curves:
     left_out: list[str] = field(default_factory=list)
 
     def of(self, label: str) -> list[Point]:
-        """The points of one engine, in the order of their work."""
-        return sorted((point for point in self.points if point.label == label), key=lambda point: point.elapsed)
+        """The points of one engine, from its coarsest parameter to its finest."""
+        return [point for point in self.points if point.label == label]
 
     @property
     def labels(self) -> list[str]:
@@ -104,7 +106,7 @@ class _Runner:
     parameter: str
     value: float
     open: Callable[[], Session]
-    error: Callable[[Followed, Session], float]
+    error: ErrorOf
 
 
 def curves(task: Task, entrants: Sequence[Entrant], patience_s: float, tell: Tell = lambda _: None) -> Curves:
@@ -116,7 +118,7 @@ def curves(task: Task, entrants: Sequence[Entrant], patience_s: float, tell: Tel
     if task.measure == "unrest":
         runners = [[_rest(task, duration) for duration in DURATIONS]]
         speed = float(np.hypot(*(stage.gravity or (1.0, 0.0)))) ** 0.5
-        error: Callable[[Followed, Session], float] = lambda run, _: unrest(stage, run.position[-1], run.velocity[-1])
+        error: ErrorOf = _unrest_error(stage)
     else:
         truth = truth_of(task.scene, [task.until])
         speed = truth.speed
@@ -189,7 +191,7 @@ def _repeat(result: Curves, runners: Sequence[_Runner], until: float, duration: 
         point.elapsed = median(times[point.label, point.value])
 
 
-def _event_driven(stage: Stage, error: Callable[[Followed, Session], float]) -> list[list[_Runner]]:
+def _event_driven(stage: Stage, error: ErrorOf) -> list[list[_Runner]]:
     """The event-driven engines, each with its own 53 bits."""
     runners = []
     for name in ("reference", "fast"):
@@ -202,7 +204,7 @@ def _event_driven(stage: Stage, error: Callable[[Followed, Session], float]) -> 
     return runners
 
 
-def _step_of(stage: Stage, entrant: Entrant, dt: float, error: Callable[[Followed, Session], float]) -> _Runner:
+def _step_of(stage: Stage, entrant: Entrant, dt: float, error: ErrorOf) -> _Runner:
     engine = STEPPED[entrant.engine]
     return _Runner(entrant.label, "dt", dt, lambda: engine.open(stage, keep_rows=True, **entrant.at(dt)), error)
 
@@ -211,11 +213,7 @@ def _rest(task: Task, duration: float) -> _Runner:
     """An event-driven run of a pile with another contact duration."""
     stage = replace(stage_of(task.scene), contact_duration=duration)
     engine = ENGINES["reference"]
-
-    def error(run: Followed, session: Session) -> float:
-        return unrest(stage, run.position[-1], run.velocity[-1])
-
-    return _Runner("reference", "contact_duration", duration, lambda: engine.open(stage), error)
+    return _Runner("reference", "contact_duration", duration, lambda: engine.open(stage), _unrest_error(stage))
 
 
 def _balls(stage: Stage, bits: int) -> _Runner:
@@ -244,11 +242,15 @@ def _proven(stage: Stage, until: float, patience_s: float, result: Curves) -> Fo
     return run
 
 
-def _trajectory_error(stage: Stage, best: Followed) -> Callable[[Followed, Session], float]:
+def _unrest_error(stage: Stage) -> ErrorOf:
+    return lambda run, _: unrest(stage, run.position[-1], run.velocity[-1])
+
+
+def _trajectory_error(stage: Stage, best: Followed) -> ErrorOf:
     return lambda run, _: float(position_errors(stage, run, best)[-1])
 
 
-def _pressure_error(truth: Truth) -> Callable[[Followed, Session], float]:
+def _pressure_error(truth: Truth) -> ErrorOf:
     stage = truth.stage
     duration = float(truth.times[-1]) - truth.scene.start_time
     energy = kinetic_energy(stage, np.column_stack([stage.vx, stage.vy]))
@@ -256,7 +258,7 @@ def _pressure_error(truth: Truth) -> Callable[[Followed, Session], float]:
     return lambda run, _: abs(virial_pressure(stage, run.rows, energy, duration) / exact - 1.0)
 
 
-def _chance(truth: Truth, error: Callable[[Followed, Session], float]) -> float:
+def _chance(truth: Truth, error: ErrorOf) -> float:
     """What the pressures of event-driven runs that start some last bits away differ by: chance; root mean square."""
     engine = ENGINES[best_engine()]
     errors = []

@@ -109,4 +109,5 @@ def restarted(stage: Stage, position: Floats, velocity: Floats, time: float) -> 
 
 def contacts_of(rows: Rows) -> Rows:
     """The rows that are contacts, in order of time."""
-    return rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)]
+    contacts: Rows = rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)]
+    return contacts

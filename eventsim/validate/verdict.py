@@ -9,6 +9,9 @@ from eventsim.validate.compare import Comparison, Line
 PERFECT_ENERGY = 1e-9
 """Relative; a run that keeps its energy so well looks perfect to who looks at nothing else."""
 
+ROUNDING = 1e-16
+"""What no energy is kept better than, whatever the difference of two sums says."""
+
 ENOUGH, ALL = 0.98, 0.99
 """Shares of contacts: below the first one contacts go missing; from the second one all are found."""
 
@@ -31,8 +34,8 @@ def _energy(comparison: Comparison) -> list[str]:
     worst = min(blind, key=lambda line: line.census.share(line.census.found))
     return [
         f"Energy hides it: {worst.label} with a step of {worst.step:.2g} radii keeps the energy to "
-        f"{abs(worst.energy or 0.0):.0e} and finds {worst.census.share(worst.census.found):.0%} of the contacts ahead of an exact "
-        f"state, {worst.ratio:.0%} of their number over the whole run ({_angle(worst)}); {len(blind)} of "
+        f"{max(abs(worst.energy or 0.0), ROUNDING):.0e} and finds {worst.census.share(worst.census.found):.0%} of the "
+        f"contacts ahead of an exact state, {worst.ratio:.0%} of their number over the whole run ({_angle(worst)}); {len(blind)} of "
         f"{len(comparison.lines)} runs are of this kind."
     ]
 

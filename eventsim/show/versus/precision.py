@@ -68,7 +68,8 @@ def draw_curves(axes: Axes, curves: Curves) -> None:
     if curves.floor > 0.0:
         axes.axhspan(axes.get_ylim()[0], curves.floor, color="#e3e6ea", zorder=0)
         if curves.floor > 1e-6:
-            axes.annotate("chance", (0.98, curves.floor), xycoords=("axes fraction", "data"), ha="right", va="top", fontsize=8)
+            place = (0.98, curves.floor)
+            axes.annotate("chance", place, xycoords=("axes fraction", "data"), ha="right", va="top", fontsize=8)
     title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
     label(axes, "seconds of computing per time unit", ERRORS[curves.task.measure], title)
     axes.title.set_fontsize(9.5)
@@ -81,7 +82,8 @@ def draw_chaos(axes: Axes, chaos: Chaos) -> None:
         axes.semilogy(chaos.contacts[: len(errors)], np.maximum(errors, 1e-17), style.line, color=style.colour, lw=1.4)
         place = len(errors) // 3 if name == "event-driven" else 2
         text = "event-driven, float64" if name == "event-driven" else name.split(", ")[1]
-        axes.annotate(text, (chaos.contacts[place], max(errors[place], 1e-17)), xytext=(6, -9), textcoords="offset points", fontsize=8)
+        spot = (chaos.contacts[place], max(errors[place], 1e-17))
+        axes.annotate(text, spot, xytext=(6, -9), textcoords="offset points", fontsize=8)
     if not math.isnan(chaos.slope):
         steep = 1e-16 * 2.0 ** (chaos.slope * chaos.contacts)
         shown = steep < 10.0
@@ -110,6 +112,6 @@ def draw_words(axes: Axes, chart: Chart) -> None:
     for name in present:
         style = look(name)
         axes.plot([], [], style.line, marker=style.marker, color=style.colour, label=NAMES[name], ms=7)
-    axes.legend(loc="upper left", frameon=False, fontsize=8.5, borderaxespad=0.0, labelspacing=0.35)
-    text = "\n".join(fill(sentence, 74) for sentence in conclusions(chart))
-    axes.text(0.0, 0.56, text, transform=axes.transAxes, va="top", fontsize=8.3, linespacing=1.2, color=LIGHT.ink)
+    axes.legend(loc="upper left", frameon=False, fontsize=8.5, borderaxespad=0.0, labelspacing=0.25)
+    text = "\n".join(fill(sentence, 78) for sentence in conclusions(chart))
+    axes.text(0.0, 0.47, text, transform=axes.transAxes, va="top", fontsize=8.0, linespacing=1.15, color=LIGHT.ink)

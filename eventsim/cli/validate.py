@@ -1,0 +1,155 @@
+"""`eventsim validate`: the event-driven run of a scene against time-stepped engines."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import click
+
+from eventsim.cli.exits import FAILED
+from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.target import writable
+
+if TYPE_CHECKING:
+    from eventsim.validate.compare import Comparison, Line
+
+HEAD = (
+    "engine           radii/step  found missed doubled spurious  angle   overlap   stuck   position    energy"
+    "     rate  pressure    s/time"
+)
+
+
+@click.command()
+@scene_options(required=True)
+@click.option("--dt", "steps", type=float, multiple=True, metavar="DT", help="A step size; may be given several times.")
+@click.option(
+    "--against", multiple=True, metavar="ENGINE", help="Only this engine; may be given several times. Default: all of them."
+)
+@click.option("--until", type=float, metavar="T", help="Simulate until this time instead of the scene's.")
+@click.option("--patience", type=float, default=5.0, show_default=True, metavar="S", help="Seconds for one run at most.")
+@click.option("--csv", metavar="FILE.csv", help="Write all numbers, with where they come from.")
+@click.option("--figure", metavar="FILE", help="Draw them: .png, .svg or .pdf.")
+@json_option
+@quiet_option
+def command(
+    scene: str,
+    settings: tuple[str, ...],
+    seed: int | None,
+    steps: tuple[float, ...],
+    against: tuple[str, ...],
+    until: float | None,
+    patience: float,
+    csv: str | None,
+    figure: str | None,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Compare the event-driven run of SCENE with engines that advance in steps, over a list of steps.
+
+    Contacts are compared one by one: each engine is set on states of the event-driven run, again and again, and followed
+    for half a mean free time. Trajectories are compared after 1, 2, 4 and 8 mean free times; rate, pressure, energy and
+    disks stuck at walls over the whole run. Without --dt, typical disks fly 2 radii to 0.01 radii in a step.
+
+    \b
+    Engines: frames, frames-forget (the course project's, two readings of its memory), stepped,
+    stepped-located (impact located within the step), penalty (springs), pymunk (Chipmunk; an extra).
+
+    \b
+    Examples:
+      eventsim validate gas --figure gas.png --csv gas.csv
+      eventsim validate corner --against stepped --against penalty
+      eventsim validate my.toml --dt 0.01 --dt 0.001 --json
+
+    \b
+    Columns: found, missed, doubled, spurious in per cent of the contacts ahead; angle: mean error of
+    deflection, degrees; overlap: the deepest, in reaches; stuck: longest time at a wall; position: error
+    after two mean free times, diameters; energy: relative change; rate, pressure: relative to event-driven.
+
+    \b
+    Keys of --json:
+      scene, engine            as typed; the event-driven engine
+      checks, horizon          times of comparison; until when float64 can be believed
+      agrees                   whether the event-driven engines wrote the same log
+      rows                     one object a line, keys as in the CSV file
+      orders                   engine -> measured order of convergence (null: not measurable)
+      left_out, verdict        sentences
+
+    Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.
+    """
+    csv_path, figure_path = writable(csv, "--csv", (".csv",)), writable(figure, "--figure", (".png", ".svg", ".pdf"))
+    for step in steps:
+        if not 0.0 < step < math.inf:
+            raise click.UsageError(f"--dt {step!r}: a step must be a finite time above 0")
+
+    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.telling import telling
+    from eventsim.cli.words import as_json_text
+    from eventsim.validate.compare import compare
+    from eventsim.validate.entrants import chosen_entrants
+    from eventsim.validate.table import comparison_rows, provenance_lines, write_csv
+    from eventsim.validate.verdict import verdict
+
+    entrants = chosen_entrants(against)
+    chosen = chosen_scene(scene, settings, seed)
+    with telling(quiet or as_json) as tell:
+        comparison = compare(chosen, entrants, steps or None, until, patience, tell)
+    if csv_path is not None:
+        facts = {"scene": scene, "checks": comparison.checks, "engine": comparison.engine}
+        lines = provenance_lines(click.get_current_context().obj, facts)
+        write_csv(csv_path, comparison_rows(comparison), lines)
+    if figure_path is not None:
+        from eventsim.show.versus.comparison import write_comparison
+
+        write_comparison(comparison, figure_path)
+    if as_json:
+        data = {
+            "scene": scene,
+            "engine": comparison.engine,
+            "checks": list(comparison.checks),
+            "horizon": comparison.truth.horizon,
+            "agrees": comparison.agrees,
+            "rows": comparison_rows(comparison),
+            "orders": comparison.orders,
+            "left_out": comparison.left_out,
+            "verdict": verdict(comparison),
+        }
+        click.echo(as_json_text(data))
+    elif not quiet:
+        click.echo(_text(scene, comparison, verdict(comparison)))
+    if not comparison.agrees:
+        click.echo("the event-driven engines do not write the same log", err=True)
+        click.get_current_context().exit(FAILED)
+
+
+def _text(scene: str, comparison: Comparison, sentences: list[str]) -> str:
+    """The table, what was left out, and the verdict."""
+    run = comparison.truth.run
+    lines = [
+        f"{scene}: event-driven ({comparison.engine}) to t = {comparison.truth.times[-1]:g}: "
+        f"{run.counters.pair_contacts:,} pair and {run.counters.wall_contacts:,} wall contacts, "
+        f"{comparison.exact.elapsed:.2g} s per time unit; believed until t = {comparison.truth.horizon:.4g}",
+        "",
+        HEAD,
+    ]
+    before = None
+    for line in comparison.lines:
+        if before not in (None, line.label):
+            lines.append("")
+        before = line.label
+        lines.append(_row(line))
+    lines += ["", *comparison.left_out, *([""] if comparison.left_out else []), *sentences]
+    return "\n".join(lines)
+
+
+def _row(line: Line) -> str:
+    census = line.census
+    shares = (census.share(count) for count in (census.found, census.missed, census.doubled, census.spurious))
+    found, missed, doubled, spurious = (f"{100.0 * share:.1f}" if not math.isnan(share) else "-" for share in shares)
+    energy = "-" if line.energy is None else f"{line.energy:.0e}"
+    error = line.errors[min(1, len(line.errors) - 1)]
+    return (
+        f"{line.label:<16} {line.step:>10.3g} {found:>6} {missed:>6} {doubled:>7} {spurious:>8} "
+        f"{line.census.angle:>6.2f} {line.overlap:>9.1e} {line.stuck:>7.3g} {error:>10.1e} {energy:>9} "
+        f"{line.rate:>+8.1%} {line.pressure:>+9.1%} {line.elapsed:>9.1e}"
+    )
