@@ -94,9 +94,13 @@ class AutoSession:
             self._may_change = False
             print(f"note: {MISSING} (this run goes on with the reference engine)", file=sys.stderr)
             return
+        left = self._spent * self._share_left(stop)
+        if left < WARM:
+            return
         from eventsim.engines.fast.compiled import is_warm  # loads the compiler: worth it from here on
+        from eventsim.engines.fast.session import kind_of
 
-        if self._spent * self._share_left(stop) > (WARM if is_warm() else COLD):
+        if left > (WARM if is_warm(kind_of(self.stage, self._keep_rows)) else COLD):
             self._hand_over()
 
     def _share_left(self, stop: Stop) -> float:

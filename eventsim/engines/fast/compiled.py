@@ -45,9 +45,18 @@ def _hash_of_sources() -> str:
     return digest.hexdigest()[:16]
 
 
-def is_warm() -> bool:
-    """Whether kernels from these sources have been compiled before; a scene may still need some of its own."""
-    return next(_FOLDER.rglob("*.nbi"), None) is not None
+def is_warm(kind: str) -> bool:
+    """Whether the kernels for scenes of this kind are on disk."""
+    return (_FOLDER / f"{kind}.ready").exists()
+
+
+def mark_warm(kind: str) -> None:
+    """Note that the kernels for scenes of this kind are on disk."""
+    try:
+        _FOLDER.mkdir(parents=True, exist_ok=True)
+        (_FOLDER / f"{kind}.ready").touch()
+    except OSError:  # no folder to write to: they will be compiled again
+        return
 
 
 @contextmanager

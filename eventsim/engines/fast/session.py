@@ -9,7 +9,7 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.fast import layout
-from eventsim.engines.fast.compiled import timed_compiling
+from eventsim.engines.fast.compiled import mark_warm, timed_compiling
 from eventsim.engines.fast.instant import contacts_at, due_at
 from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid, Rules
@@ -80,6 +80,7 @@ class FastSession:
         self._counts[layout.ROOM] = BUFFER if keep_rows else 2 * FOREVER
         self._blocks: list[Rows] = []
         self.compile_s = 0.0
+        self._marked = False
         self._dated = 0
         self._days = self._steps = 0
         self._found = np.empty((64, 4), np.int64)
@@ -96,7 +97,11 @@ class FastSession:
         self._take_counters()
         try:
             with timed_compiling(self._note_compiling):
-                return self._advance(stop, budget)
+                stopped = self._advance(stop, budget)
+            if not self._marked:
+                mark_warm(kind_of(self.stage, self._keep_rows))
+                self._marked = True
+            return stopped
         finally:
             self._tell_counters()
 
@@ -155,7 +160,8 @@ class FastSession:
     @property
     def memory(self) -> int:
         """Bytes of the arrays that kernels work in."""
-        return self.state.place_of.nbytes + sum(array.nbytes for array in self._arrays if array is not None)
+        arrays = [self.state.place_of, *(array for array in self._arrays if array is not None)]
+        return sum(int(array.nbytes) for array in arrays)
 
     @property
     def _due(self) -> Floats:
@@ -473,6 +479,13 @@ def _rules(stage: Stage) -> Rules:
         len(stage.boundaries),
         AT_ONCE_ELASTIC if stage.pair_restitution == stage.wall_restitution == 1.0 else AT_ONCE_INELASTIC,
     )
+
+
+def kind_of(stage: Stage, keep_rows: bool) -> str:
+    """A name for what the scene has: scenes of one kind share their kernels."""
+    needs = [*_rules(stage), stage.mass, True if keep_rows else None, True if stage.n >= FEW_DISKS else None]
+    many = True if stage.n >= MANY_DISKS else None
+    return "".join("0" if need is None else "1" for need in [*needs, many])
 
 
 def _features(stage: Stage) -> Floats | None:
