@@ -11,7 +11,7 @@ import numpy as np
 
 from eventsim.engines import AUTO, ENGINES, Engine
 from eventsim.engines.base import Counters, OnEvent, Progress, Run, Snapshot, Stop
-from eventsim.engines.drive import Wishes, memory_log, provenance_of, state_of
+from eventsim.engines.drive import Wishes, diagnosed, memory_log, provenance_of, state_of
 from eventsim.errors import CollapseError, EventsimError, SceneError
 from eventsim.record.events import Rows, State
 from eventsim.record.log import EventLog
@@ -194,7 +194,8 @@ class Simulation:
             stopped = self._session.advance(stop, STEP_BUDGET)
             self._keep()
         if stopped in ("collapse", "digits"):
-            raise CollapseError(f"stopped by {stopped}: {self._session.reason}")
+            stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
+            raise CollapseError(f"stopped by {stopped}: {reason}")
         self._time = stop.until if stopped in ("until", "quiet") else None
         blocks = self._blocks[before:]
         self._blocks[before:] = [np.concatenate(blocks)]

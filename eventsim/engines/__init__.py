@@ -24,7 +24,9 @@ class Engine:
     def run(self, scene: Scene, stop: Stop, wishes: Wishes | None = None, **options: Any) -> Run:
         """Simulate a scene to its stop; options are the engine's own."""
         wishes = Wishes() if wishes is None else wishes
-        session = self.open(stage_of(scene), keep_rows=wishes.rows, **options)
+        stage = stage_of(scene)
+        # Where contacts can pile up, the last rows say how.
+        session = self.open(stage, keep_rows=wishes.rows or stage.loses_energy, **options)
         return drive(session, self.name, scene, stop, wishes)
 
 

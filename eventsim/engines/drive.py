@@ -17,10 +17,11 @@ import numpy as np
 
 from eventsim import __version__
 from eventsim.engines.base import OnEvent, Progress, Run, Session, Stop
+from eventsim.engines.collapse import TAIL, diagnosis
 from eventsim.engines.residuals import residuals_of
 from eventsim.formulas.clock import clock_time
 from eventsim.record.digest import Digester
-from eventsim.record.events import Rows, State
+from eventsim.record.events import Rows, State, blank_rows
 from eventsim.record.files import open_sink
 from eventsim.record.log import EventLog, MemorySink
 from eventsim.record.places import on_scene_axes
@@ -73,8 +74,9 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
     digester = Digester() if wishes.rows and (wishes.digest or wishes.log is not False) else None
     compiled_before = _compile_seconds(session)
     try:
-        stopped, elapsed, written = _simulate(session, stop, wishes, sinks, digester)
+        stopped, last_rows, elapsed, written = _simulate(session, stop, wishes, sinks, digester)
         began = perf_counter()
+        stopped, reason = diagnosed(session, stopped, last_rows)
         for sink in sinks:
             sink.close(Ending(*session.clock, stopped))
         written += perf_counter() - began
@@ -91,7 +93,7 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         counters=session.counters,
         residuals=residuals_of(session),
         stopped=stopped,
-        reason=session.reason,
+        reason=reason,
         digest=None if digester is None else digester.hexdigest(),
         elapsed_s=elapsed - (compiled - compiled_before),
         compile_s=compiled,
@@ -100,6 +102,15 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         trajectory=getattr(session, "trajectory", None),  # stepped engines have one
         _log=log,
     )
+
+
+def diagnosed(session: Session, stopped: str, last_rows: Rows) -> tuple[str, str | None]:
+    """Why a run stopped, and the sentence about it; a sequence that does not end is told from its last rows."""
+    stage = session.stage
+    if stopped != "collapse" or not stage.loses_energy:
+        return stopped, session.reason
+    time = clock_time(*session.clock, stage.epoch_length, stage.start_time)
+    return diagnosis(last_rows, stage, session.clock, time) or (stopped, session.reason)
 
 
 def _compile_seconds(session: Session) -> float:
@@ -139,10 +150,11 @@ def state_of(session: Session, stop: Stop | None = None, stopped: str | None = N
 
 def _simulate(
     session: Session, stop: Stop, wishes: Wishes, sinks: list[Sink], digester: Digester | None
-) -> tuple[str, float, float]:
-    """(why it stopped, seconds simulating, seconds writing); in stints short enough to be interrupted."""
+) -> tuple[str, Rows, float, float]:
+    """(why it stopped, the last rows, seconds simulating, seconds writing); in stints short enough to be interrupted."""
     budget = FIRST_BUDGET
     elapsed = written = 0.0
+    last_rows = blank_rows(0)
     with _interruptible() as interrupted:
         while True:
             began = perf_counter()
@@ -156,6 +168,7 @@ def _simulate(
             began = perf_counter()
             rows = session.take_rows()
             if len(rows):
+                last_rows = rows[-TAIL:] if len(rows) >= TAIL else np.concatenate([last_rows, rows])[-TAIL:]
                 for sink in sinks:
                     sink.write(rows)
                 if digester is not None:
@@ -168,7 +181,7 @@ def _simulate(
             if wishes.progress is not None:
                 _tell(wishes.progress, session, stop)
             if stopped is not None:
-                return stopped, elapsed, written
+                return stopped, last_rows, elapsed, written
 
 
 def _tell(progress: Progress, session: Session, stop: Stop) -> None:

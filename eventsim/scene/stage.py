@@ -96,6 +96,11 @@ class Stage:
         """Whether any axis is periodic."""
         return self.period != (None, None)
 
+    @property
+    def loses_energy(self) -> bool:
+        """Whether contacts are inelastic, so that they can pile up."""
+        return self.pair_restitution < 1.0 or self.wall_restitution < 1.0
+
 
 def stage_of(scene: Scene) -> Stage:
     """The stage of a scene."""

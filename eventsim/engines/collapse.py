@@ -1,0 +1,124 @@
+"""Why contacts pile up at an instant: the diagnosis of an inelastic collapse from the last rows of a run.
+
+A collapse is a geometric series: each round of contacts takes r < 1 times as long as the one before, and all of them are over
+after a finite time.  Where the rounds have become too short for the clock, that time is known, and it is now.  Where the
+gaps sank below the digits of the positions before, the last rounds are noise, and nothing can be told.
+
+Source: S. McNamara, W. R. Young, Phys. Fluids A 4, 496 (1992), doi:10.1063/1.858323.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from eventsim.engines.reference.resolve import AT_ONCE
+from eventsim.record.events import Floats, Kind, Rows
+from eventsim.scene.stage import Stage
+
+TAIL = 1024
+"""Rows that are looked at: several times what a sequence at one instant may have."""
+
+SETTLED = 2.0**-20
+"""A last round shorter than this part of the first one was not cut off by the digits of the positions."""
+
+MANY_DISKS = 8
+"""More disks are counted, not named."""
+
+REMEDY = "contact_duration, a time in the scene, lets such a scene go on"
+
+
+LAST_ROUNDS = 4
+"""The ratio is that of so many rounds at the end, where it has settled."""
+
+
+class Rounds(NamedTuple):
+    """How the contacts of some disks came closer to each other.
+
+    disks: those that meet at the last instant.  number: how many rounds followed each other ever faster.  ratio: how long the
+    last ones took, each in terms of the one before; nan where there were none.  first, last: the longest and the shortest.
+    """
+
+    disks: list[int]
+    number: int
+    ratio: float
+    first: float
+    last: float
+
+
+def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -> tuple[str, str] | None:
+    """(stopped, sentence) from the last rows of a run that does not end at an instant; None where they say nothing.
+
+    clock, time: that instant, (epoch, remainder) and on the scene's clock.
+    """
+    rounds = rounds_before_the_end(rows, stage.epoch_length, clock)
+    if rounds is None or (rounds.number < 2 and stage.gravity is not None):  # what rests there has no rounds to show
+        return None
+    names = named(rounds.disks)
+    if rounds.number < 2:
+        return "digits", (
+            f"the contacts of {names} at time {time:.9g} follow one another faster than the digits of float64 can tell, "
+            f"without a steady ratio before: they may or may not end; {REMEDY}"
+        )
+    series = f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
+    if rounds.last < SETTLED * rounds.first:
+        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {REMEDY}"
+    return "digits", (
+        f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
+        f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {REMEDY}"
+    )
+
+
+def rounds_before_the_end(rows: Rows, epoch_length: float, clock: tuple[int, float]) -> Rounds | None:
+    """The rounds of the disks that met at the last instant; None where nothing came before it, or no row is of it."""
+    rows = rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)][-TAIL:]
+    if len(rows) == 0:
+        return None
+    # Times before the end: epochs are whole numbers, so nothing is lost by a late clock.
+    before = (clock[0] - rows["epoch"]) * epoch_length + (clock[1] - rows["remainder"])
+    at_once = before <= len(rows) * AT_ONCE * clock[1]
+    if not at_once[-1]:
+        return None
+    disks = _connected(rows[at_once])
+    inside = np.isin(rows["a"], disks) & ((rows["b"] < 0) | np.isin(rows["b"], disks))
+    if not (inside & ~at_once).any():
+        return None
+    mine = rows[inside]
+    times = -np.concatenate([before[inside & ~at_once], before[inside & at_once][:1]])
+    period = len(set(zip(mine["a"].tolist(), mine["b"].tolist(), mine["wall"].tolist(), strict=True)))
+    return _rounds(disks, times[period:] - times[:-period] if len(times) > period else times[:0], period)
+
+
+def _rounds(disks: list[int], lengths: Floats, period: int) -> Rounds:
+    """The rounds that became shorter and shorter; the last ones of all, which are noise, may be left out."""
+    best, end = 0, len(lengths)
+    for skipped in range(min(2 * period + 1, len(lengths))):
+        last = len(lengths) - skipped
+        count = 1
+        while count < last and 0.0 < lengths[last - count] < lengths[last - count - 1]:
+            count += 1
+        if count > best:
+            best, end = count, last
+    if best < 2 * period:
+        return Rounds(disks, best // period, math.nan, math.nan, math.nan)
+    whole = min((best - 1) // period, LAST_ROUNDS)
+    ratio = float(lengths[end - 1] / lengths[end - 1 - whole * period]) ** (1.0 / whole)
+    return Rounds(disks, best // period, ratio, float(lengths[end - best]), float(lengths[end - 1]))
+
+
+def _connected(rows: Rows) -> list[int]:
+    """The disks that are connected with the last row's through rows, in order."""
+    disks = {int(i) for i in (rows["a"][-1], rows["b"][-1]) if i >= 0}
+    for a, b in zip(rows["a"][::-1].tolist(), rows["b"][::-1].tolist(), strict=True):
+        if a in disks or b in disks:
+            disks |= {i for i in (a, b) if i >= 0}
+    return sorted(disks)
+
+
+def named(disks: list[int]) -> str:
+    """The disks in words."""
+    if len(disks) > MANY_DISKS:
+        return f"{len(disks)} disks, {', '.join(map(str, disks[:3]))}, ..."
+    return f"disk {disks[0]}" if len(disks) == 1 else f"disks {', '.join(map(str, disks))}"
