@@ -23,6 +23,9 @@ ROUNDING = 2.0**-97
 ENOUGH = 2.0**-56
 """A relative error that leaves the last bit of a float to the final rounding."""
 
+LARGEST, CUT = 1024, 900
+"""Exponents of the largest float, and of the largest one whose products with numbers below 1 are safe to split."""
+
 
 def careful_pair_delay(
     xi: float,
@@ -57,12 +60,12 @@ def careful_pair_delay(
         lag_i, rest_i = two_sum(tj, -ti)
     else:
         lag_j, rest_j = two_sum(ti, -tj)
-    lag_i, rest_i = math.ldexp(lag_i, -clock), math.ldexp(rest_i, -clock)
-    lag_j, rest_j = math.ldexp(lag_j, -clock), math.ldexp(rest_j, -clock)
-    ri, rj = math.ldexp(ri, -length), math.ldexp(rj, -length)
-    xi, yi, xj, yj = math.ldexp(xi, -length), math.ldexp(yi, -length), math.ldexp(xj, -length), math.ldexp(yj, -length)
-    shift_x, shift_y = math.ldexp(shift_x, -length), math.ldexp(shift_y, -length)
-    ui, wi, uj, wj = math.ldexp(ui, -speed), math.ldexp(wi, -speed), math.ldexp(uj, -speed), math.ldexp(wj, -speed)
+    lag_i, rest_i = _shifted(lag_i, -clock), _shifted(rest_i, -clock)
+    lag_j, rest_j = _shifted(lag_j, -clock), _shifted(rest_j, -clock)
+    ri, rj = _shifted(ri, -length), _shifted(rj, -length)
+    xi, yi, xj, yj = _shifted(xi, -length), _shifted(yi, -length), _shifted(xj, -length), _shifted(yj, -length)
+    shift_x, shift_y = _shifted(shift_x, -length), _shifted(shift_y, -length)
+    ui, wi, uj, wj = _shifted(ui, -speed), _shifted(wi, -speed), _shifted(uj, -speed), _shifted(wj, -speed)
     du, dw = two_sum(ui, -uj), two_sum(wi, -wj)
     reach = two_sum(ri, rj)
     dx, size_x = _apart(xi, ui, lag_i, rest_i, xj, uj, lag_j, rest_j, shift_x)
@@ -78,12 +81,19 @@ def careful_pair_delay(
         return 0.0
     if not d[0] > 0.0:
         return NEVER
-    return math.ldexp(_quotient(c, _minus(_root(d), b)), clock)
+    mantissa, exponent = math.frexp(_quotient(c, _minus(_root(d), b)))
+    return math.ldexp(mantissa, exponent + clock) if exponent + clock <= LARGEST else NEVER
 
 
 def _exponent(size: float) -> int:
     """The power of two that brings a size to [1/2, 1)."""
     return math.frexp(size)[1]
+
+
+def _shifted(x: float, power: int) -> float:
+    """x times a power of two; so large a lag that its products would overflow belongs to a disk at rest, and is cut."""
+    mantissa, exponent = math.frexp(x)
+    return math.ldexp(mantissa, min(exponent + power, CUT))
 
 
 def _apart(

@@ -159,6 +159,8 @@ def test_giants_and_dwarfs_keep_their_gap():
 
 def test_speeds_and_gaps_at_the_end_of_the_range():
     tiny = 1e-310
+    assert careful_pair_delay(*straight(-3.0, 0.0, speed=1e-320)) == NEVER  # after 2e320, which no clock shows
+    assert careful_pair_delay(0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 3.0, 0.0, -1e200, 0.0, 1e200, 0.5, 0.0, 0.0) == 2.0 / 1e200
     pair = (-tiny, 0.0, tiny, 0.0, 0.0, 0.0, 0.0, 0.0, *STILL, 0.0, tiny / 2, 0.0, 0.0)
     assert relative_error(pair) < LAST_BIT
 
