@@ -35,6 +35,12 @@ FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
     metavar="W",
     help="Engines that run at the same time.",
 )
+@click.option(
+    "--soak", type=click.IntRange(min=1), metavar="N", help="Instead: N random scenes, engine against engine."
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="S", help="First seed of --soak."
+)
 @json_option
 @quiet_option
 def command(
@@ -45,6 +51,8 @@ def command(
     table: str | None,
     limit: float,
     workers: int,
+    soak: int | None,
+    seed: int,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -66,6 +74,8 @@ def command(
       eventsim stress --list                             what is in the catalogue, and why
       eventsim stress --out atlas.png --csv atlas.csv    the whole atlas: some minutes
       eventsim stress f22 t1 --engine fast --engine stepped
+      eventsim stress --soak 10000                       random scenes near every degenerate surface:
+                                                         touching, grazing, ties, tiny boxes, extreme ratios
 
     \b
     Keys of --json:
@@ -74,9 +84,15 @@ def command(
                            seconds, sentence
       faults               how many verdicts on event-driven engines are neither right nor a documented refusal
       out, csv             the files written (null without)
+      of --soak: soak, seed, engines, findings (a list: seed, engine, sentence), faults
 
     Exit codes: 0 done; 1 an event-driven engine is at fault; 2 bad usage; 130 interrupted.
     """
+    if soak is not None:
+        if names or out or table:
+            raise click.UsageError("--soak draws its own scenes: no NAME, --out or --csv with it")
+        _soak(range(seed, seed + soak), engines or ("reference", "fast"), as_json, quiet)
+        return
     figure_path = writable(out, "--out", FIGURE_SUFFIXES)
     table_path = writable(table, "--csv", (".csv",))
 
@@ -114,4 +130,25 @@ def command(
     elif not quiet:
         click.echo(as_text(verdicts))
     if any(verdict.fault for verdict in verdicts):
+        click.get_current_context().exit(FAILED)
+
+
+def _soak(seeds: range, engines: tuple[str, ...], as_json: bool, quiet: bool) -> None:
+    """Run the soak; print what was found."""
+    from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.verdicts import soak_data, soak_text
+    from eventsim.cli.words import as_json_text
+    from eventsim.validate.stress.soak import soak
+
+    findings = []
+    with ProgressBar(quiet=quiet) as progress:
+        for done, finding in enumerate(soak(seeds, engines), 1):
+            progress(done / len(seeds), done, 0.0)
+            if finding is not None:
+                findings.append(finding)
+    if as_json:
+        click.echo(as_json_text(soak_data(seeds, engines, findings)))
+    elif not quiet:
+        click.echo(soak_text(seeds, engines, findings))
+    if findings:
         click.get_current_context().exit(FAILED)

@@ -13,6 +13,7 @@ from eventsim.validate.stress.verdict import Word
 
 if TYPE_CHECKING:
     from eventsim.validate.stress.case import Case
+    from eventsim.validate.stress.soak import Finding
     from eventsim.validate.stress.verdict import Verdict
 
 WIDTH = 110
@@ -72,4 +73,27 @@ def as_data(verdicts: Sequence[Verdict], figure: Path | None, table: Path | None
         "faults": sum(v.fault for v in verdicts),
         "out": None if figure is None else str(figure),
         "csv": None if table is None else str(table),
+    }
+
+
+def soak_text(seeds: range, engines: Sequence[str], findings: Sequence[Finding]) -> str:
+    """What a soak found."""
+    lines = [f"seed {found.seed}, {found.engine}: {found.sentence}" for found in findings]
+    outcome = (
+        "no hang, no NaN, no clock that steps back, no two logs that differ"
+        if not findings
+        else f"{len(findings)} faults"
+    )
+    return "\n".join([*lines, f"{len(seeds):,} random scenes, {' against '.join(engines)}: {outcome}"])
+
+
+def soak_data(seeds: range, engines: Sequence[str], findings: Sequence[Finding]) -> dict[str, Any]:
+    """The keys of --soak --json."""
+    told = [{"seed": f.seed, "engine": f.engine, "sentence": f.sentence} for f in findings]
+    return {
+        "soak": len(seeds),
+        "seed": seeds.start,
+        "engines": list(engines),
+        "findings": told,
+        "faults": len(findings),
     }

@@ -13,8 +13,8 @@ from eventsim.engines.base import Run
 from eventsim.scene import Scene
 from eventsim.simulation import simulate
 
-GIVES_UP = ("collapse", "digits")
-"""Reasons to stop with which an engine says that it can no longer tell."""
+GOES_ON = ("until", "events", "quiet")
+"""Reasons to stop that are none of the engine's; with any other it says that it cannot go on."""
 
 
 class GaveUpError(Exception):
@@ -55,7 +55,7 @@ class Bench:
         change = run.residuals.energy
         if change is not None and abs(change) > abs(self.energy):
             self.energy = change
-        if run.stopped in GIVES_UP and not may_give_up:
+        if run.stopped not in GOES_ON and not may_give_up:
             raise GaveUpError(run.stopped, run.reason)
         return run
 

@@ -10,8 +10,9 @@ from time import perf_counter
 from eventsim.errors import EventsimError
 from eventsim.validate.stress.case import Bench, Case, GaveUpError, TimeUpError
 
-EVENT_DRIVEN = ("reference", "fast", "certified")
-"""Engines that must be right, or refuse with a documented reason."""
+EVENT_DRIVEN, CERTIFIED = ("reference", "fast"), "certified"
+"""Engines that must be right, or refuse with a documented reason; and the one that may also say that it cannot prove a scene,
+or take its time, but not be wrong."""
 
 COARSE = 0.1
 """Errors below it, in the case's units, are inaccurate; above it the answer is wrong."""
@@ -78,7 +79,9 @@ def hung(case: Case, engine: str, seconds: float, what: str | None = None) -> Ve
 
 def is_fault(engine: str, word: Word, documented: bool) -> bool:
     """Whether an engine that claims to be exact falls short of it."""
-    return engine in EVENT_DRIVEN and word is not Word.RIGHT and not (word is Word.REFUSED and documented)
+    if word is Word.RIGHT or (word is Word.REFUSED and documented):
+        return False
+    return engine in EVENT_DRIVEN or (engine == CERTIFIED and word not in (Word.REFUSED, Word.SLOW))
 
 
 def _of_error(case: Case, error: float, energy: float) -> tuple[Word, str]:

@@ -1,0 +1,124 @@
+"""Soak: random scenes near every degenerate surface (touching, grazing, ties, tiny boxes, extreme ratios), engine against engine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+
+from eventsim.engines.base import Run
+from eventsim.errors import SceneError
+from eventsim.scene import Box, Channel, Disks, Domain, Open, Periodic, Scene
+from eventsim.simulation import simulate
+
+EVENTS, UNTIL = 80, 50.0
+"""Where a run of the soak stops; a scene without contacts at its time."""
+
+LIMIT = 5.0
+"""Seconds for one run; a longer one has hung."""
+
+MOST_DISKS, TRIES = 7, 40
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What is wrong with a seed."""
+
+    seed: int
+    engine: str
+    sentence: str
+
+
+def random_scene(seed: int) -> Scene:
+    """A few disks whose places, speeds, radii and masses are multiples of each other, moved by an ulp or not at all."""
+    rng = np.random.default_rng(seed)
+    side = float(rng.choice([4.0, 6.0, 8.0]))
+    domain: Domain = (Box((side, side)), Periodic((side, side)), Channel((side, side)), Open())[rng.integers(4)]
+    radii = rng.choice([(0.5, 0.5), (0.5, 0.25), (0.5, 0.0), (1.0, 2.0**-20)])
+    masses = rng.choice([(1.0, 1.0), (1.0, 3.0), (1.0, 1e12), (1.0, math.inf), (1.0, 0.0)])
+    gravity = (0.0, -1.0) if rng.random() < 0.2 else None
+    restitution = float(rng.choice([0.5, 0.9])) if rng.random() < 0.3 else None
+    duration = 1e-3 if restitution is not None and rng.random() < 0.7 else None
+    found: list[tuple[list[float], list[float], float, float]] = []
+    wanted = int(rng.integers(2, MOST_DISKS + 1))
+    scene: Scene | None = None
+    for _ in range(TRIES):
+        place = rng.integers(1, int(4 * side), size=2) / 4.0
+        if rng.random() < 0.3:
+            place = np.nextafter(place, place + rng.choice([-1.0, 1.0], size=2))
+        velocity = rng.integers(-4, 5, size=2) / 4.0
+        kind = rng.integers(2)
+        new = (place.tolist(), velocity.tolist(), float(radii[kind]), float(masses[rng.integers(2)]))
+        position, speed, radius, mass = zip(*found, new, strict=True)
+        try:
+            scene = Scene(
+                Disks(position, speed, radius, mass),
+                domain,
+                gravity=gravity,
+                restitution=restitution,
+                contact_duration=duration,
+                until=UNTIL,
+                events=EVENTS,
+            )
+        except SceneError:
+            continue
+        found.append(new)
+        if len(found) == wanted:
+            break
+    return scene if scene is not None else random_scene(seed + 2**32)
+
+
+def soak(seeds: range, engines: tuple[str, ...]) -> Iterator[Finding | None]:
+    """For each seed, what is wrong, or None: a hang, a number that is none, a clock that steps back, engines that disagree."""
+    for seed in seeds:
+        yield _first_finding(seed, engines)
+
+
+def _first_finding(seed: int, engines: tuple[str, ...]) -> Finding | None:
+    scene = random_scene(seed)
+    first: Run | None = None
+    for engine in engines:
+        began = perf_counter()
+        run = simulate(scene, engine=engine, log=True)
+        sentence = _fault(run)
+        if sentence is None and run.elapsed_s > LIMIT:
+            sentence = f"took {perf_counter() - began:.1f} s"
+        if sentence is None and first is not None:
+            sentence = _difference(first, run)
+        if sentence is not None:
+            return Finding(seed, engine, sentence)
+        first = first or run
+    return None
+
+
+def _fault(run: Run) -> str | None:
+    """What is wrong with a run by itself."""
+    log = run.log
+    assert log is not None
+    if not (np.isfinite(run.state.position).all() and np.isfinite(run.state.velocity).all()):
+        return "a position or a velocity is not a number"
+    # Contacts of one disk within 4 ulp are taken in their exact order, so a logged time may step back by so much.
+    back = float(np.max(-np.diff(log.time), initial=0.0))
+    if back > 4.0 * math.ulp(float(np.max(log.time, initial=1.0))):
+        return f"the clock steps back by {back:.2g}"
+    if run.residuals.max_overlap > OVERLAP:
+        return f"an overlap of {run.residuals.max_overlap:.2g} reaches at a contact"
+    return None
+
+
+OVERLAP = 2.0**-24
+"""In reaches: an ulp of the coordinates, 8, against the smallest reach, 2**-19, and 2**5 of them for flights between."""
+
+
+def _difference(one: Run, other: Run) -> str | None:
+    """Where two engines part."""
+    if one.digest != other.digest:
+        return (
+            f"another log than {one.engine}: {other.counters.events} events, not {one.counters.events}, or other bits"
+        )
+    if one.stopped != other.stopped and {one.stopped, other.stopped} - {"until", "quiet", "events"}:
+        return f"stopped by {other.stopped}, not {one.stopped}"
+    return None

@@ -1,0 +1,68 @@
+"""Contacts that pile up are diagnosed: time, disks, rounds and ratio, the remedy; or that the digits are spent."""
+
+import re
+
+import pytest
+
+import eventsim as es
+
+
+def bounce(**changes):
+    disks = es.Disks([[5.0, 1.5]], radius=0.5)
+    return es.Scene(disks, es.Box((10.0, 10.0)), **{"gravity": (0.0, -2.0), "restitution": 0.5, **changes})
+
+
+@pytest.mark.parametrize("log", [True, False])
+def test_a_bounce_that_dies_out_is_a_collapse_with_its_ratio(log):
+    run = es.simulate(bounce(), until=10.0, engine="reference", log=log)
+    assert run.stopped == "collapse"
+    assert run.time == pytest.approx(3.0, abs=1e-12)
+    assert "collapse of disk 0 at time 3:" in run.reason
+    assert "each 0.5 times as long as the one before" in run.reason
+    assert "contact_duration" in run.reason
+
+
+def test_a_collapse_late_on_the_clock_has_the_same_rounds():
+    early, late = (
+        es.simulate(bounce(start_time=start), until=start + 10.0, engine="reference").reason for start in (0.0, 2.0**30)
+    )
+    assert re.findall(r"(\d+) rounds", early) == re.findall(r"(\d+) rounds", late)
+
+
+@pytest.mark.parametrize(("restitution", "contacts"), [(0.08, 11), (0.0719, 89)])
+def test_a_finite_sequence_is_counted_exactly(restitution, contacts):
+    run = es.simulate(es.gallery("collapse", restitution=restitution), engine="reference")
+    assert run.counters.events == contacts
+    assert run.stopped in ("until", "quiet")
+
+
+def test_three_disks_collapse_at_a_known_time():
+    """e = .05: the rounds end before the gaps lose their digits."""
+    run = es.simulate(es.gallery("collapse", restitution=0.05), engine="reference")
+    assert run.stopped == "collapse"
+    assert "disks 0, 1, 2" in run.reason
+    ratio = float(re.search(r"each ([\d.e-]+) times", run.reason)[1])
+    # the matrix of a round has the eigenvalue that gives its time: between 0 and 1, and steady to a few per cent
+    assert 0.08 < ratio < 0.12
+
+
+def test_gaps_below_the_digits_are_said_to_be_that():
+    run = es.simulate(es.gallery("collapse", restitution=0.0717), engine="reference", log=True)
+    assert run.stopped == "digits"
+    assert run.log.provenance.ending.reason == "digits"
+    assert "disks 0, 1, 2" in run.reason
+    assert "cannot be told" in run.reason
+
+
+def test_step_by_step_the_same_is_said():
+    sim = es.Simulation(bounce(), engine="reference")
+    with pytest.raises(es.CollapseError, match=r"disk 0 at time 3: .* 0.5 times"):
+        sim.advance_to(10.0)
+
+
+def test_with_a_contact_duration_the_run_goes_on():
+    run = es.simulate(es.gallery("collapse", restitution=0.05), until=3.0, events=2000, engine="reference")
+    assert run.stopped == "collapse"
+    scene = es.gallery("collapse", restitution=0.05)
+    gentle = es.Scene(scene.disks, scene.domain, restitution=0.05, contact_duration=1e-3)
+    assert es.simulate(gentle, until=10.0, engine="reference").stopped in ("until", "quiet")
