@@ -35,12 +35,15 @@ def _is_number(word: str) -> bool:
 @click.command(cls=ManyTimes)
 @click.argument("log")
 @click.option(
-    "--at", "times", type=float, multiple=True, required=True, metavar="T [T ...]", help="Times on the scene's clock."
+    "--at", "times", type=float, multiple=True, metavar="T [T ...]", help="Times on the scene's clock."
 )
-@click.option("--out", metavar="FILE", help="Write the table to FILE (.csv or .npz) instead of stdout.")
+@click.option("--frames", type=click.IntRange(min=2), metavar="N", help="N times instead, evenly from beginning to end.")
+@click.option("--out", metavar="FILE", help="Write to FILE (.csv, .npz; .xyz, .gsd for other programs) instead of stdout.")
 @json_option
 @quiet_option
-def command(log: str, times: tuple[float, ...], out: str | None, as_json: bool, quiet: bool) -> None:
+def command(
+    log: str, times: tuple[float, ...], frames: int | None, out: str | None, as_json: bool, quiet: bool
+) -> None:
     """Print the positions and velocities of all disks at each time T of the run that LOG tells.
 
     A table with the columns time, disk, x, y, vx, vy, radius, mass; floats read back as the same bits. At the
@@ -50,6 +53,7 @@ def command(log: str, times: tuple[float, ...], out: str | None, as_json: bool, 
     Examples:
       eventsim state break.csv --at 0.5
       eventsim state break.csv --at 0.5 1 1.5 --out states.csv
+      eventsim state gas.csv --frames 100 --out gas.xyz        for OVITO, freud, ASE, ...
 
     \b
     Keys of --json:
@@ -61,6 +65,8 @@ def command(log: str, times: tuple[float, ...], out: str | None, as_json: bool, 
     Exit codes: 0 done; 2 bad usage, no such log, or a time that the log does not cover.
     """
     target = writable(out, "--out", STATE_SUFFIXES)
+    if (not times) == (frames is None):
+        raise click.UsageError("say at which times: either --at T [T ...] or --frames N")
 
     from eventsim.cli.words import as_json_text, plural
     from eventsim.record.log import load_log
@@ -69,6 +75,9 @@ def command(log: str, times: tuple[float, ...], out: str | None, as_json: bool, 
 
     events = load_log(log)
     replay = Replay(events)
+    if frames is not None:
+        begin, end = replay.span
+        times = tuple(begin + (end - begin) * (k / (frames - 1)) for k in range(frames))
     states = [replay.state_at(time) for time in times]
     if target is not None:
         write_states(target, events.scene, states)

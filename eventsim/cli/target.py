@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 LOG_SUFFIXES = (".csv", ".jsonl", ".npz", ".parquet")
-STATE_SUFFIXES = (".csv", ".npz")
+STATE_SUFFIXES = (".csv", ".npz", ".xyz", ".gsd")
 
 
 def writable(path: str | None, option: str, suffixes: Sequence[str]) -> Path | None:

@@ -11,11 +11,12 @@ from typing import IO
 import numpy as np
 
 from eventsim.errors import EventsimError
+from eventsim.record import exchange
 from eventsim.record.events import Column, State
 from eventsim.record.files.sink import PART
 from eventsim.scene import Scene
 
-SUFFIXES = (".csv", ".npz")
+SUFFIXES = (".csv", ".npz", *exchange.SUFFIXES)
 STATE_COLUMNS = ("time", "disk", "x", "y", "vx", "vy", "radius", "mass")
 
 
@@ -37,13 +38,17 @@ def state_columns(scene: Scene, states: Sequence[State]) -> dict[str, Column]:
 
 
 def write_states(path: str | PathLike[str], scene: Scene, states: Sequence[State]) -> None:
-    """Write states to `path`: .csv (floats that read back as the same bits) or .npz (one array per column).
+    """Write states to `path`: .csv (floats that read back as the same bits), .npz (one array per column), or
+    .xyz or .gsd for other programs (see `exchange`).
 
     The file appears under its name only when whole. Raises EventsimError where it cannot be written.
     """
     file = Path(path)
     if file.suffix.lower() not in SUFFIXES:
-        raise EventsimError(f"{file}: a file of states ends in {' or '.join(SUFFIXES)}")
+        raise EventsimError(f"{file}: a file of states ends in {', '.join(SUFFIXES)}")
+    if file.suffix.lower() in exchange.SUFFIXES:
+        exchange.write_exchange(file, scene, states)
+        return
     columns = state_columns(scene, states)
     part = file.with_name(file.name + PART)
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,12 +51,22 @@ def place_gas(
     if region is None:
         raise SceneError(f"{where}.region is missing: an open domain has no size that a gas could fill")
     place = _Place(gas, domain, walls, present, region, where)
-    velocity = _velocity(gas, rng)
+    velocity = start_velocity(gas, rng)
     position = place.at_random(rng) if gas.arrangement == "random" else place.on_lattice()
     return Disks(position, velocity, place.radius, gas.mass)
 
 
-def _velocity(gas: Gas, rng: np.random.Generator) -> Floats:
+def clear_of(
+    domain: Domain, walls: Sequence[Wall], present: Disks, position: Floats, radius: float, gas: Gas, where: str
+) -> bool:
+    """Whether disks of a gas at `position` (N, 2) are clear of walls and of the disks `present`."""
+    region = region_of(gas, domain)
+    assert region is not None
+    place = _Place(replace(gas, radius=radius, packing_fraction=None), domain, walls, present, region, where)
+    return bool(place.is_free(position).all())
+
+
+def start_velocity(gas: Gas, rng: np.random.Generator) -> Floats:
     """Velocities (N, 2) as the gas wants them."""
     if gas.temperature:
         return thermal_velocities(gas.count, gas.mass, gas.temperature, rng)
@@ -112,7 +123,7 @@ class _Place:
                 (low[0], low[1]),
                 (high[0], high[1]),
                 self.period,
-                lambda drops: self._is_free(drops + corner),
+                lambda drops: self.is_free(drops + corner),
                 rng,
             )
             missing = count - len(placed)
@@ -130,7 +141,7 @@ class _Place:
         wanted = count
         while (shape := lattice.shape(wanted)) and wanted <= MOST_SITES + BLOCKED_SHARE * count:
             sites = lattice.sites(shape)
-            sites = sites[self._is_free(sites)]
+            sites = sites[self.is_free(sites)]
             if len(sites) >= count:
                 return sites[np.arange(count) * len(sites) // count]
             # As many more as the share of blocked sites lets expect, but at most twice as many at a time.
@@ -146,7 +157,7 @@ class _Place:
             f" {self._packing_fraction():.4g}) do not fit on a {self.gas.arrangement} lattice: {found}{denser}"
         )
 
-    def _is_free(self, position: Floats) -> NDArray[np.bool_]:
+    def is_free(self, position: Floats) -> NDArray[np.bool_]:
         """Which of these centres (M, 2) keep the disks clear of walls and others; touching is allowed."""
         relative = position - np.array(self.origin)
         # Rounding may lift a centre onto the end of a period, which is no place of its own.

@@ -27,7 +27,8 @@ class Gas:
         radius: length; or else packing_fraction, of the region.
         mass: of each.
         temperature: kT, mass length^2 / time^2; or else speed, the same for all; neither: at rest.
-        arrangement: "random", "square" or "hexagonal".
+        arrangement: "random", "square", "hexagonal", or "compressed": grown in place, together with the other gases of the
+            region that are.
         region: x0, y0, x1, y1; None for the domain.
         seed: of the random numbers.
     """
@@ -45,7 +46,7 @@ class Gas:
     @property
     def uses_chance(self) -> bool:
         """Whether the gas cannot be made without random numbers."""
-        return self.arrangement == "random" or bool(self.temperature) or bool(self.speed)
+        return self.arrangement in ("random", "compressed") or bool(self.temperature) or bool(self.speed)
 
 
 def region_of(gas: Gas, domain: Domain) -> Region | None:

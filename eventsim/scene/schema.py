@@ -13,7 +13,7 @@ from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFie
 from eventsim.scene.domain import DOMAINS
 from eventsim.scene.walls import WALLS
 
-ARRANGEMENTS = ("random", "square", "hexagonal")
+ARRANGEMENTS = ("random", "square", "hexagonal", "compressed")
 TABLE_LISTS = ("disk", "disks_file", "gas", "wall")
 
 

@@ -11,11 +11,12 @@ import numpy as np
 
 from eventsim.errors import SceneError
 from eventsim.scene import schema
+from eventsim.scene.compress import place_compressed
 from eventsim.scene.disks import Disks, join
 from eventsim.scene.disks_file import read_disks_file
 from eventsim.scene.domain import DOMAINS, Domain, Open
 from eventsim.scene.fill import place_gas
-from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems
+from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems, region_of
 from eventsim.scene.names import BlockNames
 from eventsim.scene.scene import Scene
 from eventsim.scene.validate import NO_DISKS
@@ -44,12 +45,25 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Sce
         raise SceneError(problems)
     if not gases:
         return scene
+    domain = found.domain or Open()
+    rngs = {i: np.random.default_rng(gas.seed if seed is None else (seed, i)) for i, gas in gases}
+    grown: dict[int, Disks] = {}
     for i, gas in gases:
-        rng = np.random.default_rng(gas.seed if seed is None else (seed, i))
-        placed = place_gas(gas, found.domain or Open(), found.walls, disks, rng, f"gas[{i}]")
+        if gas.arrangement == "compressed" and i not in grown:
+            # all that are to fill this region densely grow together
+            group = [(k, other) for k, other in gases if _grows_with(gas, other, domain)]
+            parts = place_compressed(
+                [other for _, other in group], domain, found.walls, disks, [rngs[k] for k, _ in group], f"gas[{i}]"
+            )
+            grown |= {k: part for (k, _), part in zip(group, parts, strict=True)}
+        placed = grown[i] if i in grown else place_gas(gas, domain, found.walls, disks, rngs[i], f"gas[{i}]")
         found.names.add(len(disks), f"disk {{}} (of gas[{i}])", range(len(disks), len(disks) + len(placed)))
         disks = join([disks, placed])
     return found.scene(disks)
+
+
+def _grows_with(gas: Gas, other: Gas, domain: Domain) -> bool:
+    return other.arrangement == "compressed" and region_of(gas, domain) == region_of(other, domain)
 
 
 @dataclass(slots=True)
