@@ -11,7 +11,8 @@ from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES, writable
 
 FIRST_SCENE = "break"
-EXITS = {"collapse": STOPPED_EARLY, "digits": STOPPED_EARLY, "interrupted": INTERRUPTED}
+EARLY = ("collapse", "digits", "undecided tie")
+EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 
 
 @click.command()
@@ -71,7 +72,7 @@ def command(
                                starts a last bit apart disagree on, null where none; events, until:
                                how far they were compared}
       stopped, reason          until | events | quiet (no event ahead) | collapse | digits |
-                               interrupted; and why, in words
+                               undecided tie | interrupted; and why, in words
       log, state               the files written (null without)
 
     Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse or digits; 130 interrupted.

@@ -19,6 +19,7 @@ from eventsim import __version__
 from eventsim.engines.base import OnEvent, Progress, Run, Session, Stop
 from eventsim.engines.collapse import TAIL, diagnosis
 from eventsim.engines.residuals import residuals_of
+from eventsim.errors import EventsimError
 from eventsim.formulas.clock import clock_time
 from eventsim.record.digest import Digester
 from eventsim.record.events import Rows, State, blank_rows
@@ -30,6 +31,9 @@ from eventsim.scene import Scene
 
 FIRST_BUDGET, LONGEST_STINT = 64, 0.2
 """Steps of the first stint; seconds that a stint may take before progress and interrupts are looked at."""
+
+REPLAYED = ("auto", "reference", "fast")
+"""Engines whose every bit follows from the scene and the order of its contacts."""
 
 
 class Sink(Protocol):
@@ -64,7 +68,15 @@ class Wishes:
 
 
 def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishes) -> Run:
-    """Simulate to the stop and gather what was wished for; an interrupt keeps everything so far."""
+    """Simulate to the stop and gather what was wished for; an interrupt keeps everything so far.
+
+    Raises EventsimError for a compact log of an engine whose floats replay cannot compute.
+    """
+    if wishes.compact and engine not in REPLAYED:
+        raise EventsimError(
+            "a compact log leaves out what replay computes, and replay computes as the reference and the fast engine do: "
+            f"the log of the engine {engine} has to be a full one"
+        )
     provenance = provenance_of(session, engine, scene, wishes.command)
     memory = MemorySink(provenance) if wishes.log is True else None
     path = Path(wishes.log) if not isinstance(wishes.log, bool) else None

@@ -258,6 +258,12 @@ def test_the_engine_is_one_of_all_engines():
     assert run.digest == plain.digest
 
 
+def test_a_compact_log_of_it_is_refused(tmp_path):
+    with pytest.raises(EventsimError, match="full"):
+        es.simulate(gallery("two-disks"), engine="certified", log=tmp_path / "log.npz", compact=True)
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_proof_says_where_float64_leaves_it():
     proof = prove(lattice_gas(8, 0.3, seed=1), Stop(None, 350))
     assert proof.proven >= 350
