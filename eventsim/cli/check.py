@@ -47,7 +47,8 @@ def command(
       touching_notes              starting overlaps so small that they count as touching
       until, events, engine       the stop of the scene; what auto chooses
       horizon                     null without --horizon; {event, time} of the first contact that runs from
-                                  starts a last bit apart disagree on (null: none), {events, until} compared
+                                  starts a last bit apart disagree on (null: none; exact ties part them at
+                                  once), {events, until} compared
       explanation                 topic -> words, as the text prints them
 
     Exit codes: 0 valid; 2 bad usage, scene or file.

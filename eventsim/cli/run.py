@@ -69,8 +69,8 @@ def command(
                                momentum (share of sum m |v| not booked at walls),
                                max_overlap (deepest overlap at a contact, in reaches)
       horizon                  null without --horizon; {event, time: of the first contact that runs from
-                               starts a last bit apart disagree on, null where none; events, until:
-                               how far they were compared}
+                               starts a last bit apart disagree on, null where none (exact ties part
+                               them at once); events, until: how far they were compared}
       stopped, reason          until | events | quiet (no event ahead) | collapse | digits |
                                undecided tie | interrupted; and why, in words
       log, state               the files written (null without)
