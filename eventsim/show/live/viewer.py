@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Mapping
 
 from aiohttp import WSMsgType, web
@@ -83,6 +84,11 @@ class Viewer:
             await self._send(packet("error", text="\n".join(error.problems)))
         except EventsimError as error:
             await self._send(packet("error", text=str(error)))
+        except ConnectionError:
+            raise
+        except Exception:
+            logging.getLogger(__name__).exception("a message could not be followed")
+            await self._send(packet("error", text="the server failed at this; its terminal tells how"))
         if not isinstance(message, Shown | Control):
             self._done += 1
             self.wake()

@@ -46,7 +46,7 @@ CROSSING_SECONDS = 5.0
 MOST_PER_FRAME = 1000
 """Disks in a comparison: the per-frame engine, and the page that looks for overlaps, go through all pairs in each frame."""
 
-MANY = 500
+MANY = 300
 """Disks from which on the fast engine is worth its start: with fewer, the reference engine is ahead of any viewer."""
 
 
@@ -83,6 +83,9 @@ class World:
         self.viewers.discard(viewer)
         if not self.viewers:
             self._task.cancel()
+            # A cancelled task remembers where it was, and so this world: kept here it would close a cycle, and the
+            # large memory of a run would wait for the collector.
+            del self._task
             self._abandoned(self)
 
     def wake(self) -> None:

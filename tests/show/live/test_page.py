@@ -8,6 +8,7 @@ import pytest
 
 import eventsim as es
 from eventsim.record.replay import Replay
+from eventsim.scene.gallery import names
 from tests.show.browser import browser
 from tests.show.live.running import live_server
 
@@ -192,6 +193,18 @@ def test_a_built_in_scene_with_its_parameters(page, tmp_path):
     page.js("live.player.await(arguments[0], false)", 10.0)
     page.wait("live.player.awaited === null")
     assert page.js("return live.player.world.event.time.length") == 314
+
+
+@pytest.mark.slow
+def test_every_built_in_scene_plays(page, tmp_path):
+    for name in names():
+        page.open(f"gallery={name}")
+        assert page.js("return live.part('notice').hidden"), name
+        page.js("for (const part of ['trails', 'flash', 'arrows']) if (!live.player.view[part]) live.part(part).click()")
+        page.js("live.player.play()")
+        page.wait("live.player.script.frames > 5")
+        page.js("live.player.pause()")
+        page.assert_true_to(Replay(es.load_log(page.fetch("log-file", tmp_path / "log.csv"))), 3)
 
 
 def test_an_address_restores_its_scene(page):
