@@ -9,9 +9,11 @@ R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem (1992)
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
+
+from eventsim.formulas.relaxation import StrainedError, relaxed, snapped
 
 
 class SqueezedError(ArithmeticError):
@@ -37,6 +39,10 @@ class Outcome(NamedTuple):
 
 
 Vector = tuple[Fraction, Fraction]
+Solver: TypeAlias = Callable[[list[list[Fraction]], list[Fraction]], list[Fraction]]
+
+MOST_EXACT = 40
+"""Contacts of a cluster up to which rational numbers are fast, whatever the directions: about a second."""
 
 
 def resolve_together(
@@ -44,37 +50,51 @@ def resolve_together(
 ) -> Outcome:
     """Resolve a cluster; its velocities are rounded once.
 
-    The impulse between an immovable disk and a wall is nan: it has no finite size.
+    The impulse between an immovable disk and a wall is nan: it has no finite size.  Clusters of more than MOST_EXACT contacts
+    are resolved to many more digits than a float has, and not exactly.
     """
     exact: list[Vector] = [(Fraction(u), Fraction(w)) for u, w in velocities]
-    after, magnitudes, active = resolve_exactly(contacts, exact, masses)
+    if len(contacts) <= MOST_EXACT:
+        after, magnitudes, active = resolve_exactly(contacts, exact, masses)
+    else:
+        try:
+            after, magnitudes, active = resolve_exactly(contacts, exact, masses, relaxed)
+        except StrainedError:
+            raise SqueezedError from None
+        size = max(max(abs(u), abs(w)) for u, w in velocities)
+        after = [(snapped(u, size), snapped(w, size)) for u, w in after]
     return Outcome([(_float(u), _float(w)) for u, w in after], magnitudes, active)
 
 
 def resolve_exactly(
-    contacts: Sequence[JointContact], velocities: Sequence[Vector], masses: Sequence[float]
+    contacts: Sequence[JointContact],
+    velocities: Sequence[Vector],
+    masses: Sequence[float],
+    solve: Solver | None = None,
 ) -> tuple[list[Vector], list[float], list[bool]]:
     """Resolve a cluster without rounding: immovable disks at walls, then the massive ones, then the tracers against these.
 
     Directions and restitutions of the contacts may be rational.  Returns velocities, magnitudes of the impulses (rounded;
-    nan between an immovable disk and a wall) and which contacts took part.
+    nan between an immovable disk and a wall) and which contacts took part.  solve: what solves the complementarity problem,
+    `complementary` if None.
     """
+    solver = complementary if solve is None else solve
     exact = list(velocities)
     impulses = [Fraction(0)] * len(contacts)
     tracers = {body for body, mass in enumerate(masses) if mass == 0.0}
     immovable = {body for body, mass in enumerate(masses) if math.isinf(mass)}
     braced = [k for k, c in enumerate(contacts) if c.b is None and c.a in immovable]
     for body in sorted({contacts[k].a for k in braced}):
-        _resolve_alone(body, [k for k in braced if contacts[k].a == body], contacts, exact, impulses)
+        _resolve_alone(body, [k for k in braced if contacts[k].a == body], contacts, exact, impulses, solver)
     inverse = [Fraction(0) if m == 0.0 or math.isinf(m) else 1 / Fraction(m) for m in masses]
     massive = [k for k, c in enumerate(contacts) if k not in braced and c.a not in tracers and c.b not in tracers]
-    _resolve(contacts, massive, exact, inverse, impulses)
+    _resolve(contacts, massive, exact, inverse, impulses, solver)
     norms = [math.hypot(c.dx, c.dy) for c in contacts]
     magnitudes = [_product(value, norm) for value, norm in zip(impulses, norms, strict=True)]
     for k in braced:
         magnitudes[k] = math.nan
     for body in sorted(tracers):
-        _resolve_alone(body, [k for k, c in enumerate(contacts) if body in (c.a, c.b)], contacts, exact, impulses)
+        _resolve_alone(body, [k for k, c in enumerate(contacts) if body in (c.a, c.b)], contacts, exact, impulses, solver)
     return exact, magnitudes, [value > 0 for value in impulses]
 
 
@@ -84,10 +104,11 @@ def _resolve_alone(
     contacts: Sequence[JointContact],
     velocities: list[Vector],
     impulses: list[Fraction],
+    solve: Solver,
 ) -> None:
     """Resolve contacts as if only this body could change its velocity; its mass does not matter then."""
     inverse = [Fraction(int(k == body)) for k in range(len(velocities))]
-    _resolve(contacts, own, velocities, inverse, impulses)
+    _resolve(contacts, own, velocities, inverse, impulses, solve)
 
 
 def _resolve(
@@ -96,6 +117,7 @@ def _resolve(
     velocities: list[Vector],
     inverse: Sequence[Fraction],
     impulses: list[Fraction],
+    solve: Solver,
 ) -> None:
     """Solve for the approaching ones among the chosen contacts; change velocities and impulses."""
     normals = {k: (Fraction(contacts[k].dx), Fraction(contacts[k].dy)) for k in chosen}
@@ -104,8 +126,7 @@ def _resolve(
     if not rows:
         return
     factors = [(1 + Fraction(contacts[k].restitution)) * approach[k] for k in rows]
-    matrix = [[_coupling(contacts[j], normals[j], contacts[k], normals[k], inverse) for k in rows] for j in rows]
-    for k, value in zip(rows, complementary(matrix, factors), strict=True):
+    for k, value in zip(rows, solve(_matrix(contacts, rows, normals, inverse), factors), strict=True):
         if value == 0:
             continue
         impulses[k] = value
@@ -122,6 +143,25 @@ def _normal_velocity(contact: JointContact, normal: Vector, velocities: Sequence
     if contact.b is not None:
         u, w = u - velocities[contact.b][0], w - velocities[contact.b][1]
     return u * normal[0] + w * normal[1]
+
+
+def _matrix(
+    contacts: Sequence[JointContact], rows: list[int], normals: dict[int, Vector], inverse: Sequence[Fraction]
+) -> list[list[Fraction]]:
+    """J M^-1 J^T; contacts that share no body are not coupled."""
+    at: dict[int, list[int]] = {}
+    for place, k in enumerate(rows):
+        for body in (contacts[k].a, contacts[k].b):
+            if body is not None:
+                at.setdefault(body, []).append(place)
+    zero = Fraction(0)
+    matrix = [[zero] * len(rows) for _ in rows]
+    for places in at.values():
+        for one in places:
+            for other in places:
+                j, k = rows[one], rows[other]
+                matrix[one][other] = _coupling(contacts[j], normals[j], contacts[k], normals[k], inverse)
+    return matrix
 
 
 def _coupling(one: JointContact, n: Vector, other: JointContact, m: Vector, inverse: Sequence[Fraction]) -> Fraction:

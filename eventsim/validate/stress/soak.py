@@ -1,4 +1,4 @@
-"""Soak: random scenes near every degenerate surface (touching, grazing, ties, tiny boxes, extreme ratios), engine against engine."""
+"""Soak: random scenes near every degenerate surface (touching, grazing, ties, extreme ratios), engine against engine."""
 
 from __future__ import annotations
 
