@@ -46,7 +46,7 @@ CROSSING_SECONDS = 5.0
 MOST_PER_FRAME = 1000
 """Disks in a comparison: the per-frame engine, and the page that looks for overlaps, go through all pairs in each frame."""
 
-MANY = 300
+MANY = 500
 """Disks from which on the fast engine is worth its start: with fewer, the reference engine is ahead of any viewer."""
 
 
