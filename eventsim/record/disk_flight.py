@@ -96,3 +96,4 @@ class DiskFlight:
         place[axis] = 0.0 if step > 0 else length
         self.anchor(t, (place[0], place[1]), self.speed(t))
         self.wraps[axis] += step
+        self.met = tuple(met for met in self.met if met[0] >= 0)  # that wall can now be met again

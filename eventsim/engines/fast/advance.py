@@ -22,6 +22,7 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, store, word
+from eventsim.engines.fast.met import forget_walls
 from eventsim.formulas.motion import position, velocity
 
 
@@ -81,3 +82,4 @@ def wrap(m, rules, i, code, t):
         y = 0.0 if step > 0 else rules.height
         store(m.disks, i * WORDS + WRAPS_Y, word(m.disks, i * WORDS + WRAPS_Y) + step)
     anchor(m, i, t, x, y, vx, vy)
+    forget_walls(m, i)

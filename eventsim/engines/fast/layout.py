@@ -65,8 +65,8 @@ class Rules(NamedTuple):
     """What the scene says; None: it does not have that.
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
-    disks or tracers.  features: number of wall shapes; first_feature: the place of the first.  at_once_limit: contacts at one
-    instant that are too many.
+    disks or tracers.  features: number of wall shapes; first_feature: the place of the first.  instant, at_once_limit:
+    see `instant_of`.
     """
 
     gx: object
@@ -84,6 +84,7 @@ class Rules(NamedTuple):
     common_mass: float
     features: object
     first_feature: int
+    instant: float
     at_once_limit: int
 
 

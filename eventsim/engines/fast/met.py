@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.compiled import inline, part
-from eventsim.engines.fast.layout import MET, MET_KX, MET_KY, SEVERAL, WORDS, WRAPS_X, WRAPS_Y
+from eventsim.engines.fast.layout import MET, MET_KX, MET_KY, NOBODY, SEVERAL, WORDS, WRAPS_X, WRAPS_Y
 from eventsim.engines.fast.memory import store, word
 
 
@@ -13,6 +13,25 @@ def remember(m, i, partner, kx, ky):
     store(m.disks, i * WORDS + MET, partner)
     store(m.disks, i * WORDS + MET_KX, kx)
     store(m.disks, i * WORDS + MET_KY, ky)
+
+
+@inline
+def forget_walls(m, i):
+    """Let disk i forget the walls that it met last: on the other side of the domain it can meet them again."""
+    met = word(m.disks, i * WORDS + MET)
+    if met == SEVERAL:
+        _forget_among_several(m, i)
+    elif met < NOBODY:
+        store(m.disks, i * WORDS + MET, NOBODY)
+
+
+@part
+def _forget_among_several(m, i):
+    row = word(m.disks, i * WORDS + MET_KX)
+    while row >= 0:
+        if word(m.several, 4 * row) < NOBODY:
+            store(m.several, 4 * row, NOBODY)
+        row = word(m.several, 4 * row + 3)
 
 
 @part

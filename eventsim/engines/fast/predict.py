@@ -136,7 +136,9 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
     time, code, shared = NEVER, NOTHING, 0
-    goes_on_x = m.slots is not None and rules.length_x is None and rules.wall_x is None  # an open plane, covered by cells
+    goes_on_x = (
+        m.slots is not None and rules.length_x is None and rules.wall_x is None
+    )  # an open plane, covered by cells
     goes_on_y = m.slots is not None and rules.length_y is None and rules.wall_y is None
     k = word(m.disks, i * WORDS + COLUMN)
     low = grid.low_x + (k - 1) * grid.side_x

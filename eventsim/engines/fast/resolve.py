@@ -22,7 +22,6 @@ from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.predict import image, shift
 from eventsim.engines.fast.rows import write_row
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
-from eventsim.engines.reference.resolve import AT_ONCE as INSTANT
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -66,7 +65,7 @@ def _restitution(m, a, b, t, restitution, duration):
 def _note_time(m, rules, i, t, idle):
     """Note a contact of disk i, to see that an instant does not end; idle ones, which change nothing, weigh more."""
     weight = rules.at_once_limit // 3 + 1 if idle else 1
-    if t - real(m.disks, i * REALS + CONTACT_TIME) <= INSTANT * t:
+    if t - real(m.disks, i * REALS + CONTACT_TIME) <= rules.instant * t:
         weight += word(m.disks, i * WORDS + AT_ONCE)
     store(m.disks, i * WORDS + AT_ONCE, weight)
     store(m.disks, i * REALS + CONTACT_TIME, t)

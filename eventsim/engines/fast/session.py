@@ -19,10 +19,11 @@ from eventsim.engines.fast.plan import LOOK_AHEAD, MANY_DISKS, Sizes, cell_sizes
 from eventsim.engines.fast.shapes import KINDS, WIDTH
 from eventsim.engines.fast.state import FastState, aligned
 from eventsim.engines.reference.calendar import CONTACT, Event
-from eventsim.engines.reference.loop import components, endless, row_order
-from eventsim.engines.reference.resolve import AT_ONCE_ELASTIC, AT_ONCE_INELASTIC, Resolver
+from eventsim.engines.reference.loop import components, endless, row_order, squeezed
+from eventsim.engines.reference.resolve import Resolver, instant_of
 from eventsim.formulas.clock import FIRST_WINDOW, next_window, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
+from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import clock_times
 from eventsim.scene.stage import Stage
@@ -123,8 +124,8 @@ class FastSession:
                 self._flush()
                 return None  # rows are best drained while they are in the caches
             if status == layout.STATUS_TIE:
-                if (i := self._resolve_instant()) is not None:
-                    return self._give_up(i)
+                if (stopped := self._resolve_instant()) is not None:
+                    return stopped
             elif status == layout.STATUS_STUCK:
                 return self._give_up(int(state.labels[counts[layout.DISK]]))
             elif status == layout.STATUS_FULL:
@@ -145,9 +146,7 @@ class FastSession:
     def _run(self, limit: float, target: int, budget: int) -> int:
         counts = self._counts
         day, steps = int(counts[layout.DAY]), int(counts[layout.STEPS])
-        status: int = run(
-            self._arrays, self._grid, self._rules, counts, self._sums, limit, target, budget
-        )
+        status: int = run(self._arrays, self._grid, self._rules, counts, self._sums, limit, target, budget)
         self.state.now = float(self._sums[layout.NOW])
         self._days += int(counts[layout.DAY]) - day
         self._steps += int(counts[layout.STEPS]) - steps
@@ -167,10 +166,10 @@ class FastSession:
     def _due(self) -> Floats:
         return self.state.disks[: self.state.n, layout.DUE]
 
-    def _resolve_instant(self) -> int | None:
+    def _resolve_instant(self) -> str | None:
         """Resolve all contacts of the present time that are predicted by now, by the reference engine's rules.
 
-        Returns a disk whose contacts at this instant do not end.
+        Returns why the run stops here, None where it goes on.
         """
         state, now = self.state, self.state.now
         self._flush()
@@ -179,7 +178,12 @@ class FastSession:
         waiting = [int(i) for i in self._find(due_at)[:, 0]]
         changed: list[int] = []
         for component in components(generation):
-            changed += resolver.resolve(component)
+            try:
+                changed += resolver.resolve(component)
+            except SqueezedError:
+                self._keep(resolver)
+                stopped, self.reason = squeezed(component)
+                return stopped
         self._keep(resolver)
         self._arrays = self._arrays._replace(several=state.several.reshape(-1))
         places = {int(state.place_of[i]) for i in changed}
@@ -188,7 +192,8 @@ class FastSession:
         for i in waiting:
             if i not in places:  # its contact came to nothing: it flies on
                 self._predict(i, i + 1, math.nextafter(now, math.inf))
-        return next((i for i in changed if state.at_once[i] >= resolver.at_once_limit), None)
+        stuck = next((i for i in changed if state.at_once[i] >= resolver.at_once_limit), None)
+        return None if stuck is None else self._give_up(stuck)
 
     def _generation(self) -> list[Event]:
         """All contacts of the present time, each once, in the order of rows."""
@@ -477,7 +482,7 @@ def _rules(stage: Stage) -> Rules:
         stage.common_mass,
         len(stage.features) or None,
         len(stage.boundaries),
-        AT_ONCE_ELASTIC if stage.pair_restitution == stage.wall_restitution == 1.0 else AT_ONCE_INELASTIC,
+        *instant_of(stage),
     )
 
 

@@ -114,7 +114,8 @@ class MetColumn:
         entries, row = [], int(record[MET_KX])
         while row >= 0:
             partner, kx, ky, row = state.several[row].tolist()
-            entries.append(self._entry(partner, kx, ky))
+            if partner != NOBODY:
+                entries.append(self._entry(partner, kx, ky))
         return tuple(entries)
 
     def __setitem__(self, i: int, met: Met) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from eventsim.engines.base import Counters
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.state import EngineState
@@ -33,11 +35,27 @@ AT_ONCE_ELASTIC, AT_ONCE_INELASTIC = 100_000, 100
 """Contacts of one disk at one instant that are too many.  Elastic sequences end, if late (a light disk between a heavy one and
 a wall); inelastic ones of this length are a collapse."""
 
+AT_ONCE_SQUEEZED = 2.0**-32
+"""As AT_ONCE, where energy has no bound: between moving immovable disks, or as a tracer, a disk can be driven to ever faster
+contacts, whose number would be the inverse root of AT_ONCE before the clock stands still."""
+
+
+def instant_of(stage: Stage) -> tuple[float, int]:
+    """(share of the clock, number): contacts of a disk closer than this are at one instant, and so many of them too many."""
+    if not (stage.pair_restitution == 1.0 and stage.wall_restitution == 1.0):
+        return AT_ONCE, AT_ONCE_INELASTIC
+    if stage.mass is not None:
+        driven = np.isinf(stage.mass) & ((stage.vx != 0.0) | (stage.vy != 0.0))
+        if np.any(driven | (stage.mass == 0.0)):
+            return AT_ONCE_SQUEEZED, AT_ONCE_ELASTIC
+    return AT_ONCE, AT_ONCE_ELASTIC
+
 
 class Resolver:
     """Resolves the contacts of one stage; counts them, books momentum, and keeps their rows if asked to."""
 
-    at_once = AT_ONCE
+    at_once: float | None = None
+    """Share of the clock within which contacts are at one instant; None: what suits the scene."""
 
     def __init__(self, stage: Stage, state: EngineState, counters: Counters, keep_rows: bool) -> None:
         self._stage = stage
@@ -48,8 +66,8 @@ class Resolver:
         self._same_mass: float = stage.common_mass
         self._keep_rows = keep_rows
         self.rows: list[Row] = []
-        elastic = stage.pair_restitution == 1.0 and stage.wall_restitution == 1.0
-        self.at_once_limit = AT_ONCE_ELASTIC if elastic else AT_ONCE_INELASTIC
+        share, self.at_once_limit = instant_of(stage)
+        self._instant = share if self.at_once is None else self.at_once
 
     def resolve(self, component: list[Event]) -> list[int]:
         """Resolve contacts of one time that are connected through shared disks; the disks that it changed."""
@@ -238,7 +256,7 @@ class Resolver:
         """Note a contact of disk i; of idle ones, which change nothing, a third at the same instant is too many."""
         state = self._state
         weight = self.at_once_limit // 3 + 1 if idle else 1
-        again = t - state.contact_time[i] <= self.at_once * t
+        again = t - state.contact_time[i] <= self._instant * t
         state.at_once[i] = state.at_once[i] + weight if again else weight
         state.contact_time[i] = t
 

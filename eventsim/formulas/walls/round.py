@@ -65,10 +65,16 @@ def post_delay(
 ) -> tuple[Real, int]:
     """(delay, 1) of the next contact with a post."""
     if gx is None:
-        if met != 0:
-            return NEVER, 1
-        return pair_delay(x - shape.x, y - shape.y, vx, vy, radius), 1
+        return _straight_to_post(shape, x, y, vx, vy, radius, met)
+    if gx == 0.0 and gy == 0.0:  # an immovable disk, on which gravity does not act
+        return _straight_to_post(shape, x, y, vx, vy, radius, met)
     return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, radius, 1.0)[0], 1
+
+
+def _straight_to_post(shape: Post, x: Real, y: Real, vx: Real, vy: Real, radius: Real, met: int) -> tuple[Real, int]:
+    if met != 0:
+        return NEVER, 1
+    return pair_delay(x - shape.x, y - shape.y, vx, vy, radius), 1
 
 
 def container_delay(
@@ -84,6 +90,8 @@ def container_delay(
 ) -> tuple[Real, int]:
     """(delay, -1) of the next contact with the container from inside."""
     if gx is None:
+        return inner_delay(x - shape.x, y - shape.y, vx, vy, shape.radius - radius), -1
+    if gx == 0.0 and gy == 0.0:
         return inner_delay(x - shape.x, y - shape.y, vx, vy, shape.radius - radius), -1
     return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, shape.radius - radius, -1.0)[0], -1
 
@@ -146,20 +154,14 @@ def arc_delay(
 
     A disk that is outside may pass through the open part and meet the inside, and the other way round.
     """
+    if gx is None:
+        return _straight_to_arc(shape, x, y, vx, vy, radius, met)
+    if gx == 0.0 and gy == 0.0:
+        return _straight_to_arc(shape, x, y, vx, vy, radius, met)
     dx, dy = x - shape.x, y - shape.y
     side = met if met != 0 else arc_side(shape, x, y, vx, vy)
     outer, inner = shape.radius + radius, shape.radius - radius
     best, best_side = NEVER, side
-    if gx is None:
-        if side > 0 and met == 0:
-            delay = pair_delay(dx, dy, vx, vy, outer)
-            if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
-                best, best_side = delay, 1
-        if inner > 0.0 and (side < 0 or best == NEVER):
-            delay = _inner_from(dx, dy, vx, vy, inner, side)
-            if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
-                best, best_side = delay, -1
-        return best, best_side
     for face_side in (1, -1):
         reach = outer if face_side > 0 else inner
         if not reach > 0.0 and not (reach == 0.0 and face_side > 0):
@@ -171,6 +173,22 @@ def arc_delay(
                 shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
             ):
                 best, best_side = delay, face_side
+    return best, best_side
+
+
+def _straight_to_arc(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, met: int) -> tuple[Real, int]:
+    dx, dy = x - shape.x, y - shape.y
+    side = met if met != 0 else arc_side(shape, x, y, vx, vy)
+    outer, inner = shape.radius + radius, shape.radius - radius
+    best, best_side = NEVER, side
+    if side > 0 and met == 0:
+        delay = pair_delay(dx, dy, vx, vy, outer)
+        if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
+            best, best_side = delay, 1
+    if inner > 0.0 and (side < 0 or best == NEVER):
+        delay = _inner_from(dx, dy, vx, vy, inner, side)
+        if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
+            best, best_side = delay, -1
     return best, best_side
 
 
