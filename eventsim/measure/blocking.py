@@ -16,6 +16,9 @@ from eventsim.record.events import Floats
 FEWEST_BLOCKS = 8
 """With fewer, the scatter of blocks says little about their mean; so many must be left at the chosen length."""
 
+TRUSTED_BLOCKS = 16
+"""With fewer, a test can hardly tell that neighbouring blocks are correlated."""
+
 NORMAL_99 = 2.3263478740408408
 """The 99 % point of the normal distribution: how surprised one must be to call neighbouring blocks correlated."""
 
@@ -61,7 +64,7 @@ def block_average(series: Floats) -> ErrorBar:
     n = count[k]
     # the scatter of few blocks is itself uncertain: Student's distribution, one standard deviation's worth
     error = math.sqrt(variance[k] / (n - 1)) * (1.0 + 0.5 / (n - 1))
-    return ErrorBar(mean, error, n, 1 << k, independent=chosen is not None)
+    return ErrorBar(mean, error, n, 1 << k, independent=chosen is not None and n >= TRUSTED_BLOCKS)
 
 
 def ratio_average(above: Floats, below: Floats) -> ErrorBar:

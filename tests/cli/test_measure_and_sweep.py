@@ -1,0 +1,73 @@
+"""`eventsim measure` and `eventsim sweep`."""
+
+import json
+
+import pytest
+
+from eventsim.sweep import load_table
+
+FLUID = ["periodic-fluid", "--set", "n=36", "--set", "packing_fraction=0.3", "--events", 4000]
+
+
+def test_a_log_and_its_scene_measure_the_same(eventsim, tmp_path):
+    log = tmp_path / "a.npz"
+    assert eventsim("run", *FLUID, "--log", log, "-q").exit_code == 0
+    from_log = json.loads(eventsim("measure", log, "--json").stdout)
+    from_scene = json.loads(eventsim("measure", *FLUID, "--json").stdout)
+    assert from_log["disks"] == 36
+    for name in ("Z", "collision_rate", "mean_free_path"):
+        first, second = from_log["quantities"][name]["value"], from_scene["quantities"][name]["value"]
+        assert first == pytest.approx(second, rel=1e-9)  # the ends of the two clocks differ by rounding
+
+
+def test_text_has_theory_and_a_verdict(eventsim):
+    text = eventsim("measure", *FLUID).stdout
+    assert "Kolafa & Rottner" in text
+    assert "sigma" in text
+    assert "equilibrated" in text
+
+
+def test_structure_of_the_last_state(eventsim):
+    pytest.importorskip("freud")
+    data = json.loads(eventsim("measure", *FLUID, "--structure", "--json").stdout)
+    assert 0.0 <= data["structure"]["psi_6"] <= 1.0
+    assert "periodic" in eventsim("measure", "gas", "--events", 100, "--structure").stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["corner", "--discard", "1e9", "--events", 10], "discard"),
+        (["gas", "--events", "0"], "no time passes"),
+        (["two.csv"], "two.csv"),
+    ],
+)
+def test_bad_measures_are_one_clear_message(eventsim, words, expected):
+    result = eventsim("measure", *words)
+    assert result.exit_code == 2
+    assert expected in result.stderr
+
+
+def test_a_sweep_writes_a_table_and_a_figure(eventsim, tmp_path):
+    table, figure = tmp_path / "z.csv", tmp_path / "z.svg"
+    result = eventsim(
+        "sweep", "periodic-fluid", "--set", "n=16", "--set", "packing_fraction=0.1,0.2", "--events", 400,
+        "--replicas", 2, "--workers", 1, "--engine", "reference", "--out", table, "--figure", figure, "--json",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    data = json.loads(result.stdout)
+    assert (data["runs"], data["failed"]) == (4, 0)
+    rows = load_table(table)
+    assert [row["packing_fraction"] for row in rows] == [0.1, 0.1, 0.2, 0.2] or len(rows) == 4
+    assert figure.read_text().startswith("<?xml")
+
+
+def test_a_sweep_of_nothing_but_failures_says_so(eventsim, tmp_path):
+    result = eventsim("sweep", "periodic-fluid", "--set", "n=-1", "--events", 10, "--workers", 1, "--out", tmp_path / "z.csv")
+    assert result.exit_code == 2
+    assert "1 failed" in result.stdout
+
+
+def test_a_sweep_needs_a_place_for_its_table(eventsim):
+    assert eventsim("sweep", "gas").exit_code == 2
+    assert "--workers" in eventsim("sweep", "gas", "--out", "a.csv", "--dask", "x", "--workers", 2).stderr

@@ -1,0 +1,174 @@
+"""Sweeps: the same table whoever does the runs, and after every kind of trouble."""
+
+import os
+import signal
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+import eventsim as es
+from eventsim.scene.files import scene_from_dict
+from eventsim.scene.overrides import apply_overrides
+from eventsim.sweep import load_table, sweep
+from eventsim.sweep.grid import grid_of, seed_of, tasks_of
+
+SCENE = {
+    "domain": {"kind": "periodic", "size": [1.0, 1.0]},
+    "gas": [{"count": 16, "packing_fraction": 0.1, "temperature": 1.0, "seed": 1}],
+}
+GRID = {"gas.0.packing_fraction": [0.1, 0.2]}
+
+
+def make(settings, seed):
+    return scene_from_dict(apply_overrides(SCENE, settings), seed=seed)
+
+
+def make_or_die(marks: Path, settings, seed):
+    """Kills its process the first time that it is asked for a packing fraction of 0.2 in a worker."""
+    if "0.2" in str(settings) and os.getppid() == int((marks / "parent").read_text()):
+        mark = marks / f"died-{seed}"
+        if not mark.exists():
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+    return make(settings, seed)
+
+
+def always_die(parent: int, settings, seed):
+    if "0.2" in str(settings) and os.getpid() != parent:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return make(settings, seed)
+
+
+short = partial(sweep, events=400, engine="reference", replicas=2)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """A sweep by one worker: its file's bytes."""
+    path = tmp_path_factory.mktemp("sweep") / "t.csv"
+    rows = short(make, GRID, out=path, workers=1)
+    assert [row["gas.0.packing_fraction"] for row in rows] == [0.1, 0.1, 0.2, 0.2]
+    assert len({row["seed"] for row in rows}) == 4
+    assert all(row["failed"] is None and row["events"] >= 400 for row in rows)
+    assert not path.with_name("t.csv.journal").exists()
+    return path.read_bytes()
+
+
+def test_two_workers_write_the_same_bytes(plain, tmp_path):
+    short(make, GRID, out=tmp_path / "t.csv", workers=2)
+    assert (tmp_path / "t.csv").read_bytes() == plain
+
+
+def test_any_executor_writes_the_same_bytes(plain, tmp_path):
+    with ThreadPoolExecutor(2) as executor:
+        short(make, GRID, out=tmp_path / "t.csv", executor=executor)
+    assert (tmp_path / "t.csv").read_bytes() == plain
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_writes_the_same_bytes(plain, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    from eventsim.sweep.dask import dask_executor
+
+    with (
+        distributed.LocalCluster(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None) as cluster,
+        dask_executor(cluster.scheduler_address) as executor,
+    ):
+        short(make, GRID, out=tmp_path / "t.csv", executor=executor)
+    assert (tmp_path / "t.csv").read_bytes() == plain
+
+
+def test_an_interrupted_sweep_goes_on_where_it_was(plain, tmp_path):
+    path, done = tmp_path / "t.csv", []
+
+    def interrupt(count, total):
+        done.append(count)
+        if count == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        short(make, GRID, out=path, progress=interrupt)
+    assert not path.exists()
+    journal = path.with_name("t.csv.journal")
+    journal.write_text(journal.read_text() + '{"task": "cut of')  # killed while it wrote
+    short(make, GRID, out=path, progress=lambda count, total: done.append(count))
+    assert done == [1, 2, 3, 4]
+    assert path.read_bytes() == plain
+
+
+def test_a_journal_of_another_sweep_is_not_mixed_in(tmp_path):
+    def interrupt(count, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        short(make, GRID, out=tmp_path / "t.csv", progress=interrupt)
+    with pytest.raises(es.EventsimError, match="another sweep"):
+        sweep(make, GRID, out=tmp_path / "t.csv", events=500, engine="reference", replicas=2)
+
+
+def test_the_task_of_a_crashed_worker_is_done_again(plain, tmp_path):
+    (tmp_path / "parent").write_text(str(os.getpid()))
+    short(partial(make_or_die, tmp_path), GRID, out=tmp_path / "t.csv", workers=2)
+    assert len(list(tmp_path.glob("died-*"))) >= 1
+    assert (tmp_path / "t.csv").read_bytes() == plain
+
+
+@pytest.mark.slow
+def test_a_task_that_kills_every_worker_is_a_row_with_its_reason():
+    rows = short(partial(always_die, os.getpid()), GRID, workers=2)
+    assert [row["failed"] is None for row in rows] == [True, True, False, False]
+    assert "died" in rows[2]["failed"]
+
+
+def test_a_run_that_fails_is_a_row_with_its_reason():
+    rows = short(make, {"gas.0.packing_fraction": [0.1, 0.89]})
+    assert [row["failed"] is None for row in rows] == [True, True, False, False]
+    assert "do not fit" in rows[2]["failed"]
+
+
+def test_parquet_holds_the_same_rows(plain, tmp_path):
+    pq = pytest.importorskip("pyarrow.parquet")
+    rows = short(make, GRID, out=tmp_path / "t.parquet")
+    table = pq.read_table(tmp_path / "t.parquet")
+    assert table.column("Z").to_pylist() == [row["Z"] for row in rows]
+    (tmp_path / "t.csv").write_bytes(plain)
+    assert [row["Z"] for row in load_table(tmp_path / "t.csv")] == table.column("Z").to_pylist()
+
+
+def test_more_replicas_or_values_keep_the_seeds_of_the_others():
+    few = {task.name for task in tasks_of({"a": ["1", "2"]}, 2, seed=7)}
+    more = {task.name for task in tasks_of({"a": ["2", "3", "1"]}, 5, seed=7)}
+    assert few < more
+    assert len({seed_of(7, [("a", str(k))], replica) for k in range(100) for replica in range(100)}) == 10_000
+
+
+@pytest.mark.parametrize(
+    ("setting", "values"),
+    [
+        ("a=1", ["1"]),
+        ("a=0.1:0.6:6", ["0.1", "0.2", "0.3", "0.4", "0.5", "0.6"]),
+        ("a=[0,-1],[0,-2]", ["[0,-1]", "[0,-2]"]),
+        ('a="x,y",z', ['"x,y"', "z"]),
+        ("a=10:20", ["10:20"]),
+    ],
+)
+def test_values_as_typed(setting, values):
+    assert grid_of([setting]) == {"a": values}
+
+
+@pytest.mark.parametrize("settings", [["a"], ["a="], ["=1"], ["a=1,,2"], ["a=1", "a=2"], ["a=0:1:0"]])
+def test_settings_that_make_no_sense_are_refused(settings):
+    with pytest.raises(es.EventsimError):
+        grid_of(settings)
+
+
+def test_replicas_of_a_scene_without_chance_are_refused():
+    with pytest.raises(es.EventsimError, match="same run"):
+        sweep(lambda settings, seed: es.gallery("corner"), {}, replicas=2)
+
+
+def test_a_value_twice_is_refused():
+    with pytest.raises(es.EventsimError, match="twice"):
+        sweep(make, {"gas.0.packing_fraction": [0.1, 0.1]}, events=10)
