@@ -13,8 +13,12 @@ from tests.show.live.running import menu
 
 def test_messages_are_read_as_meant():
     assert read_message('{"type": "throw", "time": 1, "disk": 2, "velocity": [3, -4.5]}') == Throw(1.0, 2, (3.0, -4.5))
-    assert read_message('{"type": "shown", "edition": 1, "time": 0.5, "events": 7, "speed": 2}') == Shown(1, 0.5, 7, 2.0)
-    message = read_message(json.dumps({"type": "open", "scene": "gallery", "name": "gas", "parameters": {"n": 5}, "rate": 60}))
+    assert read_message('{"type": "shown", "edition": 1, "time": 0.5, "events": 7, "speed": 2}') == Shown(
+        1, 0.5, 7, 2.0
+    )
+    message = read_message(
+        json.dumps({"type": "open", "scene": "gallery", "name": "gas", "parameters": {"n": 5}, "rate": 60})
+    )
     assert message == Open(BuiltIn("gas", {"n": 5}), 60.0)
     opened = read_message(json.dumps(menu(count=7)))
     assert isinstance(opened, Open)

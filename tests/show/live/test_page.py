@@ -183,7 +183,9 @@ def test_the_window_is_the_world(page):
 
 def test_a_built_in_scene_with_its_parameters(page, tmp_path):
     page.open()
-    page.js("live.menu.field('scene').value = 'periodic-fluid'; live.menu.field('scene').dispatchEvent(new Event('change'))")
+    page.js(
+        "live.menu.field('scene').value = 'periodic-fluid'; live.menu.field('scene').dispatchEvent(new Event('change'))"
+    )
     page.fill(**{"parameter.n": 64, "parameter.packing_fraction": 0.3})
     assert page.js("return live.player.world.count") == 64
     assert "gallery=periodic-fluid" in page.driver.current_url
@@ -200,7 +202,9 @@ def test_every_built_in_scene_plays(page, tmp_path):
     for name in names():
         page.open(f"gallery={name}")
         assert page.js("return live.part('notice').hidden"), name
-        page.js("for (const part of ['trails', 'flash', 'arrows']) if (!live.player.view[part]) live.part(part).click()")
+        page.js(
+            "for (const part of ['trails', 'flash', 'arrows']) if (!live.player.view[part]) live.part(part).click()"
+        )
         page.js("live.player.play()")
         page.wait("live.player.script.frames > 5")
         page.js("live.player.pause()")
@@ -236,7 +240,9 @@ def test_a_disk_is_thrown_and_moved(page, tmp_path):
         hand = ActionChains(page.driver)
         pointer = hand.w3c_actions.pointer_action
         pointer.move_to_location(int(x), int(y)).pointer_down()
-        pointer.move_to_location(int(x + dx / 2), int(y + dy / 2)).move_to_location(int(x + dx), int(y + dy)).pointer_up()
+        pointer.move_to_location(int(x + dx / 2), int(y + dy / 2)).move_to_location(
+            int(x + dx), int(y + dy)
+        ).pointer_up()
         hand.perform()
 
     drag(2, 60, -40)
@@ -308,7 +314,9 @@ def test_the_page_finds_its_server_again(chromium, tmp_path):
         page.wait("!live.part('notice').hidden")
         assert "lost" in page.js("return live.part('notice').textContent")
     with live_server(port=port):
-        page.wait("live.link.open && live.resume === null && live.player.awaited === null && live.player.duration >= 1.5")
+        page.wait(
+            "live.link.open && live.resume === null && live.player.awaited === null && live.player.duration >= 1.5"
+        )
         assert page.js("return live.player.state()") == before
         assert page.js("return live.part('notice').hidden")
         page.press("play")
@@ -328,7 +336,9 @@ def test_two_thousand_disks_play_for_a_minute_without_starving(page):
     for _ in range(60):
         time.sleep(1.0)
         lead.append(page.js("return live.player.duration - live.player.view.time"))
-    script, events, shown = page.js("return [live.player.script, live.player.world.event.time.length, live.player.view.time]")
+    script, events, shown = page.js(
+        "return [live.player.script, live.player.world.event.time.length, live.player.view.time]"
+    )
     print(
         f"{events / shown:.0f} events/s; lead {min(lead):.2f} to {max(lead):.2f} s; {script['frames'] / 60:.0f} frames/s, "
         f"{script['spent'] / script['frames']:.2f} ms of script each, at most {script['worst']:.0f}; "

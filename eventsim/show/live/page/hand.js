@@ -23,7 +23,7 @@ class Hand {
     if (!this.held || !this.dragged) return;
     const { context, ratio, scale } = drawing, { disk, dx, dy } = this.held;
     const x = drawing._x(state.x[disk]), y = drawing._y(state.y[disk]), radius = drawing.world.disks.radius[disk];
-    context.strokeStyle = drawing.palette.arrow;
+    context.strokeStyle = drawing.palette.ink;
     context.lineWidth = 2.5 * ratio;
     context.beginPath();
     context.moveTo(x, y);

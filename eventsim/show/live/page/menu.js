@@ -24,7 +24,7 @@ class Menu {
   /* Offer the built-in scenes, and the one that the server was started with. */
   offer(gallery, given) {
     this.gallery = new Map(gallery.map((entry) => [entry.name, entry]));
-    const options = [new Option("disks in this window", OWN)];
+    const options = [new Option("disks in a box", OWN)];
     if (given !== null) options.push(new Option(given, GIVEN));
     const list = this.field("scene"), chosen = list.value;
     list.replaceChildren(...options, ...gallery.map(({ name }) => new Option(name, name)));
