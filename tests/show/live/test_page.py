@@ -49,10 +49,10 @@ class Page:
             time.sleep(0.05)
         raise AssertionError(f"not within {seconds} s: {condition}")
 
-    def open(self, hash_=""):
+    def open(self, hash_="", seconds=20):
         self.driver.get("about:blank")
         self.driver.get(f"{self.address}#{hash_}")
-        self.wait("window.live && live.player && live.player.duration > 0")
+        self.wait("window.live && live.player && live.player.duration > 0", seconds)
         return self
 
     def fill(self, **fields):
@@ -328,7 +328,7 @@ def test_the_page_finds_its_server_again(chromium, tmp_path):
 
 @pytest.mark.slow
 def test_two_thousand_disks_play_for_a_minute_without_starving(page):
-    page.open("count=2000&packing=0.3&seed=1")
+    page.open("count=2000&packing=0.3&seed=1", seconds=90)  # the engine may have to be compiled first
     page.wait("live.player.duration > 2.9", 60)
     page.js("live.player.script.starved = 0")
     page.press("play")
