@@ -14,12 +14,12 @@ FIGURES = (".png", ".svg", ".pdf")
 @click.argument("scenes", nargs=-1, metavar="[SCENE...]")
 @click.option("--out", default="chart.png", show_default=True, metavar="FILE", help="The figure: .png, .svg or .pdf.")
 @click.option("--csv", metavar="FILE.csv", help="The numbers; without it, beside the figure.")
-@click.option("--patience", type=float, default=1.0, show_default=True, metavar="S", help="Seconds for one run at most.")
+@click.option(
+    "--patience", type=float, default=0.7, show_default=True, metavar="S", help="Seconds for one run at most."
+)
 @json_option
 @quiet_option
-def command(
-    scenes: tuple[str, ...], out: str, csv: str | None, patience: float, as_json: bool, quiet: bool
-) -> None:
+def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float, as_json: bool, quiet: bool) -> None:
     """Chart error against computing time for all engines: event-driven ones, balls, and stepped ones over their steps.
 
     Without a SCENE: a gas, the break, Galperin's disks, pressures of a gas and of a very dense packing, a pile that

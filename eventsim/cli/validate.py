@@ -24,10 +24,15 @@ HEAD = (
 @scene_options(required=True)
 @click.option("--dt", "steps", type=float, multiple=True, metavar="DT", help="A step size; may be given several times.")
 @click.option(
-    "--against", multiple=True, metavar="ENGINE", help="Only this engine; may be given several times. Default: all of them."
+    "--against",
+    multiple=True,
+    metavar="ENGINE",
+    help="Only this engine; may be given several times. Default: all of them.",
 )
 @click.option("--until", type=float, metavar="T", help="Simulate until this time instead of the scene's.")
-@click.option("--patience", type=float, default=5.0, show_default=True, metavar="S", help="Seconds for one run at most.")
+@click.option(
+    "--patience", type=float, default=3.0, show_default=True, metavar="S", help="Seconds for one run at most."
+)
 @click.option("--csv", metavar="FILE.csv", help="Write all numbers, with where they come from.")
 @click.option("--figure", metavar="FILE", help="Draw them: .png, .svg or .pdf.")
 @json_option

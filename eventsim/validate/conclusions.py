@@ -19,8 +19,8 @@ class Advantage:
     """The event-driven engine against another one on one scene.
 
     time_ratio: the other's time over its own, both at an error of WANTED or less; inf where only the other one fails to
-    reach it, 0 where only the event-driven engine fails, nan where both do.  error_ratio: the other's error over its own at equal time; nan where the other one
-    has no run so short.
+    reach it, 0 where only the event-driven engine fails, nan where both do.  error_ratio: the other's error over its own at
+    equal time; nan where the other one has no run so short.
     """
 
     scene: str

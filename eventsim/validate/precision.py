@@ -26,7 +26,7 @@ from eventsim.validate.gauges import kinetic_energy, virial_pressure
 from eventsim.validate.pile import unrest
 from eventsim.validate.truth import Truth, best_engine, neighbouring, truth_of
 
-STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
+STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 """Steps in the time in which a typical disk flies its radius."""
 
 BITS = (64, 96, 128, 192, 256, 512, 1024)

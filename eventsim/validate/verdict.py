@@ -35,8 +35,8 @@ def _energy(comparison: Comparison) -> list[str]:
     return [
         f"Energy hides it: {worst.label} with a step of {worst.step:.2g} radii keeps the energy to "
         f"{max(abs(worst.energy or 0.0), ROUNDING):.0e} and finds {worst.census.share(worst.census.found):.0%} of the "
-        f"contacts ahead of an exact state, {worst.ratio:.0%} of their number over the whole run ({_angle(worst)}); {len(blind)} of "
-        f"{len(comparison.lines)} runs are of this kind."
+        f"contacts ahead of an exact state, {worst.ratio:.0%} of their number over the whole run ({_angle(worst)}); "
+        f"{len(blind)} of {len(comparison.lines)} runs are of this kind."
     ]
 
 

@@ -23,9 +23,7 @@ from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.round import Post
 from eventsim.scene.stage import Boundary, Stage
 
-MISSING = (
-    "the engine pymunk needs the Chipmunk engine, which is not installed: pip install 'eventsim-disks[pymunk]'"
-)
+MISSING = "the engine pymunk needs the Chipmunk engine, which is not installed: pip install 'eventsim-disks[pymunk]'"
 SLOP = 0.01
 """In smallest radii."""
 

@@ -53,9 +53,7 @@ class StepClock:
             rows["remainder"][first:last] = since[first:last] - self.epoch * self._stage.epoch_length
             self.window_rows += last - first
             first = last
-        rows["time"] = clock_times(
-            rows["epoch"], rows["remainder"], self._stage.epoch_length, self._stage.start_time
-        )
+        rows["time"] = clock_times(rows["epoch"], rows["remainder"], self._stage.epoch_length, self._stage.start_time)
         return rows
 
     @property

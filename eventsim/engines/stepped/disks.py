@@ -31,9 +31,7 @@ def moving_disks(stage: Stage) -> Moving:
     """The disks of a stage at its start."""
     mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass.copy()
     x, y, vx, vy = (np.array(values, dtype=np.float64) for values in (stage.x, stage.y, stage.vx, stage.vy))
-    return Moving(
-        x, y, vx, vy, stage.radius.copy(), mass, np.zeros(stage.n, np.int64), np.zeros(stage.n, np.int64)
-    )
+    return Moving(x, y, vx, vy, stage.radius.copy(), mass, np.zeros(stage.n, np.int64), np.zeros(stage.n, np.int64))
 
 
 @part

@@ -44,6 +44,15 @@ def tell_counters(found: Found, counters: Counters) -> None:
     counters.outer_momentum = [float(sums[OUTER_X]), float(sums[OUTER_Y])]
 
 
+def take_counters(found: Found, counters: Counters) -> None:
+    """Count on from where counters are: somebody may have set them back."""
+    found.counts[EVENTS] = counters.events
+    found.counts[PAIRS], found.counts[WALLS] = counters.pair_contacts, counters.wall_contacts
+    found.counts[TESTS] = counters.pair_tests
+    found.sums[DEEPEST] = counters.deepest_overlap
+    found.sums[OUTER_X], found.sums[OUTER_Y] = counters.outer_momentum
+
+
 @part
 def note_pair(found: Found, m: Moving, i: int, j: int, time: float, impulse: float) -> None:
     """A pair contact, its disks as they are now; `time` counts from the beginning."""

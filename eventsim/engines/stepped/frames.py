@@ -54,9 +54,7 @@ class FramesSession(SteppedSession):
 
     name = "frames"
 
-    def __init__(
-        self, stage: Stage, keep_rows: bool = True, dt: float | None = None, memory: str = "apart"
-    ) -> None:
+    def __init__(self, stage: Stage, keep_rows: bool = True, dt: float | None = None, memory: str = "apart") -> None:
         if memory not in MEMORIES:
             raise EventsimError(f"frames: memory = {memory!r}: must be one of {', '.join(MEMORIES)}")
         _demand_known(stage)
@@ -88,7 +86,8 @@ def _demand_known(stage: Stage) -> None:
     """Raise EventsimError for what the course project did not know."""
     reasons = {
         "it knows no periodic boundaries": stage.periodic,
-        "its contacts are elastic, this scene has a restitution": stage.pair_restitution < 1.0 or stage.wall_restitution < 1.0,
+        "its contacts are elastic, this scene has a restitution": stage.pair_restitution < 1.0
+        or stage.wall_restitution < 1.0,
         "it needs masses that are finite and above 0": stage.mass is not None
         and not bool(np.all(np.isfinite(stage.mass) & (stage.mass > 0.0))),
         "its borders are parallel to the axes": not set(ground_kinds(stage)) <= {"Face", "Post"},
@@ -161,9 +160,7 @@ def flip_at_borders(m: Moving, ground: Ground, found: Found, i: int, now: float)
 
 
 @part
-def meet_closest(
-    m: Moving, found: Found, met: NDArray[np.bool_], held: NDArray[np.int64], i: int, now: float
-) -> None:
+def meet_closest(m: Moving, found: Found, met: NDArray[np.bool_], held: NDArray[np.int64], i: int, now: float) -> None:
     """Look at the two closest circles of circle i; resolve overlaps that are not in the memory."""
     one, two = -1, -1
     near, far = math.inf, math.inf

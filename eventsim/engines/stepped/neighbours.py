@@ -109,7 +109,7 @@ def fill_from_cells(
     side_x: float,
     side_y: float,
 ) -> int:
-    """Look at pairs in the same or neighbouring cells; a pair is listed from its later disk."""
+    """Look at pairs in the same or neighbouring cells; each is listed once, the smaller number first."""
     cells[:] = -1
     count = 0
     around_x, around_y = ground.length_x < math.inf, ground.length_y < math.inf
@@ -135,7 +135,7 @@ def fill_from_cells(
                     reach = m.radius[i] + m.radius[j] + skin
                     if dx * dx + dy * dy < reach * reach:
                         if count < len(pairs):
-                            pairs[count, 0], pairs[count, 1] = j, i
+                            pairs[count, 0], pairs[count, 1] = min(i, j), max(i, j)
                         count += 1
                     j = following[j]
         cell = column + columns * row

@@ -112,9 +112,7 @@ class PenaltySession(SteppedSession):
         old = near.pairs[: near.count, 0] * n + near.pairs[: near.count, 1]
         if not near.renew(self.disks, self.ground, self.found, self.dt):
             return
-        low, high = np.sort(near.pairs[: near.count], axis=1).T
-        near.pairs[: near.count, 0], near.pairs[: near.count, 1] = low, high
-        keys = low * n + high
+        keys = near.pairs[: near.count, 0] * n + near.pairs[: near.count, 1]
         impulses = np.zeros(near.count)
         touching = np.flatnonzero(self._springs.pair)
         if len(touching):

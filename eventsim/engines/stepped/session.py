@@ -15,7 +15,7 @@ import numpy as np
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop
 from eventsim.engines.stepped.clock import StepClock, usual_step
 from eventsim.engines.stepped.disks import Moving, moving_disks
-from eventsim.engines.stepped.found import BUFFER, EVENTS, ROW_COUNT, Found, nothing_found, tell_counters
+from eventsim.engines.stepped.found import BUFFER, MOVED, ROW_COUNT, Found, nothing_found, take_counters, tell_counters
 from eventsim.engines.stepped.ground import ground_of
 from eventsim.errors import EventsimError
 from eventsim.record.events import ROW, Kind, Rows, blank_rows
@@ -60,6 +60,7 @@ class SteppedSession:
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
         clock = self.clock_of_steps
+        take_counters(self.found, self.counters)
         most_events = FOREVER if stop.events is None else stop.events
         vain = self._vain_from(stop)
         while budget > 0:
@@ -134,7 +135,6 @@ class SteppedSession:
         m = self.disks
         m.vx[i], m.vy[i] = vx, vy
         self.counters.kicks += 1
-        self.found.counts[EVENTS] += 1
         self.counters.events += 1
         if self._keep_rows:
             row = blank_rows(1)
@@ -172,6 +172,7 @@ class SteppedSession:
         )
         clock.steps = int(saved.met[0])
         self.trajectory.forget_after(clock.steps)
+        self.found.sums[MOVED] = math.inf  # lists of neighbours are those of another state
         self._remember(saved.met[1:])
 
     def _memory(self) -> tuple[Any, ...]:

@@ -107,9 +107,8 @@ def run_steps(
         found.sums[MOVED] += (fly(m, ground, dt) + fall) * dt
         now = (first + k + 1) * dt
         count = overlaps(m, ground, found, pairs, dt, locate, since, touching)
-        if locate and count > 1:
-            order = np.argsort(-since[:count])
-            touching[:count] = touching[:count][order]
+        if count > 1:
+            sort_contacts(pairs, len(m.x), locate, since[:count], touching[:count])
         for c in range(count):
             index = touching[c]
             if index < len(pairs):
@@ -121,6 +120,19 @@ def run_steps(
         if locate and count > 0:
             wrap(m, ground)
     return steps
+
+
+@part
+def sort_contacts(pairs: NDArray[np.int64], n: int, locate: bool, since: Floats, touching: NDArray[np.int64]) -> None:
+    """Order contacts by (a, b), walls last, so that no list of neighbours decides; located: the earliest first."""
+    keys = np.empty(len(touching), np.int64)
+    for c in range(len(touching)):
+        index = touching[c]
+        keys[c] = pairs[index, 0] * n + pairs[index, 1] if index < len(pairs) else n * n + index - len(pairs)
+    order = np.argsort(keys)
+    if locate:
+        order = order[np.argsort(-since[order], kind="mergesort")]
+    touching[:] = touching[order]
 
 
 @part

@@ -1,0 +1,182 @@
+"""A comparison and a chart from end to end, on scenes that take seconds; and what they come to."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import eventsim as es
+from eventsim.cli.program import main
+from eventsim.scene.stage import stage_of
+from eventsim.validate.chart import Chart, Chaos
+from eventsim.validate.compare import compare
+from eventsim.validate.conclusions import advantages, conclusions
+from eventsim.validate.entrants import ENTRANTS, able, chosen_entrants
+from eventsim.validate.pile import pile, unrest
+from eventsim.validate.precision import Curves, Point, Task, curves
+from eventsim.validate.table import chart_rows, comparison_rows, write_csv
+from eventsim.validate.verdict import verdict
+
+
+@pytest.fixture(scope="module")
+def gas():
+    scene = es.gallery("gas", n=60)
+    return compare(scene, chosen_entrants(["frames", "stepped", "stepped-located"]), steps=(0.02, 0.002, 0.0005), until=0.4)
+
+
+def test_energy_looks_perfect_while_contacts_go_missing(gas):
+    coarse = next(line for line in gas.lines if line.label == "frames")
+    assert abs(coarse.energy) < 1e-13
+    assert coarse.census.share(coarse.census.missed) > 0.05
+    assert coarse.census.angle > 1.0
+    assert verdict(gas)[0].startswith("Energy hides it")
+
+
+def test_finer_steps_find_more_contacts_and_stay_nearer_to_the_truth(gas):
+    for label in ("frames", "stepped", "stepped-located"):
+        lines = [line for line in gas.lines if line.label == label]
+        shares = [line.census.share(line.census.found) for line in lines]
+        assert shares[0] < shares[-1] and shares[-1] > 0.97
+        assert lines[-1].errors[1] < lines[0].errors[1]
+    assert gas.agrees
+    assert gas.truth.horizon > 0.0
+
+
+def test_located_impacts_have_exact_angles(gas):
+    located = [line for line in gas.lines if line.label == "stepped-located"]
+    assert all(line.census.angle < 1e-8 for line in located)
+
+
+def test_the_table_has_a_row_for_each_run_and_plain_numbers(gas, tmp_path):
+    rows = comparison_rows(gas)
+    assert len(rows) == 1 + 9
+    write_csv(tmp_path / "gas.csv", rows, ["# scene: gas"])
+    text = (tmp_path / "gas.csv").read_text().splitlines()
+    read = list(csv.DictReader(line for line in text if not line.startswith("#")))
+    assert [row["engine"] for row in read] == [row["engine"] for row in rows]
+    assert float(read[1]["dt"]) == 0.02
+
+
+def test_an_unknown_engine_is_named_with_those_that_there_are():
+    with pytest.raises(es.EventsimError, match="no engine 'step' to compare with; there are frames"):
+        chosen_entrants(["step"])
+
+
+def test_who_cannot_take_part_is_left_out_with_one_sentence():
+    ready, sentences = able(list(ENTRANTS.values()), stage_of(es.gallery("periodic-fluid", n=16)))
+    assert "frames" not in [entrant.label for entrant in ready]
+    assert len([text for text in sentences if "frames" in text]) == 1
+
+
+def test_a_scene_without_contacts_has_nothing_to_compare():
+    scene = es.Scene(es.Disks([(0, 0)], [(1, 0)], radius=1.0), es.Open(), until=1.0)
+    with pytest.raises(es.EventsimError, match="there is nothing to compare"):
+        compare(scene, chosen_entrants(["stepped"]))
+
+
+def test_a_pile_at_rest_has_no_unrest():
+    stage = stage_of(pile())
+    assert unrest(stage, pile().disks.position, np.zeros((stage.n, 2))) < 1e-15
+    assert unrest(stage, pile().disks.position, np.ones((stage.n, 2))) == pytest.approx(math.sqrt(2.0))
+    assert unrest(stage, pile().disks.position - (0.0, 0.5), np.zeros((stage.n, 2))) == pytest.approx(0.3)
+
+
+def test_the_truth_of_a_chart_is_certified_where_it_can_be():
+    pytest.importorskip("flint")
+    task = Task("two", es.gallery("two-disks", mass_ratio=3.0), "trajectory", 6.0)
+    found = curves(task, [ENTRANTS["stepped"]], patience_s=0.3)
+    assert {"reference", "certified", "stepped"} <= set(found.labels)
+    assert all(point.error < 1e-12 for point in found.of("reference"))
+    stepped = found.of("stepped")
+    assert stepped[-1].error < stepped[0].error
+    assert all(point.steps > 0 and point.elapsed > 0.0 for point in stepped)
+
+
+def test_without_flint_its_curve_is_left_out_with_one_sentence(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "flint", None)
+    for name in [name for name in __import__("sys").modules if name.startswith("eventsim.engines.certified")]:
+        monkeypatch.delitem(__import__("sys").modules, name)
+    task = Task("two", es.gallery("two-disks", mass_ratio=3.0), "trajectory", 6.0)
+    found = curves(task, [ENTRANTS["stepped"]], patience_s=0.1)
+    assert "certified" not in found.labels
+    assert len([text for text in found.left_out if "certify" in text]) == 1
+
+
+def a_chart():
+    """A chart by hand: the event-driven engine wins on the gas by 10 and loses on the pile by 5."""
+
+    def points(name, measure, label, *pairs):
+        return [Point(name, measure, label, "dt", 0.1, error, elapsed) for elapsed, error in pairs]
+
+    box = es.gallery("two-disks")
+    gas = Curves(Task("gas", box, "trajectory", 1.0))
+    gas.points = points("gas", "trajectory", "fast", (0.1, 1e-12)) + points(
+        "gas", "trajectory", "stepped", (0.05, 1.0), (0.1, 0.1), (1.0, 0.01)
+    )
+    heap = Curves(Task("pile", pile(), "unrest", 1.0))
+    heap.points = points("pile", "unrest", "reference", (1.0, 0.1)) + points("pile", "unrest", "penalty", (0.2, 0.05))
+    contacts = np.arange(1.0, 4.0)
+    chaos = Chaos(contacts, {"event-driven": 1e-15 * 2.0**contacts}, 1.0, 30.0)
+    return Chart([gas, heap], chaos, {"fast": [(30, 1e6), (100, 2e6)]})
+
+
+def test_advantages_are_numbers_at_equal_error_and_at_equal_time():
+    gas, heap = advantages(a_chart())
+    assert gas.time_ratio == pytest.approx(10.0)
+    assert gas.error_ratio == pytest.approx(0.1 / 1e-12)
+    assert math.isnan(heap.time_ratio)  # neither reaches the error
+    words = conclusions(a_chart())
+    assert "fast 10 x faster than by stepped" in words[0]
+    assert "float64 ends after 30 contacts a disk" in words[1]
+    assert "stepped engines win. penalty is as near to rest 5 x sooner" in words[2]
+
+
+def test_figures_are_drawn(gas, tmp_path):
+    from eventsim.show.versus.comparison import write_comparison
+    from eventsim.show.versus.precision import write_chart
+
+    write_comparison(gas, tmp_path / "gas.png")
+    write_chart(a_chart(), tmp_path / "chart.svg")
+    assert (tmp_path / "gas.png").stat().st_size > 20_000
+    assert (tmp_path / "chart.svg").read_text().startswith("<?xml")
+    assert {row["panel"] for row in chart_rows(a_chart())} == {"precision", "chaos", "rate"}
+
+
+def test_validate_prints_a_table_a_verdict_and_json(tmp_path):
+    arguments = ["validate", "two-disks", "--dt", "0.1", "--dt", "0.01", "--against", "stepped", "--until", "12"]
+    done = CliRunner().invoke(main, [*arguments, "--csv", str(tmp_path / "two.csv")])
+    assert done.exit_code == 0, done.output
+    assert "found missed doubled spurious" in done.output
+    assert "Measured orders" in done.output
+    assert (tmp_path / "two.csv").read_text().startswith("# eventsim:")
+    data = json.loads(CliRunner().invoke(main, [*arguments, "--json"]).stdout)
+    assert data["agrees"] is True
+    assert [row["engine"] for row in data["rows"]] == ["event-driven", "stepped", "stepped"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["validate", "gas", "--dt", "0"], "a step must be a finite time above 0"),
+        (["validate", "gas", "--against", "unity"], "there is no engine 'unity'"),
+        (["chart", "gas", "--out", "chart.bmp"], "must end in .png, .svg, .pdf"),
+        (["chart", "no-such-scene"], "neither a scene file"),
+    ],
+)
+def test_bad_usage_is_a_sentence_and_exit_code_2(arguments, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 2
+    assert message in done.output
+    assert not list(tmp_path.iterdir())
+
+
+def test_chart_of_a_scene_writes_figure_and_table(tmp_path):
+    target = tmp_path / "two.png"
+    done = CliRunner().invoke(main, ["chart", "two-disks", "--out", str(target), "--patience", "0.02"])
+    assert done.exit_code == 0, done.output
+    assert target.stat().st_size > 10_000
+    assert "elapsed_per_time" in (tmp_path / "two.csv").read_text()
