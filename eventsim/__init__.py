@@ -6,7 +6,9 @@ The story, and where each part of it lives::
     formulas   the physics: when two disks meet, what then    eventsim.formulas
     engines    how time passes: from event to event           eventsim.engines
     record     what happened: the event log and its replay    eventsim.record
+    measure    numbers from it, with error bars and theory    eventsim.measure
     simulation the way in for Python users                    eventsim.simulation
+    sweep      many runs, one table                           eventsim.sweep
     show       pictures of what happened                      eventsim.show
     cli        the way in from a terminal                     eventsim.cli
 
@@ -25,6 +27,7 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from eventsim.engines import ENGINES as ENGINES
     from eventsim.engines.base import Run as Run
+    from eventsim.engines.base import Stop as Stop
     from eventsim.errors import CollapseError as CollapseError
     from eventsim.errors import EventsimError as EventsimError
     from eventsim.errors import LogError as LogError
@@ -67,6 +70,7 @@ _HOMES = {
     "simulate": "simulation",
     "Simulation": "simulation",
     "Run": "engines.base",
+    "Stop": "engines.base",
     "State": "record.events",
     "EventLog": "record.log",
     "load_log": "record.log",

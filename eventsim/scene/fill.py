@@ -182,5 +182,5 @@ class _Place:
         return (
             f'{self.where}.arrangement = "random": {self.gas.count} disks of radius {self.radius:.6g} do not fit at'
             f" random into {self._extent()}, packing fraction {self._packing_fraction():.4g}{found}; random insertion"
-            ' works up to about 0.5 in all: use "square" or "hexagonal"'
+            ' works up to about 0.5 in all: use "compressed", "square" or "hexagonal"'
         )

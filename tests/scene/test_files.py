@@ -243,3 +243,12 @@ def test_a_bad_npz_is_told_in_a_sentence(tmp_path):
     )
     with pytest.raises(SceneError, match="equally long"):
         load_with_disks(tmp_path, "start.npz")
+
+
+def test_the_equilibration_comes_back_and_must_be_a_time():
+    data = {"domain": {"kind": "open"}, "disk": [{"position": [0.0, 0.0], "radius": 1.0}], "equilibration": 2.5}
+    scene = scene_from_dict(data)
+    assert scene.equilibration == 2.5
+    assert scene_from_dict(scene_to_dict(scene)) == scene
+    with pytest.raises(SceneError, match="equilibration = -1.0: must be a finite time"):
+        scene_from_dict({**data, "equilibration": -1.0})
