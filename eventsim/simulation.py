@@ -17,6 +17,7 @@ from eventsim.record.events import Rows, State
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Ending
 from eventsim.scene import Scene
+from eventsim.scene.numbers import number, optional_number, optional_whole, point
 from eventsim.scene.stage import stage_of
 
 STEP_BUDGET = 4096
@@ -50,7 +51,7 @@ def simulate(
     Returns a Run; its `stopped` tells why it ended.  Raises SceneError where nothing says when to stop, EventsimError for an
     engine that does not exist.
     """
-    stop = stop_of(scene, until, events)
+    stop = stop_of(a_scene(scene), until, events)
     wishes = Wishes(log=log, compact=compact, digest=digest, progress=progress, on_event=on_event, command=command)
     if measure is False:
         return engine_named(engine).run(scene, stop, wishes, **options)
@@ -78,16 +79,29 @@ def _both(first: OnEvent, second: OnEvent | None) -> OnEvent:
 
 
 def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:
-    """When to stop: what is asked for here, else what the scene says."""
+    """When to stop: what is asked for here, else what the scene says.
+
+    Raises SceneError for what is neither a finite time on the scene's clock nor a number of events.
+    """
     if until is None and events is None:
         until, events = scene.until, scene.events
     if until is None and events is None:
         raise SceneError("nothing says when to stop: give until or events, in the scene or to simulate()")
-    if until is not None and math.isnan(until):
-        raise SceneError("until = nan: must be a time")
+    until, events = optional_number(until, "until"), optional_whole(events, "events")
+    if until is not None and not math.isfinite(until):
+        raise SceneError(f"until = {until!r}: must be a finite time")
+    if until is not None and until < scene.start_time:
+        raise SceneError(f"until = {until!r}: must not be before the start of the clock, {scene.start_time!r}")
     if events is not None and events < 0:
         raise SceneError(f"events = {events}: must be at least 0")
     return Stop(until, events)
+
+
+def a_scene(scene: object) -> Scene:
+    """The scene that was given; SceneError for what is none."""
+    if not isinstance(scene, Scene):
+        raise SceneError(f"{scene!r} is not a scene: load_scene(path) and gallery(name) give one")
+    return scene
 
 
 def engine_named(name: str) -> Engine:
@@ -103,6 +117,7 @@ def engine_named(name: str) -> Engine:
 class SavedSimulation:
     """A point that a simulation can go back to."""
 
+    scene: Scene
     snapshot: Snapshot
     counters: Counters
     rows: int
@@ -119,7 +134,7 @@ class Simulation:
         chosen = engine_named(engine)
         self.scene = scene
         self.engine = chosen.name
-        self._session = chosen.open(stage_of(scene), keep_rows=True, **options)
+        self._session = chosen.open(stage_of(a_scene(scene)), keep_rows=True, **options)
         self._provenance = provenance_of(self._session, self.engine, scene)
         self._blocks: list[Rows] = []
         self._time: float | None = None
@@ -158,13 +173,17 @@ class Simulation:
         events: stop after so many even where that is earlier; `time` of the simulation tells which came first.
         Raises CollapseError as step; EventsimError for a time that has passed.
         """
-        if math.isnan(time) or math.isinf(time) or time < self.time:
+        time = number(time, "time")
+        if not math.isfinite(time) or time < self.time:
             raise EventsimError(f"cannot advance to {time!r}: it must be a finite time, not before {self.time!r}")
         return self._advance(Stop(time, None if events is None else self._session.counters.events + events))
 
     def set_velocity(self, disk: int, velocity: tuple[float, float]) -> None:
-        """Give a disk another velocity, now: a kick, logged, so that the log still replays."""
-        vx, vy = float(velocity[0]), float(velocity[1])
+        """Give a disk another velocity, now: a kick, logged, so that the log still replays.
+
+        Raises EventsimError for a disk that does not exist or a velocity that is not two finite numbers.
+        """
+        vx, vy = point(velocity, f"velocity of disk {disk}")
         if not 0 <= disk < len(self.scene.disks):
             raise EventsimError(f"disk {disk} does not exist; there are {len(self.scene.disks)}, counted from 0")
         if not (math.isfinite(vx) and math.isfinite(vy)):
@@ -174,10 +193,15 @@ class Simulation:
 
     def snapshot(self) -> SavedSimulation:
         """A point to come back to."""
-        return SavedSimulation(self._session.snapshot(), self._session.counters.copy(), self._row_count())
+        return SavedSimulation(self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count())
 
     def restore(self, saved: SavedSimulation) -> None:
-        """Go back to a snapshot; what happened since is forgotten."""
+        """Go back to a snapshot; what happened since is forgotten.
+
+        Raises EventsimError for a snapshot of another scene.
+        """
+        if saved.scene != self.scene:
+            raise EventsimError("restore() takes what snapshot() of a simulation of the same scene gave")
         self._session.restore(saved.snapshot)
         self._session.counters.copy_from(saved.counters)
         keep = saved.rows

@@ -18,7 +18,12 @@ EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 @click.command()
 @scene_options(required=False)
 @click.option("--until", type=float, metavar="T", help="Stop at this time on the scene's clock.")
-@click.option("--events", type=click.IntRange(min=0), metavar="N", help="Stop after this many events.")
+@click.option(
+    "--events",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Stop after this many events; contacts at one instant are not cut apart.",
+)
 @click.option("--log", metavar="FILE", help=f"Keep every event in FILE, one of {', '.join(LOG_SUFFIXES)}.")
 @click.option("--compact", is_flag=True, help="Log only what replay cannot compute.")
 @click.option("--state", metavar="FILE", help="Write the final state to FILE (.csv or .npz).")
@@ -77,8 +82,8 @@ def command(
 
     Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse or digits; 130 interrupted.
     """
-    log_path = writable(log, "--log", LOG_SUFFIXES)
-    state_path = writable(state, "--state", STATE_SUFFIXES)
+    log_path = writable(log, "--log", LOG_SUFFIXES, source=scene)
+    state_path = writable(state, "--state", STATE_SUFFIXES, source=scene)
     if compact and log_path is None:
         raise click.UsageError("--compact says how the log is written: give --log FILE too")
     if log_path is not None and state_path is not None and log_path.resolve() == state_path.resolve():

@@ -34,11 +34,13 @@ def _is_number(word: str) -> bool:
 
 @click.command(cls=ManyTimes)
 @click.argument("log")
+@click.option("--at", "times", type=float, multiple=True, metavar="T [T ...]", help="Times on the scene's clock.")
 @click.option(
-    "--at", "times", type=float, multiple=True, metavar="T [T ...]", help="Times on the scene's clock."
+    "--frames", type=click.IntRange(min=2), metavar="N", help="N times instead, evenly from beginning to end."
 )
-@click.option("--frames", type=click.IntRange(min=2), metavar="N", help="N times instead, evenly from beginning to end.")
-@click.option("--out", metavar="FILE", help="Write to FILE (.csv, .npz; .xyz, .gsd for other programs) instead of stdout.")
+@click.option(
+    "--out", metavar="FILE", help="Write to FILE (.csv, .npz; .xyz, .gsd for other programs) instead of stdout."
+)
 @json_option
 @quiet_option
 def command(
@@ -64,7 +66,7 @@ def command(
 
     Exit codes: 0 done; 2 bad usage, no such log, or a time that the log does not cover.
     """
-    target = writable(out, "--out", STATE_SUFFIXES)
+    target = writable(out, "--out", STATE_SUFFIXES, source=log)
     if (not times) == (frames is None):
         raise click.UsageError("say at which times: either --at T [T ...] or --frames N")
 

@@ -12,8 +12,8 @@ LOG_SUFFIXES = (".csv", ".jsonl", ".npz", ".parquet")
 STATE_SUFFIXES = (".csv", ".npz", ".xyz", ".gsd")
 
 
-def writable(path: str | None, option: str, suffixes: Sequence[str]) -> Path | None:
-    """Return `path` as one that can be written, None if there is none.
+def writable(path: str | None, option: str, suffixes: Sequence[str], source: str | None = None) -> Path | None:
+    """Return `path` as one that can be written, None if there is none.  source: a file that is read, and must stay.
 
     Raises:
         click.UsageError: naming the option, the path and what is wrong with it.
@@ -23,6 +23,8 @@ def writable(path: str | None, option: str, suffixes: Sequence[str]) -> Path | N
     target = Path(path)
     if target.suffix.lower() not in suffixes:
         raise click.UsageError(f"{option} {path}: the file's name must end in {', '.join(suffixes)}")
+    if source is not None and target.exists() and Path(source).exists() and target.samefile(source):
+        raise click.UsageError(f"{option} {path}: this is the file that is read; write to another one")
     if target.is_dir():
         raise click.UsageError(f"{option} {path}: is a directory")
     if not target.parent.is_dir():

@@ -21,9 +21,11 @@ class Engine:
     name: str
     open: Callable[..., Session]
 
-    def run(self, scene: Scene, stop: Stop, wishes: Wishes | None = None, **options: Any) -> Run:
-        """Simulate a scene to its stop; options are the engine's own."""
+    def run(self, scene: Scene, stop: Stop | float, wishes: Wishes | None = None, **options: Any) -> Run:
+        """Simulate a scene to its stop, a Stop or a time on its clock; options are the engine's own."""
         wishes = Wishes() if wishes is None else wishes
+        if not isinstance(stop, Stop):
+            stop = Stop(until=float(stop))
         stage = stage_of(scene)
         # Where contacts can pile up, the last rows say how.
         session = self.open(stage, keep_rows=wishes.rows or stage.loses_energy, **options)

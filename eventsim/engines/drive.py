@@ -210,7 +210,7 @@ def _tell(progress: Progress, session: Session, stop: Stop) -> None:
 
 @contextmanager
 def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C sets a flag instead of breaking into the middle of an event; a second one breaks in."""
+    """Ctrl-C, or the signal to terminate, sets a flag instead of breaking into an event; a second one breaks in."""
     asked = False
 
     def ask(number: int, frame: FrameType | None) -> None:
@@ -222,11 +222,12 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
     if threading.current_thread() is not threading.main_thread():
         yield lambda: False
         return
-    before = signal.signal(signal.SIGINT, ask)
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield lambda: asked
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def memory_log(provenance: Provenance, blocks: list[Rows], ending: Ending | None) -> EventLog:

@@ -53,16 +53,20 @@ def _energy(stage: Stage, mass: Floats, motion: Motion) -> tuple[float, float]:
 
 
 def _momentum_left(session: Session, start: Motion, end: Motion) -> float:
-    """The momentum that is not booked against walls, immovable disks, gravity and kicks, over sum m |v|."""
+    """The momentum that is not booked against walls, immovable disks, gravity and kicks, over sum m |v|.
+
+    Where the disks are at rest at both ends, what was booked is the scale.
+    """
     stage = session.stage
     mass = _masses(stage)
     epoch, remainder = session.clock
     duration = epoch * stage.epoch_length + remainder
     gravity = stage.gravity or (0.0, 0.0)
-    left = []
+    left, booked = [], []
     for axis, (before, after) in enumerate(((start.vx, end.vx), (start.vy, end.vy))):
         change = math.fsum([*(mass * after).tolist(), *(-mass * before).tolist()])
         pull = math.fsum(mass.tolist()) * gravity[axis] * duration
         left.append(change - session.counters.outer_momentum[axis] - pull)
-    scale = max(math.fsum((mass * np.hypot(m.vx, m.vy)).tolist()) for m in (start, end))
+        booked.append(max(abs(session.counters.outer_momentum[axis]), abs(pull)))
+    scale = max(*(math.fsum((mass * np.hypot(m.vx, m.vy)).tolist()) for m in (start, end)), *booked)
     return math.hypot(*left) / scale if scale > 0.0 else math.hypot(*left)

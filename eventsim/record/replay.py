@@ -36,8 +36,9 @@ class Replay:
         self._rows, self._first = _rows_of_disks(self.log.rows, self.stage.n)
 
     def state_at(self, time: float) -> State:
-        """Return the state at a time on the scene's clock; at the exact time of an event, the state after it.
+        """Return the state at a time on the scene's clock; at the time of an event, the state after it.
 
+        The time of an event is the one in the log's column `time`: the exact clock behind it decides, not its rounding.
         O(log rows) per disk. Raises LogError for a time that the log does not cover.
         """
         time = float(time)
@@ -45,6 +46,9 @@ class Replay:
             raise LogError(f"there is no state at time {time}: the time must be a finite number")
         if time < self.stage.start_time:
             raise LogError(f"there is no state at time {time!r}: the run begins at {self.stage.start_time!r}")
+        row = int(np.searchsorted(self.log.time, time, side="right")) - 1
+        if row >= 0 and self.log.time[row] == time:
+            return self._state(int(self._window[row]), float(self.log.remainder[row]), time)
         ending = self.log.provenance.ending
         if ending is None or ending.reason not in ENDLESS:
             last = self._end()

@@ -354,3 +354,43 @@ def test_a_disk_squeezed_between_immovable_ones_stops_the_run_with_a_reason():
     session, stopped = run_of(scene, until=5.0)
     assert stopped == "collapse"
     assert "disks 0, 1, 2" in session.reason
+
+
+@pytest.mark.parametrize(
+    ("wrong", "word"),
+    [
+        ({"until": math.inf}, "finite"),
+        ({"until": -1.0}, "before the start"),
+        ({"until": "4"}, "must be a number"),
+        ({"events": 2.5}, "whole number"),
+        ({"events": True}, "whole number"),
+        ({"events": -3}, "at least 0"),
+        ({}, "nothing says when to stop"),
+    ],
+)
+def test_a_stop_that_makes_no_sense_is_refused(wrong, word):
+    with pytest.raises(es.SceneError, match=word):
+        es.simulate(pair_scene([[0.0, 0.0]], [[1.0, 0.0]]), **wrong)
+    with pytest.raises(es.SceneError, match="not a scene"):
+        es.simulate("break")
+
+
+def test_a_snapshot_of_another_scene_is_refused():
+    saved = es.Simulation(lattice_gas(5, 0.1)).snapshot()
+    with pytest.raises(es.EventsimError, match="same scene"):
+        es.Simulation(lattice_gas(6, 0.1)).restore(saved)
+
+
+def test_every_engine_of_the_list_takes_a_scene_and_a_stop():
+    run = es.ENGINES["reference"].run(lattice_gas(5, 0.1), es.Stop(events=3))
+    assert run.counters.events == 3
+    assert es.ENGINES["reference"].run(lattice_gas(5, 0.1), 0.5).time == 0.5
+
+
+def test_the_state_at_a_time_of_the_log_is_the_state_after_that_event():
+    run = es.simulate(es.gallery("break"), log=True)
+    for i, time in enumerate(run.log.time):
+        if i + 1 < len(run.log) and run.log.time[i + 1] == time:
+            continue
+        state = run.state_at(float(time))
+        assert state.velocity[run.log.a[i]].tolist() == [run.log.vxa[i], run.log.vya[i]]
