@@ -116,17 +116,17 @@ def _pile(chart: Chart) -> list[str]:
         own = best_event_driven(curves)
         if curves.task.measure != "unrest" or not own:
             continue
-        reference = min(own, key=lambda point: point.error)
-        winners = [
-            (time_at(curves.of(label), reference.error), label)
+        wins = [
+            (point.elapsed / time_at(curves.of(label), point.error), point.error, label)
             for label in curves.labels
-            if label not in EVENT_DRIVEN and time_at(curves.of(label), reference.error) < reference.elapsed
+            if label not in EVENT_DRIVEN
+            for point in own
         ]
-        if winners:
-            elapsed, label = min(winners)
+        ratio, error, label = max(wins, default=(0.0, 0.0, ""))
+        if ratio > 1.0:
             sentences.append(
-                f"{curves.task.name}: here stepped engines win. {label} is as near to rest {reference.elapsed / elapsed:,.0f} x "
-                "sooner: an event-driven engine pays for each of ever more contacts."
+                f"{curves.task.name}: here a stepped engine wins. {label} is within {error:.0e} of rest {ratio:,.0f} x sooner: "
+                f"{own[0].label} pays for each of ever more contacts, and has no state of rest."
             )
         else:
             sentences.append(f"{curves.task.name}: no stepped engine was nearer to rest in less time.")

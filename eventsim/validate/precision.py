@@ -30,7 +30,7 @@ STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 """Steps in the time in which a typical disk flies its radius."""
 
 BITS = (64, 96, 128, 192, 256, 512, 1024)
-DURATIONS = (0.3, 0.1, 0.05, 0.03)
+DURATIONS = (0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
 """Precisions of balls; contact durations, in sqrt(d / g), of event-driven runs of a pile."""
 
 REPEATS, SHORT_S = 3, 0.2
@@ -212,8 +212,9 @@ def _step_of(stage: Stage, entrant: Entrant, dt: float, error: ErrorOf) -> _Runn
 def _rest(task: Task, duration: float) -> _Runner:
     """An event-driven run of a pile with another contact duration."""
     stage = replace(stage_of(task.scene), contact_duration=duration)
-    engine = ENGINES["reference"]
-    return _Runner("reference", "contact_duration", duration, lambda: engine.open(stage), _unrest_error(stage))
+    name = best_engine()
+    engine = ENGINES[name]
+    return _Runner(name, "contact_duration", duration, lambda: engine.open(stage), _unrest_error(stage))
 
 
 def _balls(stage: Stage, bits: int) -> _Runner:

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 import eventsim as es
 from eventsim.cli.program import main
 from eventsim.scene.stage import stage_of
-from eventsim.validate.chart import Chart, Chaos
+from eventsim.validate.chart import Chaos, Chart
 from eventsim.validate.compare import compare
 from eventsim.validate.conclusions import advantages, conclusions
 from eventsim.validate.entrants import ENTRANTS, able, chosen_entrants
@@ -21,8 +21,17 @@ from eventsim.validate.table import chart_rows, comparison_rows, write_csv
 from eventsim.validate.verdict import verdict
 
 
+@pytest.fixture(scope="module", autouse=True)
+def no_compiler():
+    """The reference engine alone: these scenes are small, and its log is that of the fast one."""
+    with pytest.MonkeyPatch.context() as patch:
+        for home in ("eventsim.engines.auto", "eventsim.validate.truth"):
+            patch.setattr(f"{home}.has_compiler", lambda: False)
+        yield
+
+
 @pytest.fixture(scope="module")
-def gas():
+def gas(no_compiler):
     scene = es.gallery("gas", n=60)
     return compare(scene, chosen_entrants(["frames", "stepped", "stepped-located"]), steps=(0.02, 0.002, 0.0005), until=0.4)
 
@@ -39,7 +48,8 @@ def test_finer_steps_find_more_contacts_and_stay_nearer_to_the_truth(gas):
     for label in ("frames", "stepped", "stepped-located"):
         lines = [line for line in gas.lines if line.label == label]
         shares = [line.census.share(line.census.found) for line in lines]
-        assert shares[0] < shares[-1] and shares[-1] > 0.97
+        assert shares[0] < shares[-1]
+        assert shares[-1] > 0.97
         assert lines[-1].errors[1] < lines[0].errors[1]
     assert gas.agrees
     assert gas.truth.horizon > 0.0
@@ -131,7 +141,7 @@ def test_advantages_are_numbers_at_equal_error_and_at_equal_time():
     words = conclusions(a_chart())
     assert "fast 10 x faster than by stepped" in words[0]
     assert "float64 ends after 30 contacts a disk" in words[1]
-    assert "stepped engines win. penalty is as near to rest 5 x sooner" in words[2]
+    assert "a stepped engine wins. penalty is within 1e-01 of rest 5 x sooner" in words[2]
 
 
 def test_figures_are_drawn(gas, tmp_path):
@@ -146,7 +156,7 @@ def test_figures_are_drawn(gas, tmp_path):
 
 
 def test_validate_prints_a_table_a_verdict_and_json(tmp_path):
-    arguments = ["validate", "two-disks", "--dt", "0.1", "--dt", "0.01", "--against", "stepped", "--until", "12"]
+    arguments = ["validate", "two-disks", "--dt", "0.031", "--dt", "0.0072", "--against", "stepped", "--until", "12"]
     done = CliRunner().invoke(main, [*arguments, "--csv", str(tmp_path / "two.csv")])
     assert done.exit_code == 0, done.output
     assert "found missed doubled spurious" in done.output

@@ -68,8 +68,8 @@ def draw_curves(axes: Axes, curves: Curves) -> None:
     if curves.floor > 0.0:
         axes.axhspan(axes.get_ylim()[0], curves.floor, color="#e3e6ea", zorder=0)
         if curves.floor > 1e-6:
-            place = (0.98, curves.floor)
-            axes.annotate("chance", place, xycoords=("axes fraction", "data"), ha="right", va="top", fontsize=8)
+            place = (0.2, 0.02)
+            axes.annotate("below: chance", place, xycoords="axes fraction", fontsize=8.5)
     title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
     label(axes, "seconds of computing per time unit", ERRORS[curves.task.measure], title)
     axes.title.set_fontsize(9.5)
@@ -113,5 +113,5 @@ def draw_words(axes: Axes, chart: Chart) -> None:
         style = look(name)
         axes.plot([], [], style.line, marker=style.marker, color=style.colour, label=NAMES[name], ms=7)
     axes.legend(loc="upper left", frameon=False, fontsize=8.5, borderaxespad=0.0, labelspacing=0.25)
-    text = "\n".join(fill(sentence, 78) for sentence in conclusions(chart))
-    axes.text(0.0, 0.47, text, transform=axes.transAxes, va="top", fontsize=8.0, linespacing=1.15, color=LIGHT.ink)
+    text = "\n".join(fill(sentence, 72) for sentence in conclusions(chart))
+    axes.text(0.0, 0.5, text, transform=axes.transAxes, va="top", fontsize=8.6, linespacing=1.15, color=LIGHT.ink)
