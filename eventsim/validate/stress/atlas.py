@@ -15,7 +15,7 @@ from eventsim.validate.stress.case import Case
 from eventsim.validate.stress.catalogue import CASES
 from eventsim.validate.stress.verdict import Verdict, Word, hung, judge
 
-PATIENCE = 60.0
+PATIENCE = 180.0
 """Seconds beyond the limit after which an engine is ended from outside: kernels for a scene may have to be compiled."""
 
 COLUMNS = ("scene", "engine", "verdict", "fault", "error", "tolerance", "seconds", "sentence")

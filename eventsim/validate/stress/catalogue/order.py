@@ -16,7 +16,8 @@ ULP = 2.0**-52
 
 def _causality(bench: Bench) -> float:
     worst = 0.0
-    for eps in (2.0**-40, -(2.0**-40), 2.0**-51, -(2.0**-52)):
+    # the last two are one unit in the last place of 4 + eps: coordinates count from the leftmost disk
+    for eps in (2.0**-40, -(2.0**-40), 2.0**-50, -(2.0**-51)):
         expected = [-0.5, -0.25, 1.25] if eps > 0.0 else [-1.25, 0.25, 0.5]
         scene = on_plane(
             [[-2.0, 0.0], [0.0, 0.0], [2.0 + eps, 0.0]],
@@ -106,7 +107,7 @@ CASES = (
         "f7-causality",
         "two disks onto a heavy one; who is first decides",
         "Two contacts a few bits apart in time: the outcome is not continuous.",
-        "Closed form; the sign of eps decides, down to 2^-52.",
+        "Closed form; the sign of eps decides, down to 2^-51.",
         8 * ULP,
         "A few rounded operations.",
         _causality,
