@@ -4,6 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner
 
@@ -33,13 +34,29 @@ def place(tmp_path_factory):
     return folder
 
 
+LONG = ("animate", "figure", "live", "measure", "sweep", "stress", "validate", "chart")
+"""Commands that take long, or serve until they are ended: their own tests run them, here their words are parsed."""
+
+
 def test_the_commands_do_what_they_say(place, monkeypatch):
     monkeypatch.chdir(place)
-    commands = eventsim_commands()
+    commands = [words for words in eventsim_commands() if not words or words[0] not in LONG]
     assert len(commands) >= 8
     for words in commands:
+        if "gas.csv" in words:  # a log that the reader has made
+            result = CliRunner().invoke(main, ["run", "gas", "--events", "200", "--log", "gas.csv"])
+            assert result.exit_code == 0
         result = CliRunner().invoke(main, words)
         assert result.exit_code == 0, (words, result.output)
+
+
+@pytest.mark.parametrize("words", [words for words in eventsim_commands() if words and words[0] in LONG], ids=" ".join)
+def test_the_words_of_a_long_command_are_right(place, monkeypatch, words):
+    monkeypatch.chdir(place)
+    with click.Context(main) as context:
+        command = main.get_command(context, words[0])
+        assert command is not None
+        command.make_context(words[0], words[1:], parent=context)
 
 
 @pytest.mark.parametrize("code", blocks("python"))
