@@ -89,7 +89,7 @@ def _legend(figure: Figure, height: float) -> None:
     axes.text(
         x + 0.05,
         y,
-        "numbers: the error, in reaches or typical speeds; counts",
+        "hung: not done within the limit; numbers: the error, in reaches, typical speeds or counts",
         fontsize=7,
         color=LIGHT.faint,
         va="center",
