@@ -12,9 +12,7 @@ from eventsim.cli.options import json_option, quiet_option, scene_options
 @click.option("--horizon", is_flag=True, help="Simulate a little, to estimate until when float64 is right.")
 @json_option
 @quiet_option
-def command(
-    scene: str, settings: tuple[str, ...], seed: int | None, horizon: bool, as_json: bool, quiet: bool
-) -> None:
+def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bool, as_json: bool, quiet: bool) -> None:
     """Validate SCENE, and explain what it has and which machinery it gets for that.
 
     A scene with problems is answered with all of them at once, each naming the key or the disks, the value

@@ -11,9 +11,7 @@ from eventsim.cli.source import stop_options
 @click.command()
 @scene_options(required=True, metavar="LOG|SCENE")
 @stop_options
-@click.option(
-    "--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this much time at the beginning."
-)
+@click.option("--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this much time at the beginning.")
 @click.option("--structure", is_flag=True, help="Also g(r) at contact and psi_6 of the final state (needs freud).")
 @json_option
 @quiet_option

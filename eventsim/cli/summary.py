@@ -44,9 +44,7 @@ def summary_data(
     }
 
 
-def summary_text(
-    asked: str, run: Run, log: Path | None, state: Path | None, horizon: Horizon | None = None
-) -> str:
+def summary_text(asked: str, run: Run, log: Path | None, state: Path | None, horizon: Horizon | None = None) -> str:
     """Return the summary as aligned lines."""
     counters, residuals = run.counters, run.residuals
     rows = [

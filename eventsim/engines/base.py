@@ -157,9 +157,10 @@ class Session(Protocol):
 class Run:
     """What a simulation gives: the state it ended in, the log if one was kept, how good it is and why it stopped.
 
-    log_path: where the log was streamed to.  measures: where they were asked for.  stopped: `until`, `events`, `quiet` (no event ahead), `collapse`, `digits`,
-    `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s: simulating only; compile_s and
-    write_s apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its log.
+    log_path: where the log was streamed to.  measures: where they were asked for.  stopped: `until`, `events`, `quiet` (no
+    event ahead), `collapse`, `digits`, `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s:
+    simulating only; compile_s and write_s apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not
+    follow from its log.
     """
 
     scene: Scene
@@ -208,7 +209,9 @@ class Run:
         """
         if self.trajectory is not None:
             if not self.start_time <= time <= self.time:
-                raise LogError(f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}")
+                raise LogError(
+                    f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}"
+                )
             return self.trajectory.state_at(time, self.start_time)
         from eventsim.record.replay import Replay  # only who looks back pays for it
 
@@ -218,7 +221,6 @@ class Run:
         if self._replay is None:
             self._replay = Replay(log)
         return self._replay.state_at(time)
-
 
     def animate(self, path: str | PathLike[str], **options: Any) -> None:
         """Write an animation to `path`: .mp4, .gif, .png (a strip of moments) or .html (a page that plays the run).

@@ -62,7 +62,9 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
             f"the contacts of {names} at time {time:.9g} follow one another faster than the digits of float64 can tell, "
             f"without a steady ratio before: they may or may not end; {REMEDY}"
         )
-    series = f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
+    series = (
+        f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
+    )
     if rounds.last < SETTLED * rounds.first:
         return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {REMEDY}"
     return "digits", (

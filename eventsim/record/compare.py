@@ -80,6 +80,4 @@ def deviations(one: Rows, other: Rows, pairs: NDArray[np.int64]) -> Floats:
 
 
 def _contacts(rows: Rows) -> list[Contact]:
-    return list(
-        zip(rows["kind"].tolist(), rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True)
-    )
+    return list(zip(rows["kind"].tolist(), rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True))

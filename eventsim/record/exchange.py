@@ -78,7 +78,9 @@ def _write_xyz(path: Path, scene: Scene, states: Sequence[State]) -> None:
                 f'Lattice="{lattice}" Origin="{origin}" Properties={columns} pbc="{periodic}" Time={float(state.time)!r}\n'
             )
             rows = zip(names, state.position.tolist(), state.velocity.tolist(), tails, strict=True)
-            file.writelines(f"{name} {x!r} {y!r} 0.0 {vx!r} {vy!r} 0.0 {tail}\n" for name, (x, y), (vx, vy), tail in rows)
+            file.writelines(
+                f"{name} {x!r} {y!r} 0.0 {vx!r} {vy!r} 0.0 {tail}\n" for name, (x, y), (vx, vy), tail in rows
+            )
 
 
 def _write_gsd(path: Path, scene: Scene, states: Sequence[State]) -> None:
@@ -86,7 +88,9 @@ def _write_gsd(path: Path, scene: Scene, states: Sequence[State]) -> None:
     try:
         import gsd.hoomd
     except ImportError:
-        raise EventsimError("a .gsd file is written by the gsd library: pip install 'eventsim-disks[structure]'") from None
+        raise EventsimError(
+            "a .gsd file is written by the gsd library: pip install 'eventsim-disks[structure]'"
+        ) from None
     size, corner = _cell(scene, states)
     with gsd.hoomd.open(name=str(path), mode="w") as file:
         for number, state in enumerate(states):

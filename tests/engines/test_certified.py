@@ -200,7 +200,9 @@ def test_the_sign_of_the_smallest_gap_decides(k, sign):
 
 @pytest.mark.parametrize(("e", "events"), [(0.08, 11), (0.0719, 89)])
 def test_a_chain_that_just_does_not_collapse_is_counted(e, events):
-    session, stopped = certified(line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0)), until=100.0)
+    session, stopped = certified(
+        line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0)), until=100.0
+    )
     assert (stopped, session.proven) == ("quiet", events)
 
 

@@ -82,7 +82,10 @@ def test_too_dense_a_mixture_says_how_far_it_came():
     [
         ({"wall": [{"kind": "segment", "start": [0.3, 0.3], "end": [0.6, 0.6]}]}, "must be free of walls"),
         ({"disk": [{"position": [0.5, 0.5], "radius": 0.2}]}, "must be free of walls and of other disks"),
-        ({"domain": {"kind": "periodic", "size": [1.0, 0.01]}}, "four of its diameters|wider than the region|do not fit"),
+        (
+            {"domain": {"kind": "periodic", "size": [1.0, 0.01]}},
+            "four of its diameters|wider than the region|do not fit",
+        ),
     ],
 )
 def test_what_is_in_the_way_is_named(change, message):

@@ -120,10 +120,7 @@ def test_json_has_the_same_keys_and_a_word_for_inf(tmp_path):
 
 GASES = {
     "domain": {"kind": "box", "size": [10, 10]},
-    "gas": [
-        {"count": 5, "radius": 0.1, "seed": 7, "speed": 1.0, "region": [5 * i, 0, 5 * i + 5, 10]}
-        for i in (0, 1)
-    ],
+    "gas": [{"count": 5, "radius": 0.1, "seed": 7, "speed": 1.0, "region": [5 * i, 0, 5 * i + 5, 10]} for i in (0, 1)],
 }
 
 
@@ -191,9 +188,7 @@ def test_disks_come_from_csv_and_npz_alike_in_every_bit(tmp_path):
     rng = np.random.default_rng(1)
     table = {key: rng.random(50) * 10.0 ** rng.integers(-9, 9, 50) for key in ("x", "y", "vx", "vy", "mass")}
     table["radius"] = np.zeros(50)
-    rows = [
-        ",".join(map(repr, row)) for row in zip(*(column.tolist() for column in table.values()), strict=True)
-    ]
+    rows = [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in table.values()), strict=True)]
     (tmp_path / "start.csv").write_text("# a comment\n" + ",".join(table) + "\n" + "\n".join(rows) + "\n")
     np.savez(tmp_path / "start.npz", **table)
     scene = load_with_disks(tmp_path, "start.csv")
@@ -250,5 +245,5 @@ def test_the_equilibration_comes_back_and_must_be_a_time():
     scene = scene_from_dict(data)
     assert scene.equilibration == 2.5
     assert scene_from_dict(scene_to_dict(scene)) == scene
-    with pytest.raises(SceneError, match="equilibration = -1.0: must be a finite time"):
+    with pytest.raises(SceneError, match=r"equilibration = -1\.0: must be a finite time"):
         scene_from_dict({**data, "equilibration": -1.0})

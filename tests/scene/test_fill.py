@@ -31,9 +31,7 @@ def place(gas, domain, walls=(), present=NOBODY, seed=1):
     )
 
 
-@pytest.mark.parametrize(
-    "domain", [Box((2, 1), (5, -3)), Channel((2, 1), (5, -3)), Periodic((2, 1), (5, -3))]
-)
+@pytest.mark.parametrize("domain", [Box((2, 1), (5, -3)), Channel((2, 1), (5, -3)), Periodic((2, 1), (5, -3))])
 @pytest.mark.parametrize(
     ("arrangement", "packing_fraction"),
     [("random", 0.3), ("random", 0.5), ("square", 0.7), ("hexagonal", 0.8)],

@@ -140,9 +140,7 @@ def test_an_overlap_of_a_few_ulp_counts_as_touching_and_is_told(domain):
 
 
 def test_touching_exactly_is_no_overlap():
-    scene = Scene(
-        Disks([[0.5, 0.5], [1.5, 0.5]], radius=0.5), Box((2, 1)), [Segment((0, 1), (2, 1), name="lid")]
-    )
+    scene = Scene(Disks([[0.5, 0.5], [1.5, 0.5]], radius=0.5), Box((2, 1)), [Segment((0, 1), (2, 1), name="lid")])
     assert touching_by_rounding(scene) == []
 
 

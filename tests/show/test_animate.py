@@ -211,7 +211,7 @@ def test_a_missing_ffmpeg_is_one_sentence(broken, tmp_path, monkeypatch):
 
 
 def test_an_ffmpeg_that_fails_is_one_sentence(broken, tmp_path, monkeypatch):
-    monkeypatch.setattr("eventsim.show.mp4.QUALITY", ("-pix_fmt", "nonsense"))
+    monkeypatch.setattr(sys.modules["eventsim.show.mp4"], "QUALITY", ("-pix_fmt", "nonsense"))
     with pytest.raises(EventsimError, match=r"ffmpeg could not write the movie: ."):
         animate(broken, tmp_path / "a.mp4", None, SMALL)
     assert list(tmp_path.iterdir()) == []

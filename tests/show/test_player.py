@@ -2,6 +2,7 @@
 
 import json
 import re
+import sys
 import time
 
 import numpy as np
@@ -223,7 +224,7 @@ def test_a_notebook_shows_the_player_and_a_long_log_as_text(broken, monkeypatch)
     run = es.simulate(es.gallery("two-disks"), log=True)
     assert "<iframe srcdoc=" in run._repr_html_()
     assert es.simulate(es.gallery("two-disks"))._repr_html_() is None
-    monkeypatch.setattr("eventsim.show.player.page.MOST_EVENTS", 3)
+    monkeypatch.setattr(sys.modules["eventsim.show.player.page"], "MOST_EVENTS", 3)
     assert notebook_frame(broken) is None
 
 

@@ -88,9 +88,7 @@ class CertifiedPredictor(Predictor):
         self._add = calendar.push
         self._push: Callable[[Event], None] = self._push_and_note
         self._radius = [number(radius) for radius in stage.radius.tolist()]
-        self._features = tuple(
-            (place, _in_balls(shape, number), delay_to) for place, shape, delay_to in self._features
-        )
+        self._features = tuple((place, _in_balls(shape, number), delay_to) for place, shape, delay_to in self._features)
         self._images = images_of(stage)
         self._screen = Screen(stage)
 

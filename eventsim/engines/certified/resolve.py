@@ -37,7 +37,9 @@ class CertifiedResolver(Resolver):
 
     def _together(self, contacts: list[JointContact], before: list[tuple[Any, Any]], masses: list[float]) -> Outcome:
         exact = [
-            contact._replace(dx=_rational(contact.dx), dy=_rational(contact.dy), restitution=_rational(contact.restitution))
+            contact._replace(
+                dx=_rational(contact.dx), dy=_rational(contact.dy), restitution=_rational(contact.restitution)
+            )
             for contact in contacts
         ]
         flights = [(_rational(u), _rational(w)) for u, w in before]

@@ -19,7 +19,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
-from eventsim.engines.fast.predict import image, shift
+from eventsim.engines.fast.predict import image, pair_is_due, shift
 from eventsim.engines.fast.rows import write_row
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
 from eventsim.formulas.impulse import (
@@ -101,6 +101,28 @@ def _in_order(m, i, j, mass, rows):
 
 
 @inline
+def _image_met(m, rules, a, b, t, dx, dy, slots):
+    """The image in which two disks that are (dx, dy) apart meet at time t."""
+    if rules.length_x is None and rules.length_y is None:
+        return 0, 0
+    if slots is None:
+        return _image_due(m, rules, a, b, t)
+    return image(dx, rules.length_x), image(dy, rules.length_y)
+
+
+@part
+def _image_due(m, rules, a, b, t):
+    """The same in a box too small for cells, where several images can be equally near: the one that is due."""
+    span_x = 0 if rules.length_x is None else 1
+    span_y = 0 if rules.length_y is None else 1
+    for kx in range(-span_x, span_x + 1):
+        for ky in range(-span_y, span_y + 1):
+            if pair_is_due(m, rules, a, b, kx, ky) == t:
+                return kx, ky
+    return 0, 0
+
+
+@inline
 def resolve_pair(m, rules, sums, i, j, t, number, slot):
     """Resolve the contact of disks i and j at time t; its overlap in reaches."""
     a, b = _in_order(m, i, j, m.mass, m.rows)
@@ -109,7 +131,7 @@ def resolve_pair(m, rules, sums, i, j, t, number, slot):
     ua, wa = speed(m, rules, a, t)
     ub, wb = speed(m, rules, b, t)
     dx, dy = xa - xb, ya - yb
-    kx, ky = image(dx, rules.length_x), image(dy, rules.length_y)
+    kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     share_a, share_b = _shares(a, b, m.mass)
     e = _restitution(m, a, b, t, rules.pair_restitution, rules.duration)

@@ -24,7 +24,16 @@ from eventsim.scene.stage import Stage, stage_of
 pytest.importorskip("numba")
 
 BUDGET = 3000
-COUNTERS = ("events", "pair_contacts", "wall_contacts", "clusters", "wraps", "turnovers", "deepest_overlap", "outer_momentum")
+COUNTERS = (
+    "events",
+    "pair_contacts",
+    "wall_contacts",
+    "clusters",
+    "wraps",
+    "turnovers",
+    "deepest_overlap",
+    "outer_momentum",
+)
 QUICK = ("two-disks", "break", "newton-cradle", "corner", "collapse", "gas", "periodic-fluid", "obstacle")
 
 
@@ -40,7 +49,9 @@ def assert_same(stage: Stage, stop: Stop, **options: object) -> None:
     reference, fast = ReferenceSession(stage), FastSession(stage, **options)
     expected, why = rows_of(reference, stop)
     rows, stopped = rows_of(fast, stop)
-    differ = next((k for k in range(min(len(rows), len(expected))) if rows[k].tolist()[:10] != expected[k].tolist()[:10]), None)
+    differ = next(
+        (k for k in range(min(len(rows), len(expected))) if rows[k].tolist()[:10] != expected[k].tolist()[:10]), None
+    )
     assert (len(rows), differ) == (len(expected), None)
     for name in ROW.names:
         assert np.array_equal(rows[name], expected[name], equal_nan=ROW[name].kind == "f"), name

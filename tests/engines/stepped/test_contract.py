@@ -88,7 +88,7 @@ def test_a_run_stops_by_events_and_by_patience_with_a_scene_where_nothing_comes(
     run = es.simulate(es.gallery("gas", n=30), events=50, engine="stepped")
     assert run.stopped == "events"
     assert 50 <= run.counters.events < 60
-    monkeypatch.setattr("eventsim.engines.stepped.session.VAIN_STEPS", 1000)
+    monkeypatch.setattr(sys.modules["eventsim.engines.stepped.session"], "VAIN_STEPS", 1000)
     alone = es.Scene(es.Disks([(0, 0)], [(1, 0)], radius=1.0), es.Open())
     assert es.simulate(alone, events=1, engine="stepped").stopped == "quiet"
 

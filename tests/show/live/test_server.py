@@ -3,6 +3,7 @@
 import asyncio
 import gc
 import json
+import sys
 from contextlib import asynccontextmanager
 
 import numpy as np
@@ -169,7 +170,7 @@ def test_twenty_pages_at_once_and_nothing_is_left_of_them():
 
 
 def test_a_page_that_does_not_read_holds_up_nobody_and_fills_no_memory(monkeypatch):
-    monkeypatch.setattr("eventsim.show.live.world.LEAD_EVENTS", 3000)
+    monkeypatch.setattr(sys.modules["eventsim.show.live.world"], "LEAD_EVENTS", 3000)
 
     async def story(connect, session, address):
         lazy, quick = await connect(), await connect()
@@ -280,7 +281,7 @@ def test_a_scene_that_stops_says_why():
 
 
 def test_events_that_are_kept_are_bounded(monkeypatch):
-    monkeypatch.setattr("eventsim.show.live.world.MOST_EVENTS", 300)
+    monkeypatch.setattr(sys.modules["eventsim.show.live.world"], "MOST_EVENTS", 300)
 
     async def story(connect, session, address):
         client = await connect()

@@ -1,5 +1,7 @@
 """A track: pieces, and going back, change no bit."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -24,9 +26,9 @@ def test_pieces_give_the_log_of_one_run():
 
 
 def test_going_back_and_on_again_changes_no_bit(monkeypatch):
-    monkeypatch.setattr("eventsim.show.live.track.MARK_EVENTS", 50)
-    monkeypatch.setattr("eventsim.show.live.track.MARK_EVENTS_PER_DISK", 0)
-    monkeypatch.setattr("eventsim.show.live.track.MOST_MARKS", 8)
+    monkeypatch.setattr(sys.modules["eventsim.show.live.track"], "MARK_EVENTS", 50)
+    monkeypatch.setattr(sys.modules["eventsim.show.live.track"], "MARK_EVENTS_PER_DISK", 0)
+    monkeypatch.setattr(sys.modules["eventsim.show.live.track"], "MOST_MARKS", 8)
     scene = es.gallery("gas", n=50)
     track = Track(scene, "reference")
     while track.horizon < 0.4:
