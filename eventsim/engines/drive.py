@@ -32,6 +32,9 @@ from eventsim.scene import Scene
 FIRST_BUDGET, LONGEST_STINT = 64, 0.2
 """Steps of the first stint; seconds that a stint may take before progress and interrupts are looked at."""
 
+MOST_EPOCHS = 2.0**61
+"""What the column `epoch` can count."""
+
 REPLAYED = ("auto", "reference", "fast")
 """Engines whose every bit follows from the scene and the order of its contacts."""
 
@@ -77,6 +80,10 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
             "a compact log leaves out what replay computes, and replay computes as the reference and the fast engine do: "
             f"the log of the engine {engine} has to be a full one"
         )
+    stage = session.stage
+    if stop.until is not None and stop.until - stage.start_time > MOST_EPOCHS * stage.epoch_length:
+        latest = stage.start_time + MOST_EPOCHS * stage.epoch_length
+        raise EventsimError(f"until = {stop.until!r}: the clock of this scene ends at {latest:g}")
     provenance = provenance_of(session, engine, scene, wishes.command)
     memory = MemorySink(provenance) if wishes.log is True else None
     path = Path(wishes.log) if not isinstance(wishes.log, bool) else None

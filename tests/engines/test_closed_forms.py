@@ -394,3 +394,8 @@ def test_the_state_at_a_time_of_the_log_is_the_state_after_that_event():
             continue
         state = run.state_at(float(time))
         assert state.velocity[run.log.a[i]].tolist() == [run.log.vxa[i], run.log.vya[i]]
+
+
+def test_a_time_that_the_clock_cannot_count_is_refused():
+    with pytest.raises(es.EventsimError, match="the clock of this scene ends at"):
+        es.simulate(pair_scene([[0.0, 0.0]], [[1.0, 0.0]]), until=1e300)

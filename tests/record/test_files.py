@@ -246,3 +246,13 @@ def test_without_pyarrow_parquet_says_what_to_install() -> None:
     script = script.replace("load_log(sys.argv[1])", "import eventsim.record.files.parquet")
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert done.stdout.strip() == "parquet logs need pyarrow: install eventsim-disks[parquet]"
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".jsonl"])
+def test_a_byte_order_mark_and_other_line_ends_do_no_harm(tmp_path, suffix):
+    import eventsim as es
+
+    path = tmp_path / f"log{suffix}"
+    run = es.simulate(es.gallery("two-disks"), log=path)
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().replace(b"\n", b"\r\n"))
+    assert es.load_log(path).digest() == run.digest

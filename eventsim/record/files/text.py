@@ -97,7 +97,7 @@ def read_text(
     ValueError, TypeError, OverflowError or KeyError. Raises LogError.
     """
     try:
-        with open(path, encoding="utf-8", newline="\n") as file:
+        with open(path, encoding="utf-8-sig") as file:  # editors on some systems add a mark and other line ends
             lines = _whole_lines(file, path)
             head = next(lines, "")
             if not head.startswith(prefix):
@@ -124,7 +124,9 @@ def _whole_lines(file: IO[str], path: Path) -> Iterator[str]:
         if line.endswith("\n"):
             yield line[:-1]
         elif path.suffix != PART:
-            raise LogError(f"{path}: the last line is not whole; the file was cut off")
+            raise LogError(
+                f"{path}: the last line is not whole; the file was cut off (named {path.name}{PART}, it is read up to there)"
+            )
 
 
 def _parse_block(
