@@ -123,4 +123,6 @@ def command(
         data = {"scene": scene, "out": str(target), "format": target.suffix[1:].lower(), "events": len(log)}
         click.echo(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
     elif not quiet:
+        if len(log) == 0:
+            click.echo("this log is empty: no event happens, the disks only fly on", err=True)
         click.echo(f"{plural(len(log), 'event')} drawn to {target} ({file_size(target)}) in {elapsed:.2g} s")

@@ -6,32 +6,19 @@ time has the bits of the row.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import product
 from typing import NamedTuple
 
 from eventsim.formulas.contact import pair_delay
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.parabola import circle_delays
-from eventsim.formulas.walls.face import Face, face_delay, face_normal
+from eventsim.formulas.walls.delays import DELAYS
+from eventsim.formulas.walls.face import Face, face_normal
 from eventsim.formulas.walls.round import (
-    Arc,
-    Container,
-    Post,
-    arc_delay,
-    container_delay,
-    post_delay,
     round_normal,
 )
 from eventsim.record.disk_flight import DiskFlight
 from eventsim.scene.stage import Stage
-
-DELAYS: dict[type, Callable[..., tuple[float, int]]] = {
-    Face: face_delay,
-    Post: post_delay,
-    Container: container_delay,
-    Arc: arc_delay,
-}
 
 
 class Contact(NamedTuple):

@@ -13,19 +13,13 @@ from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER, Real
-from eventsim.formulas.walls.face import Face, face_delay
-from eventsim.formulas.walls.round import Arc, Container, Post, arc_delay, container_delay, post_delay
+from eventsim.formulas.walls.delays import DELAYS
+from eventsim.formulas.walls.face import Face
+from eventsim.formulas.walls.round import Arc, Container, Post
 from eventsim.scene.stage import Stage
 
 Border: TypeAlias = tuple[int, int, float, float]
 """An end of the domain: (rank of its events, place of the wall, position, 1 where the radius keeps a centre away from it)."""
-
-DELAYS: dict[type, Callable[..., tuple[Real, int]]] = {
-    Face: face_delay,
-    Post: post_delay,
-    Container: container_delay,
-    Arc: arc_delay,
-}
 
 
 class Predictor:
