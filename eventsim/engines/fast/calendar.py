@@ -9,16 +9,15 @@ from __future__ import annotations
 from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline
 from eventsim.engines.fast.layout import (
-    BUCKET,
     COLUMN,
     COUNT,
     COUNTS,
     DUE,
+    LINK,
     NEXT,
     NOTHING,
     PARTNER,
     PARTNER_COUNT,
-    PREVIOUS,
     REALS,
     ROW,
     WORDS,
@@ -38,28 +37,32 @@ def day_of(grid, time, day):
 
 
 @inline
+def bucket(grid, day):
+    """The place, among the words of the records and the buckets behind them, of the first disk that is due on a day."""
+    return (grid.n + 1) * WORDS + (day & (grid.days - 1))
+
+
+@inline
 def push(m, grid, i, day):
-    """Put disk i into the calendar."""
-    bucket = day_of(grid, real(m.disks, i * REALS + DUE), day) & (grid.days - 1)
-    follower = word(m.buckets, bucket)
-    store(m.disks, i * WORDS + BUCKET, bucket)
+    """Put disk i into the calendar.
+
+    The list of a day ends with the sentinel, whose link is written and never read: so there is no branch that depends on
+    the time of the event, and what comes next need not wait until that is known.
+    """
+    link = bucket(grid, day_of(grid, real(m.disks, i * REALS + DUE), day))
+    follower = word(m.disks, link)
+    store(m.disks, i * WORDS + LINK, link)
     store(m.disks, i * WORDS + NEXT, follower)
-    store(m.disks, i * WORDS + PREVIOUS, -1)
-    store(m.buckets, bucket, i)
-    if follower >= 0:
-        store(m.disks, follower * WORDS + PREVIOUS, i)
+    store(m.disks, link, i)
+    store(m.disks, follower * WORDS + LINK, i * WORDS + NEXT)
 
 
 @inline
 def take(m, i):
     """Take disk i out of the calendar."""
-    follower, leader = word(m.disks, i * WORDS + NEXT), word(m.disks, i * WORDS + PREVIOUS)
-    if follower >= 0:
-        store(m.disks, follower * WORDS + PREVIOUS, leader)
-    if leader >= 0:
-        store(m.disks, leader * WORDS + NEXT, follower)
-    else:
-        store(m.buckets, word(m.disks, i * WORDS + BUCKET), follower)
+    link, follower = word(m.disks, i * WORDS + LINK), word(m.disks, i * WORDS + NEXT)
+    store(m.disks, link, follower)
+    store(m.disks, follower * WORDS + LINK, link)
 
 
 @inline
@@ -70,11 +73,10 @@ def first(m, grid, day, limit):
     """
     quiet = 0
     while True:
-        bucket = day & (grid.days - 1)
-        head = word(m.buckets, bucket)
+        head = word(m.disks, bucket(grid, day))
         earliest, others, i = -1, 0, head  # all updated without branches, which could not be foreseen
         time = float(day + 1) * grid.day_length
-        while i >= 0:
+        while i != grid.n:
             due = real(m.disks, i * REALS + DUE)
             sooner = due < time
             others = 0 if sooner else others + (due == time)
@@ -88,11 +90,11 @@ def first(m, grid, day, limit):
         quiet += 1
         if quiet > 4 * grid.days:
             return -2, day, 0
-        store(m.buckets, bucket, -1)
+        store(m.disks, bucket(grid, day), grid.n)
         day += 1
         fetch_coming(m, grid, day, grid.look_ahead)
         i = head
-        while i >= 0:  # due on a later day
+        while i != grid.n:  # due on a later day
             follower = word(m.disks, i * WORDS + NEXT)
             push(m, grid, i, day)
             i = follower
@@ -120,25 +122,24 @@ def is_stale(m, i):
 
 
 @inline
-def unsettled(m, i):
-    """Among the events that have the time of disk i's, one that comes before contacts: a wrap, a crossing, a stale one; or -1."""
+def unsettled(m, grid, i, day):
+    """Among the events that have the time of disk i's, one that comes before contacts: a wrap, a crossing, a stale one; or n."""
     time = real(m.disks, i * REALS + DUE)
-    k = word(m.buckets, word(m.disks, i * WORDS + BUCKET))
-    while k >= 0:
+    k = word(m.disks, bucket(grid, day))
+    while k != grid.n:
         if real(m.disks, k * REALS + DUE) == time:
             code = word(m.disks, k * WORDS + PARTNER)
             if NOTHING <= code < 0 or is_stale(m, k):
                 return k
         k = word(m.disks, k * WORDS + NEXT)
-    return -1
+    return k
 
 
 @inline
 def fetch_record(m, i):
     """Ask for both lines of a disk."""
-    if i >= 0:
-        prefetch(m.disks, i * REALS)
-        prefetch(m.disks, i * REALS + 8)
+    prefetch(m.disks, i * REALS)
+    prefetch(m.disks, i * REALS + 8)
 
 
 @inline
@@ -160,23 +161,23 @@ def fetch_coming(m, grid, day, look_ahead):
     """Ask for what the events of coming days need, in four stages; each reads what the one before it asked for."""
     if look_ahead is None:
         return
-    mask = grid.days - 1
-    fetch_record(m, word(m.buckets, (day + look_ahead) & mask))
-    i = word(m.buckets, (day + look_ahead * 3 // 4) & mask)
-    if i >= 0:
-        fetch_record(m, word(m.disks, i * WORDS + PARTNER))
+    fetch_record(m, word(m.disks, bucket(grid, day + look_ahead)))
+    i = word(m.disks, bucket(grid, day + look_ahead * 3 // 4))
+    if i != grid.n:
+        j = word(m.disks, i * WORDS + PARTNER)
+        fetch_record(m, j if j >= 0 else i)
         fetch_record(m, word(m.disks, i * WORDS + NEXT))
         fetch_around(m, grid, i, False)
-    i = word(m.buckets, (day + look_ahead // 2) & mask)
-    if i >= 0:
+    i = word(m.disks, bucket(grid, day + look_ahead // 2))
+    if i != grid.n:
         fetch_around(m, grid, i, True)
         j = word(m.disks, i * WORDS + PARTNER)
         if j >= 0:
             fetch_around(m, grid, j, False)
             fetch_record(m, word(m.disks, j * WORDS + NEXT))
-            fetch_record(m, word(m.disks, j * WORDS + PREVIOUS))
-    i = word(m.buckets, (day + look_ahead // 4) & mask)
-    if i >= 0:
+            prefetch(m.disks, word(m.disks, j * WORDS + LINK) // 2)  # two int32 to a float64
+    i = word(m.disks, bucket(grid, day + look_ahead // 4))
+    if i != grid.n:
         j = word(m.disks, i * WORDS + PARTNER)
         if j >= 0:
             fetch_around(m, grid, j, True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pull
+from eventsim.engines.fast.calendar import bucket
 from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline, kernel
 from eventsim.engines.fast.layout import (
@@ -34,8 +35,8 @@ def contacts_at(arrays, grid, rules, counts, now, found):
     """
     m = pointers(arrays)
     count = 0
-    i = word(m.buckets, counts[DAY] & (grid.days - 1))
-    while i >= 0:
+    i = word(m.disks, bucket(grid, counts[DAY]))
+    while i != grid.n:
         if real(m.disks, i * REALS + DUE) == now:
             count = _pairs_at(m, grid, rules, i, now, found, count, m.slots)
             count = _shapes_at(m, rules, i, now, found, count, rules.features)
@@ -49,8 +50,8 @@ def due_at(arrays, grid, counts, now, found):
     """Write the disks that are scheduled at `now` to found[:, 0]; how many there are, also where it is too short."""
     m = pointers(arrays)
     count = 0
-    i = word(m.buckets, counts[DAY] & (grid.days - 1))
-    while i >= 0:
+    i = word(m.disks, bucket(grid, counts[DAY]))
+    while i != grid.n:
         if real(m.disks, i * REALS + DUE) == now:
             count = _add(found, count, i, 0, 0, 0)
         i = word(m.disks, i * WORDS + NEXT)

@@ -17,8 +17,9 @@ X, Y, VX, VY, T, RADIUS, DUE, CONTACT_TIME = 0, 1, 2, 3, 4, 5, 8, 9
 MET, COUNT, FLAGS, LABEL = 12, 13, 14, 15
 """Places of int32 numbers in line 0: whom the disk met last, invalidation count, flags, its number in the scene."""
 
-PARTNER, PARTNER_COUNT, PREVIOUS, NEXT, BUCKET, COLUMN, ROW = 20, 21, 22, 23, 24, 25, 26
-"""In line 1: the next event and its partner's count when it was predicted; the calendar's links; the cell, counted from 1."""
+PARTNER, PARTNER_COUNT, LINK, NEXT, COLUMN, ROW = 20, 21, 22, 23, 25, 26
+"""In line 1: the next event and its partner's count when it was predicted; the calendar's links (the place of the word that
+holds this disk's number, a bucket or a NEXT; the disk that follows on the same day); the cell, counted from 1."""
 
 AT_ONCE, WRAPS_X, WRAPS_Y, MET_KX, MET_KY = 27, 28, 29, 30, 31
 """In line 1: contacts at the time of the last one; wraps; the image in which it was met (of a wall: the side)."""
@@ -43,16 +44,19 @@ WALL = -16
 COUNTS = 1 << 30
 """Invalidation counts stay below; the bit itself in PARTNER_COUNT says that two events share the time of this one."""
 
+MOST_DISKS = 1 << 25
+"""So many records and buckets still have int32 places."""
+
 
 class Arrays(NamedTuple):
     """The memory of a kernel: arrays where Python makes it, pointers inside; None is what the scene does not need.
 
+    disks: the records, and behind them the calendar's buckets.
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  rows: the
     log's buffer, bytes.
     """
 
     disks: object
-    buckets: object
     slots: object
     near: object
     several: object

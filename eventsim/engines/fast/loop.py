@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import anchor, place, speed, wrap
-from eventsim.engines.fast.calendar import first, is_mutual, is_stale, push, take, unsettled
+from eventsim.engines.fast.calendar import bucket, first, is_mutual, is_stale, push, take, unsettled
 from eventsim.engines.fast.cells import enter, leave
 from eventsim.engines.fast.compiled import inline, kernel
 from eventsim.engines.fast.layout import (
@@ -59,7 +59,6 @@ def pointers(a):
     """The pointers of the arrays."""
     return Arrays(
         pointer(a.disks),
-        pointer(a.buckets),
         pointer(a.slots),
         pointer(a.near),
         pointer(a.several),
@@ -122,8 +121,8 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             break
         now = due
         if others > 0 and not (others == 1 and is_mutual(m, i)):
-            i = unsettled(m, i)
-            if i < 0:
+            i = unsettled(m, grid, i, day)
+            if i == grid.n:
                 status = STATUS_TIE
                 break
         steps += 1
@@ -213,8 +212,8 @@ def schedule(arrays, grid, counts, now):
 
 @inline
 def _first_day(m, grid, now):
-    for bucket in range(grid.days):
-        store(m.buckets, bucket, -1)
+    for day in range(grid.days):
+        store(m.disks, bucket(grid, day), grid.n)
     return int(now * grid.days_per_time)
 
 

@@ -302,8 +302,7 @@ class FastSession:
             cells = one if sizes is None else sizes
             self._grid = self._grid_of(cells, sizes is not None, 1.0)
             self._arrays = Arrays(
-                state.disks.reshape(-1),
-                aligned(self._grid.days, np.int32),
+                state.memory,
                 slots,
                 aligned(9 * cells.depth + 32, np.int32),
                 state.several.reshape(-1),

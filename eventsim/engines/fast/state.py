@@ -18,6 +18,7 @@ from eventsim.engines.fast.layout import (
     MET,
     MET_KX,
     MET_KY,
+    MOST_DISKS,
     NOBODY,
     RADIUS,
     REALS,
@@ -33,7 +34,9 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
+from eventsim.engines.fast.plan import days_of
 from eventsim.engines.reference.state import EngineState, Met
+from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -144,6 +147,7 @@ class MetColumn:
 class FastState(EngineState):
     """The flights of n disks in records, with the reference engine's names for what is in them.
 
+    memory: the records, and the calendar's buckets behind them.
     disks: (n + 1, REALS), the last one a sentinel.  words: the same memory as int32.  place_of: where a disk is in memory;
     labels: which disk is at a place.  several: chains of whom disks met in joint contacts.
     """
@@ -164,9 +168,12 @@ class FastState(EngineState):
 
     def __init__(self, stage: Stage, order: NDArray[np.int64], counts: NDArray[np.int64]) -> None:
         n = stage.n
+        if n > MOST_DISKS:
+            raise EventsimError(f"{n} disks: the fast engine has room for {MOST_DISKS}")
         self.n = n
         self._counts = counts
-        self.disks: Floats = aligned((n + 1) * REALS, np.float64).reshape(n + 1, REALS)
+        self.memory: Floats = aligned((n + 1) * REALS + days_of(n) // 2, np.float64)
+        self.disks: Floats = self.memory[: (n + 1) * REALS].reshape(n + 1, REALS)
         self.words: Integers = self.disks.view(np.int32).reshape(n + 1, WORDS)
         self.place_of: Integers = np.empty(n, np.int32)
         self.place_of[order] = np.arange(n, dtype=np.int32)
