@@ -31,7 +31,7 @@ class Plan:
 
 
 def row_of(plan: Plan, task: Task) -> Row:
-    """The row of a task: settings, provenance, measures with errors; one that fails says why in the column `failed`.
+    """The row of a task: settings, provenance, measures with their errors, theory with its accuracy; `failed` says why it failed.
 
     Only what the scene, the seed and the version determine is in it: no times of the day, no speed of the machine.
     """
@@ -79,6 +79,7 @@ def _measured(plan: Plan, task: Task) -> Row:
         row[f"{quantity.name}_error"] = quantity.error
         if quantity.theory is not None:
             row[f"{quantity.name}_theory"] = quantity.theory
+            row[f"{quantity.name}_accuracy"] = quantity.accuracy
     return row
 
 

@@ -25,7 +25,7 @@ def measured(scene, **options):
 
 @pytest.mark.parametrize("eta", [0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
 def test_the_pressure_of_the_fluid(eta):
-    measures = measured(fluid(eta), events=4_000_000)
+    measures = measured(fluid(eta), events=5_000_000)
     z = measures["Z"]
     assert z.error < 5e-4 * z.value
     assert abs(z.value - theory.finite_compressibility_factor(eta, 1024)) < 3.0 * z.error

@@ -10,7 +10,7 @@ import eventsim as es
 from eventsim.errors import EventsimError
 from eventsim.record.replay import Replay
 from eventsim.scene.gallery import names
-from eventsim.show.figures import TITLES, msd
+from eventsim.show.figures import TITLES, equation_of_state, msd
 from eventsim.show.figures.free_paths import free_paths, mean_free_path, path_density
 from eventsim.show.figures.residuals import gaps_at_contact
 from eventsim.show.figures.write import write_figure
@@ -124,3 +124,28 @@ def test_no_text_is_cut_off_or_printed_over_another(fluid, kind):
             assert box.x1 <= shown.x1 + 1
             assert box.y0 >= shown.y0 - 1
             assert box.y1 <= shown.y1 + 1
+
+
+def sweep_row(eta, z, error, theory, accuracy):
+    given = {"packing_fraction": eta, "disks": 64, "Z": z, "Z_error": error, "equilibrated": True}
+    return given | {"Z_theory": theory, "Z_accuracy": accuracy}
+
+
+def test_replicas_are_averaged_and_theory_keeps_its_accuracy():
+    rows = [
+        sweep_row(0.3, 2.0, 0.1, 2.06, 0.01),
+        sweep_row(0.3, 2.2, 0.1, 2.06, 0.01),
+        sweep_row(0.7, 9.0, 0.1, 9.1, np.nan),
+    ]
+    eta, z, error, theory, accuracy, settled = equation_of_state.averages(rows)
+    assert eta.tolist() == [0.3, 0.7]
+    assert z == pytest.approx([2.1, 9.0])
+    assert error == pytest.approx([0.1 / np.sqrt(2.0), 0.1])
+    assert theory == pytest.approx([2.06, 9.1])
+    assert accuracy[0] == 0.01
+    assert np.isnan(accuracy[1])
+    assert settled.all()
+    figure = Figure()
+    equation_of_state.draw(figure, rows)
+    (off,) = figure.axes[1].lines[1].get_ydata()  # a guide is not compared with
+    assert off == pytest.approx((2.1 - 2.06) / np.hypot(0.1 / np.sqrt(2.0), 0.01))

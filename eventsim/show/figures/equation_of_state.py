@@ -24,8 +24,8 @@ def write_equation_of_state(rows: Sequence[Row], path: Path, name: str | None = 
 
 
 def draw(figure: Figure, rows: Sequence[Row], name: str | None = None) -> None:
-    """Draw the mean Z of the replicas at each packing fraction, and its distance from theory in standard errors."""
-    eta, z, error, theory, settled = averages(rows)
+    """Draw the mean Z of the replicas at each packing fraction, and its distance from theory in standard errors of both."""
+    eta, z, error, theory, accuracy, settled = averages(rows)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
     x = np.linspace(0.0, min(KOLAFA_ROTTNER_UP_TO, max(1.1 * float(eta.max()), 0.05)), 200)
     curve = [compressibility_factor(value) for value in x.tolist()]
@@ -33,8 +33,8 @@ def draw(figure: Figure, rows: Sequence[Row], name: str | None = None) -> None:
     for chosen, colour, text in ((settled, BLUE, "measured"), (~settled, RED, "not known to be equilibrated")):
         if chosen.any():
             above.errorbar(eta[chosen], z[chosen], error[chosen], fmt="o", ms=4, color=colour, label=text)
-    compared = np.isfinite(theory) & (error > 0.0)
-    off = (z - theory)[compared] / error[compared]
+    compared = np.isfinite(theory) & np.isfinite(accuracy)
+    off = (z - theory)[compared] / np.hypot(error, accuracy)[compared]
     below.axhspan(-1.0, 1.0, color="#e3e6ea")
     below.axhline(0.0, color=ORANGE, lw=1.5)
     below.plot(eta[compared], off, "o", ms=4, color=BLUE)
@@ -46,9 +46,10 @@ def draw(figure: Figure, rows: Sequence[Row], name: str | None = None) -> None:
     above.legend(frameon=False)
 
 
-def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, NDArray[np.bool_]]:
-    """(packing fraction, Z, its error, theory or NaN, whether all are equilibrated), one entry for each setting and N.
+def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, Floats, NDArray[np.bool_]]:
+    """(packing fraction, Z, its error, theory, its accuracy, whether all are equilibrated), one entry for each setting and N.
 
+    Theory is NaN where there is none, its accuracy where it is a guide and no prediction.
     Replicas are weighted by their error bars.  Raises EventsimError where no row holds a packing fraction and a Z.
     """
     groups: dict[tuple[float, object], list[Row]] = {}
@@ -60,16 +61,17 @@ def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, NDArr
     if not groups:
         raise EventsimError("there is nothing to draw: no run of the table has a packing fraction and a Z with an error bar")
     means = [_mean(group) for _, group in sorted(groups.items(), key=lambda item: item[0][0])]
-    z, error, theory, settled = (np.array([mean[k] for mean in means]) for k in range(4))
-    return np.array(sorted(eta for eta, _ in groups)), z, error, theory, settled.astype(np.bool_)
+    z, error, theory, accuracy, settled = (np.array([mean[k] for mean in means]) for k in range(5))
+    return np.array(sorted(eta for eta, _ in groups)), z, error, theory, accuracy, settled.astype(np.bool_)
 
 
-def _mean(group: Sequence[Row]) -> tuple[float, float, float, bool]:
-    """(Z, its error, theory, whether all are equilibrated) of replicas."""
-    z, error, theory = (_column(group, key) for key in ("Z", "Z_error", "Z_theory"))
+def _mean(group: Sequence[Row]) -> tuple[float, float, float, float, bool]:
+    """(Z, its error, theory, its accuracy, whether all are equilibrated) of replicas."""
+    z, error, theory, accuracy = (_column(group, key) for key in ("Z", "Z_error", "Z_theory", "Z_accuracy"))
     weight = 1.0 / error**2
     settled = all(row.get("equilibrated") is True for row in group)
-    return float(np.average(z, weights=weight)), float(weight.sum() ** -0.5), float(theory.mean()), settled
+    mean, spread = float(np.average(z, weights=weight)), float(weight.sum() ** -0.5)
+    return mean, spread, float(theory.mean()), float(accuracy.mean()), settled
 
 
 def _column(rows: Sequence[Row], key: str) -> Floats:
