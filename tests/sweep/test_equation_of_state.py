@@ -10,7 +10,7 @@ import pytest
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 
 SWEEP = ["sweep", "periodic-fluid", "--set", "n=64", "--set", "packing_fraction=0.05:0.65:13", "--replicas", "8"]
-COMMAND = [sys.executable, "-m", "eventsim", *SWEEP, "--events", "2000", "--quiet"]
+COMMAND = [sys.executable, "-m", "eventsim", *SWEEP, "--events", "600", "--quiet"]
 RUNS = 13 * 8
 
 
