@@ -104,9 +104,10 @@ def _flights(needs: Needs) -> str:
 
 def _contacts(needs: Needs) -> str:
     if needs.restitution is None:
+        text = "elastic: energy is conserved; the run says in the end how far rounding changed it"
         if needs.obstacles:
-            return "elastic; but a moving disk of mass inf does work, so energy is not conserved"
-        return "elastic: energy is conserved; the run says in the end how far rounding changed it"
+            text = "elastic; but a moving disk of mass inf does work, so energy is not conserved"
+        return f"{text}; masses so uneven that velocities carry what their rounding leaves" if needs.low_parts else text
     pair, wall = needs.restitution
     text = f"restitution {short(pair)} between disks, {short(wall)} at walls: energy is lost"
     if needs.contact_duration is not None:

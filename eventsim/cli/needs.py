@@ -65,6 +65,7 @@ class Needs:
         walls: name -> kind of the walls inside the domain.
         shapes: name -> number of the primitive shapes that the walls are made of, periodic images included.
         gravity, restitution, contact_duration: None without; restitution (pair, wall).
+        low_parts: whether masses are so uneven that velocities carry what their rounding leaves.
         epoch_length: time, a power of two.
         search: all pairs or cells.
         images: in how many periodic images a disk can be met from inside the domain: 1, 3 or 9.
@@ -94,6 +95,7 @@ class Needs:
     gravity: tuple[float, float] | None
     restitution: tuple[float, float] | None
     contact_duration: float | None
+    low_parts: bool
     start_time: float
     epoch_length: float
     search: Search
@@ -133,6 +135,7 @@ def needs_of(scene: Scene) -> Needs:
         gravity=scene.gravity,
         restitution=None if scene.restitution is None else (scene.restitution.pair, scene.restitution.wall),
         contact_duration=stage.contact_duration,
+        low_parts=stage.low_parts,
         start_time=scene.start_time,
         epoch_length=stage.epoch_length,
         search=_search(stage),

@@ -42,6 +42,7 @@ class Stop:
 class Snapshot:
     """All that the future of a run depends on, whichever engine holds it; see `EngineState` for the meaning of the names.
 
+    low_vx, low_vy: empty where velocities have no low parts.
     Calendars and cells are no part of it: they follow from the flights.
     """
 
@@ -59,6 +60,8 @@ class Snapshot:
     met: tuple[Any, ...]
     contact_time: tuple[float, ...]
     at_once: tuple[int, ...]
+    low_vx: tuple[float, ...] = ()
+    low_vy: tuple[float, ...] = ()
 
 
 @dataclass(slots=True)

@@ -19,16 +19,18 @@ Met: TypeAlias = tuple[tuple[int, int, int], ...]
 class DiskFlight:
     """A free flight, and what the next contact of its disk depends on besides.
 
-    window, t: where the clock stood at the anchor x, y, vx, vy. wraps: passages of periodic boundaries along x and y.
-    met: whom it met last. contact_time: when that was, a remainder in the present window; -inf: never.
+    window, t: where the clock stood at the anchor x, y, vx, vy. low: the low parts of the velocity. wraps: passages of
+    periodic boundaries along x and y. met: whom it met last. contact_time: when that was, a remainder in the present
+    window; -inf: never.
     """
 
-    __slots__ = ("contact_time", "gx", "gy", "met", "radius", "t", "vx", "vy", "window", "wraps", "x", "y")
+    __slots__ = ("contact_time", "gx", "gy", "low", "met", "radius", "t", "vx", "vy", "window", "wraps", "x", "y")
 
     def __init__(self, stage: Stage, number: int, immovable: bool) -> None:
         self.window, self.t = 0, 0.0
         self.x, self.y = float(stage.x[number]), float(stage.y[number])
         self.vx, self.vy = float(stage.vx[number]), float(stage.vy[number])
+        self.low = 0.0, 0.0
         self.radius = float(stage.radius[number])
         self.gx: Acceleration = None
         self.gy: Acceleration = None

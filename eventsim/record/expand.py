@@ -8,6 +8,7 @@ from itertools import groupby, islice
 from typing import NamedTuple, TypeAlias
 
 from eventsim.errors import LogError
+from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -113,6 +114,7 @@ class Expansion:
             raise self._unfit(entry, "its velocity is not in the metadata (the log was not closed)")
         before, speed = disk.speed(entry.remainder), self._set[entry.event]
         disk.anchor(entry.remainder, disk.place(entry.remainder), speed)
+        disk.low = 0.0, 0.0
         disk.met = ()
         return mass * math.hypot(speed[0] - before[0], speed[1] - before[1]) if math.isfinite(mass) else MISSING
 
@@ -122,9 +124,14 @@ class Expansion:
         one, other = self._disks[a], self._disks[b]
         place_a, place_b = one.place(t), other.place(t)
         dx, dy = self._contacts.apart(contact, place_a, place_b)
-        restitution = self._restitution(self.stage.pair_restitution, t, a, b)
         shares, reduced = self._shares(a, b)
-        ua, wa, ub, wb, q = pair_update(dx, dy, *one.speed(t), *other.speed(t), *shares, restitution)
+        if self.stage.low_parts:
+            speeds, masses = (one.vx, one.vy, other.vx, other.vy), (self._mass[a], self._mass[b])
+            ua, wa, ub, wb, *low, q = careful_pair_update(dx, dy, *speeds, *one.low, *other.low, *masses)
+            one.low, other.low = (low[0], low[1]), (low[2], low[3])
+        else:
+            restitution = self._restitution(self.stage.pair_restitution, t, a, b)
+            ua, wa, ub, wb, q = pair_update(dx, dy, *one.speed(t), *other.speed(t), *shares, restitution)
         self._begin(contact, a, t, place_a, (ua, wa))
         self._begin(contact, b, t, place_b, (ub, wb))
         return float(-(q * reduced) * math.sqrt(dx * dx + dy * dy))
@@ -137,7 +144,11 @@ class Expansion:
         restitution = self._restitution(self.stage.wall_restitution, t, a, a)
         u, w = before
         axis = self._contacts.boundary_axis(contact)
-        if axis is None:
+        if self.stage.low_parts:
+            normal = self._contacts.normal(contact, place)
+            u, w, *low, _ = careful_wall_update(*normal, u, w, *disk.low)
+            disk.low = low[0], low[1]
+        elif axis is None:
             u, w, _ = wall_update(*self._contacts.normal(contact, place), u, w, restitution)
         elif axis == 0:
             u, _ = flat_update(u, contact.image[0], restitution)
@@ -170,6 +181,7 @@ class Expansion:
                     places[i] = self._contacts.on_boundary(contact, places[i])
             disk = self._disks[i]
             disk.anchor(t, places[i], outcome.velocities[number[i]])
+            disk.low = 0.0, 0.0
             disk.met = tuple(self._contacts.met(contact, i) for contact in own)
             disk.contact_time = t
         impulse = {found[k]: outcome.impulses[k] for k in active}

@@ -26,6 +26,13 @@ Point: TypeAlias = tuple[float, float]
 LONGEST_PERIODIC_WINDOW = 13
 """A window of 2**13 epochs: a disk that only wraps keeps its digits, and a gas that has cooled is not slowed much."""
 
+UNEVEN = 2.0**16
+"""Ratio of masses M/m from which on velocities carry their low parts: the roundings of the pi sqrt(M/m) contacts that a light
+disk can have with a heavy one add up to about 2**-53 (M/m)**.75 of a small final velocity, here 2**-41."""
+
+EXTREME = 2.0**400
+"""Masses beyond it, or below its inverse, leave the range of error-free arithmetic."""
+
 LONGEST_WINDOW = 900
 """Without wraps nothing accumulates between contacts, so a quiet scene may have windows of any length."""
 
@@ -55,6 +62,8 @@ class Stage:
         x, y, vx, vy: (n,) start, relative to the corner; length, length / time.
         radius: (n,).
         mass: (n,), or None where all are equal, finite and positive; then common_mass is that mass.
+        low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): energy is conserved and
+            masses are very uneven.
         gravity: (gx, gy), or None.
         pair_restitution, wall_restitution: 1.0 where elastic.
         contact_duration: time, or None.
@@ -77,6 +86,7 @@ class Stage:
     radius: Floats
     mass: Floats | None
     common_mass: float
+    low_parts: bool
     gravity: Point | None
     pair_restitution: float
     wall_restitution: float
@@ -115,6 +125,7 @@ def stage_of(scene: Scene) -> Stage:
     restitution = scene.restitution
     periodic = along_x is not None
     moves = bool(np.any(disks.velocity != 0.0))
+    elastic = restitution is None or (restitution.pair == 1.0 and restitution.wall == 1.0)
     return Stage(
         n=len(disks),
         x=x,
@@ -124,6 +135,7 @@ def stage_of(scene: Scene) -> Stage:
         radius=disks.radius,
         mass=None if _all_equal(disks.mass) else disks.mass,
         common_mass=float(disks.mass[0]),
+        low_parts=elastic and scene.gravity is None and _uneven(disks.mass),
         gravity=scene.gravity,
         pair_restitution=1.0 if restitution is None else restitution.pair,
         wall_restitution=1.0 if restitution is None else restitution.wall,
@@ -149,6 +161,14 @@ def _corner(scene: Scene) -> Point:
 
 def _all_equal(mass: Floats) -> bool:
     return bool(np.all(mass == mass[0]) and 0.0 < mass[0] < math.inf)
+
+
+def _uneven(mass: Floats) -> bool:
+    finite = mass[(mass > 0.0) & (mass < math.inf)]
+    if len(finite) == 0:
+        return False
+    least, most = float(finite.min()), float(finite.max())
+    return most > UNEVEN * least and least > 1.0 / EXTREME and most < EXTREME
 
 
 def _boundaries(scene: Scene) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:
@@ -223,9 +243,7 @@ def _span(item: walls.Wall, corner: Point) -> tuple[float, float, float, float]:
     return min(xs), min(ys), max(xs), max(ys)
 
 
-def _shifts(
-    item: walls.Wall, corner: Point, reach: float, period: tuple[float | None, float | None]
-) -> list[Point]:
+def _shifts(item: walls.Wall, corner: Point, reach: float, period: tuple[float | None, float | None]) -> list[Point]:
     """The translations by periods that bring a wall within reach of a centre in the domain; a container has none."""
     if isinstance(item, walls.Circle):
         return [(0.0, 0.0)]
@@ -238,9 +256,7 @@ def _shifts(
         last = math.floor((length + reach - low) / length)
         return sorted((k * length for k in range(first, last + 1)), key=abs)
 
-    return [
-        (dx, dy) for dx in along(span[0], span[2], period[0]) for dy in along(span[1], span[3], period[1])
-    ]
+    return [(dx, dy) for dx in along(span[0], span[2], period[0]) for dy in along(span[1], span[3], period[1])]
 
 
 def _epoch_length(

@@ -92,6 +92,12 @@ def test_quiet_lets_the_exit_code_speak(eventsim, scene_file):
     assert (result.exit_code, result.output) == (0, "")
 
 
+def test_check_says_where_velocities_carry_what_rounding_leaves(eventsim):
+    page = eventsim("check", "galperin", "--set", "mass_ratio=1e6").stdout
+    assert "velocities carry what their rounding leaves" in " ".join(page.split())
+    assert "rounding leaves" not in eventsim("check", "galperin").stdout
+
+
 if __name__ == "__main__":
     PAGES.mkdir(exist_ok=True)
     for each in names():

@@ -30,6 +30,10 @@ SCENES = {
     "walls": lambda: lattice_gas(
         36, 0.1, es.Box, walls=[es.Segment((0.05, 0.05), (1.0, 0.3)), es.Arc((2.9, 0.2), (3.1, 0.15), (3.3, 0.2))]
     ),
+    "uneven": lambda: lattice_gas(
+        36, 0.1, es.Box, masses=(1.0, 2.0, 2.0**20), walls=[es.Segment((0.05, 0.05), (1.0, 0.3))]
+    ),
+    "uneven ties": lambda: lattice_gas(36, 0.2, es.Periodic, quantum=0.5, masses=(1.0, 2.0**20, 2.0**20)),
     "tracers": lambda: lattice_gas(40, 0.2, es.Periodic, radii=(0.5, 0.0, 0.4), masses=(1.0, 0.0, 2.0)),
 }
 

@@ -13,6 +13,7 @@ from eventsim.record.replay import Replay
 from eventsim.scene import Arc, Box, Channel, Circle, Disks, Domain, Open, Periodic, Polygon, Polyline, Scene, Segment
 from eventsim.simulation import Simulation, simulate
 
+UNEVEN = np.where(np.arange(16) % 3 == 0, 2.0**20, np.where(np.arange(16) % 7 == 1, np.inf, 1.0))
 POSTS = np.where(np.arange(16) % 5 == 0, np.inf, 1.0 + np.arange(16) % 3)
 
 
@@ -47,6 +48,8 @@ SCENES = {
     "cooling": (lattice(Box((4.0, 3.0)), restitution={"pair": 0.8, "wall": 0.9}, contact_duration=0.1), 20.0),
     "walls": (lattice(Box((4.0, 4.0)), walls=INNER), 10.0),
     "walls of a torus": (lattice(Periodic((4.0, 4.0)), walls=INNER), 10.0),
+    "uneven": (lattice(Channel((4.0, 3.0)), UNEVEN, walls=INNER[:1]), 4.0),
+    "uneven on a torus": (lattice(Periodic((4.0, 3.0)), UNEVEN), 20.0),
     "container": (
         Scene(
             Disks([(1, 1), (1.5, 2.5), (2.5, 1.2)], [(1, 0.3), (-0.7, 1), (0.2, 0.9)], [0.1, 0.2, 0.05]),
@@ -104,8 +107,8 @@ def test_the_racks_are_tests_of_clusters() -> None:
         assert (log.joint >= 0).any(), name
 
 
-def kicked() -> Simulation:
-    simulation = Simulation(lattice(Periodic((4.0, 3.0))))
+def kicked(mass: object) -> Simulation:
+    simulation = Simulation(lattice(Periodic((4.0, 3.0)), mass))
     for i, time in enumerate((0.7, 3.1, 3.1, 20.0)):
         simulation.advance_to(time)
         simulation.set_velocity(3 * i, (1.0 - i, 0.5))
@@ -115,8 +118,9 @@ def kicked() -> Simulation:
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 @pytest.mark.parametrize("compact", [False, True])
-def test_a_file_with_kicks_replays_to_the_final_state(tmp_path: Path, suffix: str, compact: bool) -> None:
-    simulation = kicked()
+@pytest.mark.parametrize("mass", [1.0, UNEVEN], ids=["equal", "uneven"])
+def test_a_file_with_kicks_replays_to_the_final_state(tmp_path: Path, suffix: str, compact: bool, mass: object) -> None:
+    simulation = kicked(mass)
     path = tmp_path / f"log{suffix}"
     simulation.log.save(path, compact=compact)
     log = load_log(path)

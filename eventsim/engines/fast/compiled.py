@@ -17,7 +17,7 @@ from numba import config, njit, types
 from numba.core import event
 from numba.extending import overload, register_jitable
 
-from eventsim.formulas import contact, crossing, impulse, motion, parabola, real
+from eventsim.formulas import careful_impulse, contact, crossing, expansion, impulse, motion, parabola, real
 from eventsim.formulas.walls import face, round
 
 SOURCES = Path(__file__).parent, Path(motion.__file__).parent
@@ -129,5 +129,5 @@ def _register(module: ModuleType, **options: Any) -> None:
 
 for _module in (motion, contact, impulse):
     _register(_module, forceinline=True, error_model="numpy")
-for _module in (crossing, parabola, face, round):
+for _module in (careful_impulse, crossing, expansion, parabola, face, round):
     _register(_module, error_model="numpy")

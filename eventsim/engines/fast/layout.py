@@ -52,8 +52,8 @@ class Arrays(NamedTuple):
     """The memory of a kernel: arrays where Python makes it, pointers inside; None is what the scene does not need.
 
     disks: the records, and behind them the calendar's buckets.
-    several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  rows: the
-    log's buffer, bytes.
+    several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
+    parts of velocities, (vx, vy) each.  rows: the log's buffer, bytes.
     """
 
     disks: object
@@ -61,6 +61,7 @@ class Arrays(NamedTuple):
     near: object
     several: object
     mass: object
+    low: object
     features: object
     rows: object
 

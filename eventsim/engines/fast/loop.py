@@ -63,6 +63,7 @@ def pointers(a):
         pointer(a.near),
         pointer(a.several),
         pointer(a.mass),
+        pointer(a.low),
         pointer(a.features),
         pointer(a.rows),
     )

@@ -14,6 +14,8 @@ from eventsim.engines.fast.layout import (
     OUTER_Y,
     RADIUS,
     REALS,
+    VX,
+    VY,
     WALL,
     WORDS,
 )
@@ -22,6 +24,7 @@ from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.predict import image, pair_is_due, shift
 from eventsim.engines.fast.rows import write_row
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
+from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -128,14 +131,10 @@ def resolve_pair(m, rules, sums, i, j, t, number, slot):
     a, b = _in_order(m, i, j, m.mass, m.rows)
     xa, ya = place(m, rules, a, t)
     xb, yb = place(m, rules, b, t)
-    ua, wa = speed(m, rules, a, t)
-    ub, wb = speed(m, rules, b, t)
     dx, dy = xa - xb, ya - yb
     kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
-    share_a, share_b = _shares(a, b, m.mass)
-    e = _restitution(m, a, b, t, rules.pair_restitution, rules.duration)
-    ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, e)
+    ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)
     anchor(m, a, t, xa, ya, ua, wa)
     anchor(m, b, t, xb, yb, ub, wb)
     ux, uy = unwrapped_x(m, a, b, kx), unwrapped_y(m, a, b, ky)
@@ -152,6 +151,32 @@ def resolve_pair(m, rules, sums, i, j, t, number, slot):
     return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
 
 
+@inline
+def _parted(m, rules, a, b, t, dx, dy, mass, low):
+    """The velocities of a pair after contact, and q; low parts are set."""
+    if low is not None:
+        return _carefully_parted(m, a, b, dx, dy)
+    ua, wa = speed(m, rules, a, t)
+    ub, wb = speed(m, rules, b, t)
+    share_a, share_b = _shares(a, b, mass)
+    e = _restitution(m, a, b, t, rules.pair_restitution, rules.duration)
+    return pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, e)
+
+
+@part
+def _carefully_parted(m, a, b, dx, dy):
+    f, g, i, j = a * REALS, b * REALS, 2 * a, 2 * b
+    ua, wa, ub, wb = real(m.disks, f + VX), real(m.disks, f + VY), real(m.disks, g + VX), real(m.disks, g + VY)
+    ea, fa, eb, fb = real(m.low, i), real(m.low, i + 1), real(m.low, j), real(m.low, j + 1)
+    masses = real(m.mass, a), real(m.mass, b)
+    ua, wa, ub, wb, ea, fa, eb, fb, q = careful_pair_update(dx, dy, ua, wa, ub, wb, ea, fa, eb, fb, *masses)
+    store(m.low, i, ea)
+    store(m.low, i + 1, fa)
+    store(m.low, j, eb)
+    store(m.low, j + 1, fb)
+    return ua, wa, ub, wb, q
+
+
 @part
 def resolve_wall(m, rules, sums, i, code, t, number, slot):
     """Resolve the contact of disk i with the wall that the code of the event stands for."""
@@ -165,13 +190,15 @@ def resolve_wall(m, rules, sums, i, code, t, number, slot):
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r
         u, _ = flat_update(u, float(side), e)
+        _reverse(2 * i, u != u0, m.low)
         wall = place_
     elif _is_across(rules.wall_y, place_):
         y = rules.height - r if side < 0 else r
         w, _ = flat_update(w, float(side), e)
+        _reverse(2 * i + 1, w != w0, m.low)
         wall = place_
     else:
-        u, w, wall = _against_shape(m, place_ - rules.first_feature, side, x, y, u, w, e, m.features)
+        u, w, wall = _against_shape(m, i, place_ - rules.first_feature, side, x, y, u, w, e, m.features, m.low)
     anchor(m, i, t, x, y, u, w)
     remember(m, i, -2 - place_, side, 0)
     _note_time(m, rules, i, t, u == u0 and w == w0)
@@ -193,9 +220,21 @@ def _is_across(first, place_):
 
 
 @inline
-def _against_shape(m, k, side, x, y, u, w, e, features):
+def _reverse(place_, reversed_, low):
+    """Reverse a low part where its velocity was reversed."""
+    if low is not None and reversed_:
+        store(low, place_, -real(low, place_))
+
+
+@inline
+def _against_shape(m, i, k, side, x, y, u, w, e, features, low):
     if features is None:
         return u, w, -1
     nx, ny = shape_normal(m, k, side, x, y)
-    u, w, _ = wall_update(nx, ny, u, w, e)
+    if low is None:
+        u, w, _ = wall_update(nx, ny, u, w, e)
+    else:
+        u, w, low_x, low_y, _ = careful_wall_update(nx, ny, u, w, real(low, 2 * i), real(low, 2 * i + 1))
+        store(low, 2 * i, low_x)
+        store(low, 2 * i + 1, low_y)
     return u, w, int(real(features, WIDTH * k + 1))

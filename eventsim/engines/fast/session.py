@@ -37,6 +37,9 @@ FEW_DISKS = 24
 COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
 """What a snapshot has one number of for every disk."""
 
+LOW_COLUMNS = ("low_vx", "low_vy")
+"""The same, where velocities have low parts."""
+
 FOREVER, LARGEST_BUDGET = 1 << 60, 1 << 40
 FEW_STEPS = 256
 TOO_FEW_DAYS, TOO_MANY_DAYS = 0.5, 6.0
@@ -74,6 +77,7 @@ class FastSession:
         self._lanes = 8 if wanted and straight and plain else None
         order = along_a_curve(stage.x, stage.y) if stage.n >= MANY_DISKS else np.arange(stage.n)
         self.state = FastState(stage, order, self._counts)
+        self._columns = (*COLUMNS, *LOW_COLUMNS) if stage.low_parts else COLUMNS
         self._rules = _rules(stage)
         self._features = _features(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
@@ -307,6 +311,7 @@ class FastSession:
                 aligned(9 * cells.depth + 32, np.int32),
                 state.several.reshape(-1),
                 self._mass,
+                state.low.reshape(-1) if state.low_parts else None,
                 self._features,
                 self._buffer.view(np.uint8) if self._keep_rows else None,
             )
@@ -427,7 +432,7 @@ class FastSession:
             window_rows=s.window_rows,
             now=s.now,
             met=tuple(s.met[i] for i in range(s.n)),
-            **{name: tuple(getattr(s, name).every().tolist()) for name in COLUMNS},
+            **{name: tuple(getattr(s, name).every().tolist()) for name in self._columns},
         )
 
     def restore(self, saved: Snapshot) -> None:
@@ -436,7 +441,7 @@ class FastSession:
         s.epoch, s.window, s.window_rows = saved.epoch, saved.window, saved.window_rows
         s.window_end = window_length(s.window, s.epoch_length)
         self._set_now(saved.now)
-        for name in COLUMNS:
+        for name in self._columns:
             getattr(s, name).set_all(getattr(saved, name))
         s.words[:, layout.MET] = layout.NOBODY
         s.several_used = 0
@@ -487,9 +492,9 @@ def _rules(stage: Stage) -> Rules:
 
 def kind_of(stage: Stage, keep_rows: bool) -> str:
     """A name for what the scene has: scenes of one kind share their kernels."""
-    needs = [*_rules(stage), stage.mass, True if keep_rows else None, True if stage.n >= FEW_DISKS else None]
-    many = True if stage.n >= MANY_DISKS else None
-    return "".join("0" if need is None else "1" for need in [*needs, many])
+    asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS]
+    needs = [*_rules(stage), stage.mass, *(True if wanted else None for wanted in asked)]
+    return "".join("0" if need is None else "1" for need in needs)
 
 
 def _features(stage: Stage) -> Floats | None:

@@ -149,7 +149,8 @@ class FastState(EngineState):
 
     memory: the records, and the calendar's buckets behind them.
     disks: (n + 1, REALS), the last one a sentinel.  words: the same memory as int32.  place_of: where a disk is in memory;
-    labels: which disk is at a place.  several: chains of whom disks met in joint contacts.
+    labels: which disk is at a place.  several: chains of whom disks met in joint contacts.  low: low parts of velocities, (n, 2),
+    or (0, 2) where there are none.
     """
 
     x: Any
@@ -161,6 +162,8 @@ class FastState(EngineState):
     wraps_x: Any
     wraps_y: Any
     at_once: Any
+    low_vx: Any
+    low_vy: Any
     count: Any
     met: Any
     gravity_x: Any
@@ -194,6 +197,9 @@ class FastState(EngineState):
         self.at_once = self._integers(AT_ONCE)
         self.count = CountColumn(self.words[:n, COUNT], self.place_of)
         self.met = MetColumn(self)
+        self.low_parts = stage.low_parts
+        self.low: Floats = np.zeros((n if stage.low_parts else 0, 2))
+        self.low_vx, self.low_vy = Column(self.low[:, 0], self.place_of), Column(self.low[:, 1], self.place_of)
         gx, gy = stage.gravity or (None, None)
         self.gravity_x = AccelerationColumn(gx, stage.mass)
         self.gravity_y = AccelerationColumn(gy, stage.mass)

@@ -10,6 +10,7 @@ import numpy as np
 from eventsim.engines.base import Counters
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.state import EngineState
+from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -85,6 +86,7 @@ class Resolver:
         x, y = state.place(i, t)
         before = state.speed(i, t)
         state.anchor(i, t, x, y, vx, vy)
+        state.forget_low_parts(i)
         state.met[i] = ()
         mass = self._mass_of(i)
         if math.isfinite(mass):
@@ -94,16 +96,19 @@ class Resolver:
         self._row(t, Kind.KICK, i, -1, -1, strength, -1)
 
     def _pair(self, event: Event) -> list[int]:
-        state, stage = self._state, self._stage
+        state = self._state
         t, a, b = event.time, event.a, event.b
         xa, ya = state.place(a, t)
         xb, yb = state.place(b, t)
-        ua, wa = state.speed(a, t)
-        ub, wb = state.speed(b, t)
         dx, dy = self._apart(event, xa, ya, xb, yb)
-        share_a, share_b = self._shares(a, b)
-        restitution = self._restitution(stage.pair_restitution, t, a, b)
-        ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
+        if state.low_parts:
+            ua, wa, ub, wb, q = self._careful_pair(a, b, dx, dy)
+        else:
+            ua, wa = state.speed(a, t)
+            ub, wb = state.speed(b, t)
+            share_a, share_b = self._shares(a, b)
+            restitution = self._restitution(self._stage.pair_restitution, t, a, b)
+            ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
         state.anchor(a, t, xa, ya, ua, wa)
         state.anchor(b, t, xb, yb, ub, wb)
         kx = event.image[0] + state.wraps_x[a] - state.wraps_x[b]
@@ -119,6 +124,17 @@ class Resolver:
         self._row(t, Kind.PAIR, a, b, -1, -(q * reduced) * distance, -1)
         return [a, b]
 
+    def _careful_pair(self, a: int, b: int, dx: Real, dy: Real) -> tuple[Real, Real, Real, Real, Real]:
+        """Velocities after contact, and q, as from `pair_update`; their low parts are set."""
+        state = self._state
+        low_x, low_y = state.low_vx, state.low_vy
+        speeds = state.vx[a], state.vy[a], state.vx[b], state.vy[b]
+        masses = self._mass_of(a), self._mass_of(b)
+        ua, wa, ub, wb, low_x[a], low_y[a], low_x[b], low_y[b], q = careful_pair_update(
+            dx, dy, *speeds, low_x[a], low_y[a], low_x[b], low_y[b], *masses
+        )
+        return ua, wa, ub, wb, q
+
     def _wall(self, event: Event) -> list[int]:
         state, stage = self._state, self._stage
         t, i, place, side = event.time, event.a, -1 - event.b, event.image[0]
@@ -126,28 +142,30 @@ class Resolver:
         u, w = state.speed(i, t)
         before = u, w
         restitution = self._restitution(stage.wall_restitution, t, i, i)
-        if place < len(stage.boundaries):
-            boundary = stage.boundaries[place]
-            target = boundary.position + boundary.side * self._radius[i]
-            if boundary.axis == 0:
-                x = target
-                u, _ = flat_update(u, boundary.side, restitution)
-            else:
-                y = target
-                w, _ = flat_update(w, boundary.side, restitution)
-            wall = boundary.wall
+        if state.low_parts:
+            u, w = self._careful_wall(i, *self._normal(place, side, x, y))
+        elif place >= len(stage.boundaries):
+            u, w, _ = wall_update(*self._normal(place, side, x, y), u, w, restitution)
+        elif stage.boundaries[place].axis == 0:
+            u, _ = flat_update(u, stage.boundaries[place].side, restitution)
         else:
-            nx, ny = self._normal(place, side, x, y)
-            u, w, _ = wall_update(nx, ny, u, w, restitution)
-            wall = stage.features[place - len(stage.boundaries)].wall
+            w, _ = flat_update(w, stage.boundaries[place].side, restitution)
+        x, y = self._on_boundary(place, i, x, y)
         state.anchor(i, t, x, y, u, w)
         state.met[i] = ((event.b, side, 0),)
         self._note_time(i, t, (u, w) == before)
         mass = self._mass_of(i)
         impulse = self._book_wall(mass, u - before[0], w - before[1])
         self._counters.wall_contacts += 1
-        self._row(t, Kind.WALL, i, -1, wall, impulse, -1)
+        self._row(t, Kind.WALL, i, -1, self._wall_number(place), impulse, -1)
         return [i]
+
+    def _careful_wall(self, i: int, nx: Real, ny: Real) -> tuple[Real, Real]:
+        """The velocity of disk i after contact with a wall; its low part is set."""
+        state = self._state
+        low = state.low_vx[i], state.low_vy[i]
+        u, w, state.low_vx[i], state.low_vy[i], _ = careful_wall_update(nx, ny, state.vx[i], state.vy[i], *low)
+        return u, w
 
     def _joint(self, component: list[Event]) -> list[int]:
         """A cluster: the velocities after it from the law of simultaneous contacts; disks that get no impulse fly on."""
@@ -177,6 +195,7 @@ class Resolver:
                 if component[k].a == i and component[k].b < 0:
                     x, y = self._on_boundary(-1 - component[k].b, i, x, y)
             state.anchor(i, t, x, y, *outcome.velocities[number[i]])
+            state.forget_low_parts(i)
             state.met[i] = tuple(self._met(component[k], i) for k in active if i in component[k][2:4])
             self._note_time(i, t, False)
         first = self._counters.events

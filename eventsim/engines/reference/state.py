@@ -20,7 +20,8 @@ class EngineState:
     t, x, y, vx, vy: the anchor of each flight, t a remainder in the present epoch.  count: the invalidation counts.
     wraps_x, wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was
     (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.  number: makes
-    a number of the engine's type from a float.
+    a number of the engine's type from a float.  low_parts: whether velocities carry what their rounding at a contact left, in
+    low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.
     """
 
     def __init__(self, stage: Stage, number: Any = float) -> None:
@@ -38,6 +39,9 @@ class EngineState:
         self.met: list[Met] = [()] * n
         self.contact_time: list[Real] = [-float("inf")] * n
         self.at_once = [0] * n
+        self.low_parts = stage.low_parts and number is float
+        self.low_vx = [0.0] * n if self.low_parts else []
+        self.low_vy = [0.0] * n if self.low_parts else []
         self.gravity_x, self.gravity_y = _accelerations(stage)
         self.now: Real = number(0.0)
         self.epoch = 0
@@ -64,6 +68,11 @@ class EngineState:
         """Begin a new flight of disk i; all predictions that rest on the old one are stale from here on."""
         self.t[i], self.x[i], self.y[i], self.vx[i], self.vy[i] = t, x, y, vx, vy
         self.count[i] += 1
+
+    def forget_low_parts(self, i: int) -> None:
+        """From here on the velocity of disk i is a float."""
+        if self.low_parts:
+            self.low_vx[i] = self.low_vy[i] = 0.0
 
     def turn_over(self) -> None:
         """Begin a new window: every disk is advanced to the end of the old one, which becomes time 0."""
@@ -96,6 +105,8 @@ class EngineState:
             met=tuple(self.met),
             contact_time=tuple(self.contact_time),
             at_once=tuple(self.at_once),
+            low_vx=tuple(self.low_vx),
+            low_vy=tuple(self.low_vy),
         )
 
     def restore(self, saved: Snapshot) -> None:
@@ -106,6 +117,7 @@ class EngineState:
         self.vx, self.vy = list(saved.vx), list(saved.vy)
         self.wraps_x, self.wraps_y = list(saved.wraps_x), list(saved.wraps_y)
         self.met, self.contact_time, self.at_once = list(saved.met), list(saved.contact_time), list(saved.at_once)
+        self.low_vx, self.low_vy = list(saved.low_vx), list(saved.low_vy)
         self.count = [count + 1 for count in self.count]
 
 

@@ -124,8 +124,22 @@ def test_scalar_kernel_and_lanes_and_two_cell_sizes_agree() -> None:
     assert len(digests) == 1
 
 
-def test_a_run_handed_over_at_any_time_has_one_log() -> None:
-    stage = stage_of(lattice_gas(8, 8, 1.25, np.random.default_rng(9), "periodic", True, 0.0))
+def uneven() -> es.Scene:
+    """A gas with many ties, some disks of which are 2**20 times as heavy as the others, in a box with a slanted wall."""
+    gas = lattice_gas(8, 8, 1.25, np.random.default_rng(9), "box", True, 0.0)
+    mass = np.resize([2.0**20, 1.0, 1.0, 3.0], len(gas.disks))
+    disks = es.Disks(gas.disks.position, gas.disks.velocity, 0.375, mass)
+    return es.Scene(disks, gas.domain, walls=[es.Segment((1.25, 0.3), (1.3, 0.9))])
+
+
+def test_uneven_masses_have_one_log() -> None:
+    assert_same(stage_of(uneven()), Stop(until=30.0, events=3000))
+
+
+@pytest.mark.parametrize("scene", ["equal", "uneven"])
+def test_a_run_handed_over_at_any_time_has_one_log(scene: str) -> None:
+    equal = lattice_gas(8, 8, 1.25, np.random.default_rng(9), "periodic", True, 0.0)
+    stage = stage_of(equal if scene == "equal" else uneven())
     whole, _ = rows_of(ReferenceSession(stage), Stop(events=2500))
     first = ReferenceSession(stage)
     begun, _ = rows_of(first, Stop(events=700))

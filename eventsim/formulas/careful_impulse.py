@@ -1,0 +1,114 @@
+"""What an elastic contact does where masses are very uneven: velocities carry what their rounding left, in low parts.
+
+A light disk between a heavy one and a wall ends, after pi sqrt(M/m) contacts, far slower than it was in between, and the
+rounding of all its velocities, each relative to the highest speed, is then much of what is left.  So a velocity is the
+unrounded sum of two floats: the high part is the rounded velocity, with which disks fly, the low part at most 2**-53 of it.
+
+The change of the relative velocity v is P = p + s p: p = 2 d (d.v)/d^2 in plain floats, s = p.(2v - p)/p^2.  So P.(2v - P) = 0,
+which keeps the energy however p was rounded.  Only p.(2v - p), which cancels, needs error-free products.  The heavier
+disk takes its share of P, the lighter one the rest of it, which keeps the momentum.
+
+Source: T. J. Dekker, Numer. Math. 18, 224 (1971), doi:10.1007/BF01397083.
+"""
+
+import math
+
+from eventsim.formulas.expansion import two_product, two_sum
+
+LEAST, MOST = 2.0**-900, 2.0**900
+"""Squares of velocities within which error-free products neither underflow nor overflow; beyond, s is taken for 0."""
+
+
+def careful_pair_update(
+    dx: float,
+    dy: float,
+    ua: float,
+    wa: float,
+    ub: float,
+    wb: float,
+    ea: float,
+    fa: float,
+    eb: float,
+    fb: float,
+    mass_a: float,
+    mass_b: float,
+) -> tuple[float, float, float, float, float, float, float, float, float]:
+    """(u_a, w_a, u_b, w_b, e_a, f_a, e_b, f_b, q) after elastic contact of two disks at d = a - b; q as in `pair_update`.
+
+    e, f: the low parts of u, w.  A pair that does not approach is left as it is, q = 0.  Exchange of the disks changes no bit.
+    """
+    u, e = two_sum(ua, -ub)
+    w, f = two_sum(wa, -wb)
+    if not dx * u + dy * w < 0.0:
+        return ua, wa, ub, wb, ea, fa, eb, fb, 0.0
+    px, py, sx, sy, q = _change(dx, dy, u, w, e + (ea - eb), f + (fa - fb))
+    share, share_rest = _lighter_share(min(mass_a, mass_b), max(mass_a, mass_b))
+    hx, hx_rest = two_product(share, px)
+    hy, hy_rest = two_product(share, py)
+    hx_rest, hy_rest = hx_rest + (share * sx + share_rest * px), hy_rest + (share * sy + share_rest * py)
+    lx, lx_rest = two_sum(px, -hx)
+    ly, ly_rest = two_sum(py, -hy)
+    lx_rest, ly_rest = lx_rest + (sx - hx_rest), ly_rest + (sy - hy_rest)
+    if mass_a <= mass_b:
+        ua, ea = _sum(ua, ea, -lx, -lx_rest)
+        wa, fa = _sum(wa, fa, -ly, -ly_rest)
+        ub, eb = _sum(ub, eb, hx, hx_rest)
+        wb, fb = _sum(wb, fb, hy, hy_rest)
+    else:
+        ua, ea = _sum(ua, ea, -hx, -hx_rest)
+        wa, fa = _sum(wa, fa, -hy, -hy_rest)
+        ub, eb = _sum(ub, eb, lx, lx_rest)
+        wb, fb = _sum(wb, fb, ly, ly_rest)
+    return ua, wa, ub, wb, ea, fa, eb, fb, q
+
+
+def careful_wall_update(
+    nx: float, ny: float, u: float, w: float, e: float, f: float
+) -> tuple[float, float, float, float, float]:
+    """(u, w, e, f, q) after elastic contact with a wall whose normal, of any length, points to the disk; q as in `wall_update`.
+
+    A normal along an axis reverses exactly.  A disk that does not approach is left as it is, q = 0.
+    """
+    if not nx * u + ny * w < 0.0:
+        return u, w, e, f, 0.0
+    if ny == 0.0:
+        return -u, w, -e, f, 2.0 * (u / nx)
+    if nx == 0.0:
+        return u, -w, e, -f, 2.0 * (w / ny)
+    px, py, sx, sy, q = _change(nx, ny, u, w, e, f)
+    u, e = _sum(u, e, -px, -sx)
+    w, f = _sum(w, f, -py, -sy)
+    return u, w, e, f, q
+
+
+def _change(dx: float, dy: float, u: float, w: float, e: float, f: float) -> tuple[float, float, float, float, float]:
+    """(p_x, p_y, s p_x, s p_y, q): what is taken off the relative velocity v = (u + e, w + f) along d."""
+    q = 2.0 * ((dx * u + dy * w) / (dx * dx + dy * dy))
+    px, py = q * dx, q * dy
+    square = px * px + py * py
+    if not LEAST < square < MOST:
+        return px, py, 0.0, 0.0, q
+    x, x_rest = two_sum(2.0 * u, -px)
+    y, y_rest = two_sum(2.0 * w, -py)
+    along_x, fine_x = two_product(px, x)
+    along_y, fine_y = two_product(py, y)
+    along, fine = two_sum(along_x, along_y)
+    fine = fine + ((fine_x + fine_y) + (px * (x_rest + 2.0 * e) + py * (y_rest + 2.0 * f)))
+    s = (along + fine) / square
+    return px, py, s * px, s * py, q
+
+
+def _lighter_share(lighter: float, heavier: float) -> tuple[float, float]:
+    """lighter / (lighter + heavier) as an unrounded sum; 0 for a tracer, and beside an immovable disk."""
+    if lighter == 0.0 or math.isinf(heavier):
+        return 0.0, 0.0
+    total, rest = two_sum(lighter, heavier)
+    share = lighter / total
+    product, fine = two_product(share, total)
+    return share, (((lighter - product) - fine) - share * rest) / total
+
+
+def _sum(high: float, low: float, more: float, rest: float) -> tuple[float, float]:
+    """Two unrounded sums added, the high part rounded to nearest."""
+    total, error = two_sum(high, more)
+    return two_sum(total, error + (low + rest))
