@@ -13,6 +13,11 @@ NEVER = math.inf
 """The delay of a contact that does not come."""
 
 
+def is_float(x: Real) -> bool:
+    """Whether a number is a float, whose rounding has to be watched."""
+    return isinstance(x, float)
+
+
 def sqrt(x: Real) -> Real:
     """The square root; a number type other than float brings its own."""
     if isinstance(x, float):

@@ -6,11 +6,13 @@ time has the bits of the row.
 
 from __future__ import annotations
 
+import math
 from itertools import product
 from typing import NamedTuple
 
-from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.walls.delays import DELAYS
 from eventsim.formulas.walls.face import Face, face_normal
@@ -122,7 +124,16 @@ class Contacts:
         kx, ky = self._unwrapped(a, b, image)
         if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
             return None
-        return float(t + pair_delay(dx, dy, du, dw, reach))
+        delay = screened_pair_delay(dx, dy, du, dw, reach)
+        if math.isnan(delay):
+            if one.gx is None:
+                shift_x, shift_y = (-self._less(0.0, Contact(a, b, image), axis) for axis in (0, 1))
+                delay = careful_pair_delay(*one.anchored(), *other.anchored(), shift_x, shift_y)
+            else:
+                delay = careful_pair_delay(
+                    *(dx, dy, du, dw, 0.0, one.radius), *(0.0, 0.0, 0.0, 0.0, 0.0, other.radius), 0.0, 0.0
+                )
+        return float(t + delay)
 
     def _wall_time(self, a: int, place: int) -> tuple[float, int]:
         """Return (remainder, side) of the next contact of a disk with a shape."""

@@ -45,6 +45,10 @@ class DiskFlight:
         lag = t - self.t
         return position(self.x, self.vx, lag, self.gx), position(self.y, self.vy, lag, self.gy)
 
+    def anchored(self) -> tuple[float, float, float, float, float, float]:
+        """Return (x, y, vx, vy, t, radius), what a contact time of a straight flight is a function of."""
+        return self.x, self.y, self.vx, self.vy, self.t, self.radius
+
     def speed(self, t: float) -> tuple[float, float]:
         """Return the velocity at remainder t of the present window."""
         lag = t - self.t

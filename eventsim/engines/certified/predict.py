@@ -13,6 +13,7 @@ from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.state import EngineState
+from eventsim.formulas.contact import pair_delay
 from eventsim.formulas.walls.face import Face
 from eventsim.scene.stage import Stage
 
@@ -81,6 +82,8 @@ class Screen:
 
 class CertifiedPredictor(Predictor):
     """Predicts on balls for one stage, all pairs."""
+
+    straight_delay = staticmethod(pair_delay)
 
     def __init__(self, stage: Stage, state: EngineState, calendar: Any, cells: Cells | None) -> None:
         super().__init__(stage, state, calendar, cells)

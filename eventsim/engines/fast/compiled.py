@@ -8,16 +8,18 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from time import perf_counter
 from types import ModuleType
 from typing import Any
 
-from numba import config, njit, types
+from llvmlite import binding
+from numba import cfunc, config, njit, types
 from numba.core import event
 from numba.extending import overload, register_jitable
 
-from eventsim.formulas import careful_impulse, contact, crossing, expansion, impulse, motion, parabola, real
+from eventsim.formulas import careful_impulse, contact, crossing, digits, expansion, impulse, motion, parabola, real
 from eventsim.formulas.walls import face, round
 
 SOURCES = Path(__file__).parent, Path(motion.__file__).parent
@@ -100,17 +102,44 @@ part = njit(error_model="numpy")
 
 def kernel(function: Callable[..., Any]) -> Any:
     """A compiled function that Python calls; kept on disk where that is possible."""
+    return _kept(njit, function)
+
+
+def _kept(compiler: Callable[..., Any], function: Callable[..., Any], *signature: Any) -> Any:
     before = config.CACHE_DIR
     config.CACHE_DIR = str(_FOLDER)  # read when the function is decorated; the caller's own setting is left alone
     try:
-        return njit(error_model="numpy", cache=True)(function)
+        return compiler(*signature, error_model="numpy", cache=True)(function)
     except RuntimeError:  # no folder to write to
-        return njit(error_model="numpy")(function)
+        return compiler(*signature, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
 
 
 _FOLDER = cache_folder()
+
+_CAREFUL = types.float64(*[types.float64] * 14)
+_careful = types.ExternalFunction("eventsim_careful_pair_delay", _CAREFUL)
+
+
+@cache
+def link() -> Any:
+    """Give kernels what they call by its name: compiled once, and not once more in every kernel; the owner of its memory."""
+    careful = _kept(cfunc, digits.careful_pair_delay, _CAREFUL)
+    binding.add_symbol(_careful.symbol, careful.address)
+    return careful
+
+
+@overload(digits.careful_pair_delay)
+def _careful_pair_delay(xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y):
+    return lambda xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y: _careful(
+        xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y
+    )
+
+
+@overload(real.is_float, jit_options={"forceinline": True})
+def _is_float(x):
+    return lambda x: True
 
 
 @overload(real.sqrt, jit_options={"forceinline": True})
@@ -123,11 +152,11 @@ def _sqrt(x):  # without annotations: numba compares them with those of the lamb
 def _register(module: ModuleType, **options: Any) -> None:
     for function in vars(module).values():
         own = getattr(function, "__module__", None) == module.__name__
-        if own and callable(function) and not isinstance(function, type):
+        if own and callable(function) and not isinstance(function, type) and function is not digits.careful_pair_delay:
             register_jitable(**options)(function)
 
 
 for _module in (motion, contact, impulse):
     _register(_module, forceinline=True, error_model="numpy")
-for _module in (careful_impulse, crossing, expansion, parabola, face, round):
+for _module in (careful_impulse, crossing, digits, expansion, parabola, face, round):
     _register(_module, error_model="numpy")

@@ -1,7 +1,7 @@
 """Eight pairs at a time: the contact times of one disk with eight others, in AVX-512 registers.
 
-Each lane does what `formulas.contact.pair_delay` does, operation by operation and without contraction, so its bits are those
-of the scalar kernel and of the reference engine; what is off the path in a lane is computed and thrown away.
+Each lane does what `formulas.contact.screened_pair_delay` does, operation by operation and without contraction, so its bits are
+those of the scalar kernel and of the reference engine; what is off the path in a lane is computed and thrown away.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from numba.extending import intrinsic
 
 from eventsim.engines.fast.layout import REALS
 from eventsim.engines.fast.memory import F64, I8, I32, I64, call, f64, i64, place
+from eventsim.formulas.contact import DIGITS_LOST, SMALLEST
 
 I16, I1 = ir.IntType(16), ir.IntType(1)
 V8, V16, M16 = ir.VectorType(F64, 8), ir.VectorType(I32, 16), ir.VectorType(I1, 16)
@@ -78,7 +79,8 @@ def _transposed(builder, rows, odd):
 def contact_of_eight(
     typing, disks, near, first, x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y, edge
 ):
-    """(time, disk, many): the earliest contact of a disk with near[first:first+8], and whether several share that time.
+    """(time, disk, many, doubted): the earliest contact of a disk with near[first:first+8], whether several share that time,
+    and a bit for each pair that the plain formula cannot tell about (it does not count then).
 
     x, y, vx, vy, t, r: the flight of the disk and its radius.  Times before `floor` do not count; inf if there is none.
     edge: 1.0 if the pairs may be across a periodic boundary (then x_now, y_now, length_x, length_y are used; length inf: none
@@ -128,12 +130,21 @@ def contact_of_eight(
         reach2 = mul(reach, reach)
         c = sub(add(mul(dx, dx), mul(dy, dy)), reach2)
         cross = sub(mul(dx, dw), mul(dy, du))
-        discriminant = sub(mul(add(mul(du, du), mul(dw, dw)), reach2), mul(cross, cross))
-        zero = constant(0.0)
-        closed = b.fcmp_ordered("<=", c, zero)
-        meets = b.and_(less(approach, zero), b.or_(closed, less(zero, discriminant)))
+        a = add(mul(du, du), mul(dw, dw))
+        bound = mul(a, reach2)
+        discriminant = sub(bound, mul(cross, cross))
+        zero, lost, smallest_known = constant(0.0), constant(DIGITS_LOST), constant(SMALLEST)
+        slack = add(mul(lost, bound), smallest_known)
+        apart = less(add(mul(lost, reach2), smallest_known), c)
+        approaches = less(approach, zero)
+        told = less(slack, call(b, "llvm.fabs.v8f64", V8, discriminant))
+        still = b.and_(b.fcmp_ordered("==", du, zero), b.fcmp_ordered("==", dw, zero))
+        beside = b.and_(b.fcmp_ordered("==", approach, zero), b.or_(less(smallest_known, a), still))
+        told = b.or_(b.or_(less(zero, approach), beside), b.and_(approaches, told))
+        doubted = b.and_(b.not_(b.and_(apart, told)), b.fcmp_ordered("ord", other_x, other_x))
+        meets = b.and_(b.and_(apart, approaches), less(slack, discriminant))
         root = call(b, "llvm.sqrt.v8f64", V8, discriminant)
-        delay = b.select(closed, zero, b.fdiv(c, sub(root, approach)))
+        delay = b.fdiv(c, sub(root, approach))
         time = add(begin, delay)
         meets = b.and_(meets, b.fcmp_ordered(">=", time, floor))
         times = smallest = b.select(meets, time, constant(float("inf")))
@@ -146,6 +157,8 @@ def contact_of_eight(
         rest = b.and_(hits, b.sub(hits, I8(1)))
         many = b.zext(b.icmp_unsigned("!=", rest, I8(0)), I64)
         disk = b.sext(b.load(b.gep(ids, [lane])), I64)
-        return context.make_tuple(b, signature.return_type, [earliest, disk, many])
+        return context.make_tuple(
+            b, signature.return_type, [earliest, disk, many, b.zext(b.bitcast(doubted, I8), I64)]
+        )
 
-    return types.Tuple((f64, i64, i64))(disks, near, i64, *[f64] * 12, edge), codegen
+    return types.Tuple((f64, i64, i64, i64))(disks, near, i64, *[f64] * 12, edge), codegen

@@ -43,8 +43,9 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import just_met, partner_just_met
 from eventsim.engines.fast.shapes import shape_delay
-from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
@@ -287,17 +288,42 @@ def pair_time(m, rules, i, j, kx, ky):
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
-    reach = real(m.disks, f + RADIUS) + real(m.disks, g + RADIUS)
-    return begin + _pair_delay(dx, dy, du, dw, reach, ax, ay, bx, by)
+    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by)
 
 
 @inline
-def _pair_delay(dx, dy, du, dw, reach, ax, ay, bx, by):
-    if ax is None:
-        return pair_delay(dx, dy, du, dw, reach)
-    if ax != bx or ay != by:
-        return circle_delays(dx, dy, du, dw, ax - bx, ay - by, reach, 1.0)[0]
-    return pair_delay(dx, dy, du, dw, reach)
+def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by):
+    ri, rj = real(m.disks, i * REALS + RADIUS), real(m.disks, j * REALS + RADIUS)
+    if ax is not None and (ax != bx or ay != by):
+        return circle_delays(dx, dy, du, dw, ax - bx, ay - by, ri + rj, 1.0)[0]
+    delay = screened_pair_delay(dx, dy, du, dw, ri + rj)
+    if delay == delay:
+        return delay
+    if ax is not None:
+        return careful_pair_delay(dx, dy, du, dw, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
+    return _careful_delay(m, rules, i, j, kx, ky)
+
+
+@part
+def _careful_delay(m, rules, i, j, kx, ky):
+    """The delay of a pair in straight flight from the two flights themselves, right to the last bit."""
+    f, g = i * REALS, j * REALS
+    return careful_pair_delay(
+        real(m.disks, f + X),
+        real(m.disks, f + Y),
+        real(m.disks, f + VX),
+        real(m.disks, f + VY),
+        real(m.disks, f + T),
+        real(m.disks, f + RADIUS),
+        real(m.disks, g + X),
+        real(m.disks, g + Y),
+        real(m.disks, g + VX),
+        real(m.disks, g + VY),
+        real(m.disks, g + T),
+        real(m.disks, g + RADIUS),
+        shift(kx, rules.length_x),
+        shift(ky, rules.length_y),
+    )
 
 
 @inline
@@ -401,14 +427,14 @@ def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
     periodic = rules.length_x is not None or rules.length_y is not None
-    first = 0
+    first = doubts = 0
     while True:
         if periodic and edge:
-            new, j, many = contact_of_eight(
+            new, j, many, doubted = contact_of_eight(
                 m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 1.0
             )
         else:
-            new, j, many = contact_of_eight(
+            new, j, many, doubted = contact_of_eight(
                 m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 0
             )
         sooner = new < time  # no branches: they could not be foreseen
@@ -416,9 +442,33 @@ def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
         shared = many if sooner else shared | also
         code = j if sooner else code
         time = new if sooner else time
+        lane = first
+        while doubted:  # rare; a call here would cost the registers
+            if doubted & 1:
+                store(m.near, doubts, word(m.near, lane))
+                doubts += 1
+            doubted >>= 1
+            lane += 1
         first += 8
         if first >= count:
-            return time, code, shared
+            break
+    if doubts:
+        return _contacts_in_doubt(m, rules, i, now, floor, x, y, edge, doubts, time, code, shared)
+    return time, code, shared
+
+
+@part
+def _contacts_in_doubt(m, rules, i, now, floor, x, y, edge, count, time, code, shared):
+    """The same for the pairs at the head of the list, about which the lanes could not tell."""
+    for k in range(count):
+        j = word(m.near, k)
+        kx, ky = 0, 0
+        if edge:
+            kx, ky = images(m, rules, i, j, now, x, y)
+        new = pair_is_due(m, rules, i, j, kx, ky)
+        if new >= floor:
+            time, code, shared = _earlier(time, code, shared, new, j)
+    return time, code, shared
 
 
 @inline

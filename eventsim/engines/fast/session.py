@@ -9,7 +9,7 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.fast import layout
-from eventsim.engines.fast.compiled import mark_warm, timed_compiling
+from eventsim.engines.fast.compiled import link, mark_warm, timed_compiling
 from eventsim.engines.fast.instant import contacts_at, due_at
 from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid, Rules
@@ -92,6 +92,8 @@ class FastSession:
         self._resolver: Resolver | None = None
         self._grid: Grid
         self._arrays: Any
+        with timed_compiling(self._note_compiling):
+            link()
         if saved is None:
             self._begin()
         else:

@@ -8,8 +8,9 @@ from typing import TypeAlias
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.state import EngineState
-from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER, Real
@@ -23,7 +24,12 @@ Border: TypeAlias = tuple[int, int, float, float]
 
 
 class Predictor:
-    """Predicts for one stage; `cells` is None where all pairs are looked at."""
+    """Predicts for one stage; `cells` is None where all pairs are looked at.
+
+    straight_delay: the delay of a pair in straight relative flight; nan where it does not know.
+    """
+
+    straight_delay: Callable[..., Real] = staticmethod(screened_pair_delay)
 
     def __init__(self, stage: Stage, state: EngineState, calendar: Calendar, cells: Cells | None) -> None:
         self._state = state
@@ -83,6 +89,7 @@ class Predictor:
         gravity_x, gravity_y, falls = state.gravity_x, state.gravity_y, self._falls
         radius, unmoved, met = self._radius, self._unmoved, state.met
         reach_i = radius[i]
+        straight_delay = self.straight_delay
         length_x, length_y = self._period
         for members, image in near:
             kx, ky = image
@@ -117,13 +124,26 @@ class Predictor:
                     if not delay < NEVER:
                         continue
                 else:
-                    delay = pair_delay(dx, dy, du, dw, reach_i + radius[j])
-                    if not delay < NEVER or (met[i] and met[j] and self._just_met(i, j, kx, ky)):
+                    delay = straight_delay(dx, dy, du, dw, reach_i + radius[j])
+                    if delay == NEVER or (met[i] and met[j] and self._just_met(i, j, kx, ky)):
                         continue
+                    if not delay < NEVER:
+                        delay = self._careful_delay(i, j, image, (dx, dy, du, dw))
+                        if delay == NEVER:
+                            continue
                 if i < j:
                     self._push(Event(tr + delay, CONTACT, i, j, image, state.count[i], state.count[j]))
                 else:
                     self._push(Event(tr + delay, CONTACT, j, i, (-kx, -ky), state.count[j], state.count[i]))
+
+    def _careful_delay(self, i: int, j: int, image: tuple[int, int], apart: tuple[float, ...]) -> float:
+        """The delay of a pair from the two flights themselves, right to the last bit; along parabolas from what is apart."""
+        s, ri, rj = self._state, self._radius[i], self._radius[j]
+        if self._falls:
+            return careful_pair_delay(*apart, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
+        shift_x, shift_y = (k * length if k else 0.0 for k, length in zip(image, self._period, strict=True))  # type: ignore[operator]
+        one, other = ((s.x[k], s.y[k], s.vx[k], s.vy[k], s.t[k]) for k in (i, j))
+        return careful_pair_delay(*one, ri, *other, rj, shift_x, shift_y)
 
     def _just_met(self, i: int, j: int, kx: int, ky: int) -> bool:
         """Whether both remember each other, in this image, as what they met last: flying straight, they only recede."""

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from eventsim.formulas.contact import pair_delay
+from eventsim.formulas.contact import circle_delay
 from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
 
@@ -74,7 +74,7 @@ def post_delay(
 def _straight_to_post(shape: Post, x: Real, y: Real, vx: Real, vy: Real, radius: Real, met: int) -> tuple[Real, int]:
     if met != 0:
         return NEVER, 1
-    return pair_delay(x - shape.x, y - shape.y, vx, vy, radius), 1
+    return circle_delay(x, y, vx, vy, radius, shape.x, shape.y, 0.0), 1
 
 
 def container_delay(
@@ -177,26 +177,23 @@ def arc_delay(
 
 
 def _straight_to_arc(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, met: int) -> tuple[Real, int]:
-    dx, dy = x - shape.x, y - shape.y
     side = met if met != 0 else arc_side(shape, x, y, vx, vy)
-    outer, inner = shape.radius + radius, shape.radius - radius
     best, best_side = NEVER, side
     if side > 0 and met == 0:
-        delay = pair_delay(dx, dy, vx, vy, outer)
+        delay = circle_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius)
         if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
             best, best_side = delay, 1
-    if inner > 0.0 and (side < 0 or best == NEVER):
-        delay = _inner_from(dx, dy, vx, vy, inner, side)
+    if shape.radius - radius > 0.0 and (side < 0 or best == NEVER):
+        delay = _inner_from(shape, x, y, vx, vy, radius, side)
         if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
             best, best_side = delay, -1
     return best, best_side
 
 
-def _inner_from(dx: Real, dy: Real, du: Real, dw: Real, inner: Real, side: int) -> Real:
+def _inner_from(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, side: int) -> Real:
     """Contact with the inside of a circle, for a disk that is inside or will be: a flight from outside must pass through it."""
-    if side < 0:
-        return inner_delay(dx, dy, du, dw, inner)
-    entered = pair_delay(dx, dy, du, dw, inner)
-    if not entered < NEVER:
-        return NEVER
-    return inner_delay(dx, dy, du, dw, inner)
+    if side > 0:
+        entered = circle_delay(x, y, vx, vy, -radius, shape.x, shape.y, shape.radius)
+        if not entered < NEVER:
+            return NEVER
+    return inner_delay(x - shape.x, y - shape.y, vx, vy, shape.radius - radius)
