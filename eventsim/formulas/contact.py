@@ -13,7 +13,7 @@ DIGITS_LOST = 2.0**-12
 plain formula is right to 1e-12, and one prediction in some thousands is done again."""
 
 SMALLEST = 1e-290
-"""What underflow may have taken from c and D."""
+"""What underflow may have taken from D."""
 
 
 def pair_delay(dx: Real, dy: Real, du: Real, dw: Real, reach: Real) -> Real:
@@ -48,20 +48,17 @@ def screened_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float
     b = dx * du + dy * dw
     reach2 = reach * reach
     c = (dx * dx + dy * dy) - reach2
-    if not c > DIGITS_LOST * reach2 + SMALLEST:
+    if not c > DIGITS_LOST * reach2:
         return DOUBT
     if b > 0.0:
         return NEVER
-    a = du * du + dw * dw
-    if b == 0.0:
-        return NEVER if a > SMALLEST or (du == 0.0 and dw == 0.0) else DOUBT
     cross = dx * dw - dy * du
-    bound = a * reach2
+    bound = (du * du + dw * dw) * reach2
     discriminant = bound - cross * cross
     slack = DIGITS_LOST * bound + SMALLEST
     if discriminant > slack:
-        return c / (sqrt(discriminant) - b)
-    return NEVER if discriminant < -slack else DOUBT
+        return c / (math.sqrt(discriminant) - b)
+    return NEVER if discriminant < -slack or (du == 0.0 and dw == 0.0) else DOUBT
 
 
 def circle_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy: Real, circle: Real) -> Real:

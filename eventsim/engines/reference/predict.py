@@ -19,6 +19,9 @@ from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.round import Arc, Container, Post
 from eventsim.scene.stage import Stage
 
+Apart: TypeAlias = tuple[float, float, float, float]
+"""The distance and the relative velocity of two disks."""
+
 Border: TypeAlias = tuple[int, int, float, float]
 """An end of the domain: (rank of its events, place of the wall, position, 1 where the radius keeps a centre away from it)."""
 
@@ -136,14 +139,17 @@ class Predictor:
                 else:
                     self._push(Event(tr + delay, CONTACT, j, i, (-kx, -ky), state.count[j], state.count[i]))
 
-    def _careful_delay(self, i: int, j: int, image: tuple[int, int], apart: tuple[float, ...]) -> float:
+    def _careful_delay(self, i: int, j: int, image: tuple[int, int], apart: Apart) -> float:
         """The delay of a pair from the two flights themselves, right to the last bit; along parabolas from what is apart."""
         s, ri, rj = self._state, self._radius[i], self._radius[j]
         if self._falls:
             return careful_pair_delay(*apart, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
         shift_x, shift_y = (k * length if k else 0.0 for k, length in zip(image, self._period, strict=True))  # type: ignore[operator]
-        one, other = ((s.x[k], s.y[k], s.vx[k], s.vy[k], s.t[k]) for k in (i, j))
-        return careful_pair_delay(*one, ri, *other, rj, shift_x, shift_y)
+        return careful_pair_delay(
+            *(s.x[i], s.y[i], s.vx[i], s.vy[i], s.t[i], ri),
+            *(s.x[j], s.y[j], s.vx[j], s.vy[j], s.t[j], rj),
+            *(shift_x, shift_y),
+        )
 
     def _just_met(self, i: int, j: int, kx: int, ky: int) -> bool:
         """Whether both remember each other, in this image, as what they met last: flying straight, they only recede."""
