@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from eventsim.scene.domain import Domain
-from eventsim.scene.numbers import LONGEST, is_place
+from eventsim.scene.numbers import RADII, is_length, is_place
 
 Region: TypeAlias = tuple[float, float, float, float]
 
@@ -80,8 +80,8 @@ def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -
         yield f"{where}.count = {gas.count}: must be at most {MOST_DISKS}"
     if (gas.radius is None) == (gas.packing_fraction is None):
         yield f"{where}: must have either radius or packing_fraction" + (", not both" if gas.radius else "")
-    if gas.radius is not None and not 0.0 <= gas.radius <= LONGEST:
-        yield f"{where}.radius = {gas.radius}: must be at least 0 and at most {LONGEST}"
+    if gas.radius is not None and gas.radius != 0.0 and not is_length(gas.radius):
+        yield f"{where}.radius = {gas.radius}: {RADII}"
     if gas.packing_fraction is not None and not 0.0 < gas.packing_fraction <= CLOSE_PACKING:
         rule = f"must be above 0 and at most {CLOSE_PACKING:.7f}..., the densest packing of equal disks"
         yield f"{where}.packing_fraction = {gas.packing_fraction}: {rule}"

@@ -10,13 +10,20 @@ from eventsim.errors import SceneError
 
 Point: TypeAlias = tuple[float, float]
 
-# Squares of lengths must be numbers too.
-LONGEST = 1e150
+# Squares of lengths must be numbers too, neither infinite nor 0.
+SHORTEST, LONGEST = 1e-150, 1e150
+LENGTHS = f"must be above 0 (at least {SHORTEST}) and at most {LONGEST}"
+RADII = f"must be at least 0 and at most {LONGEST} (0 is a point, no other below {SHORTEST})"
 
 
 def is_place(numbers: Iterable[float]) -> bool:
     """Whether lengths are finite and small enough to be squared."""
     return all(abs(value) <= LONGEST for value in numbers)
+
+
+def is_length(value: float) -> bool:
+    """Whether a length is one whose square is a number."""
+    return SHORTEST <= value <= LONGEST
 
 
 def number(value: object, key: str) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.names import DiskNames, SelectedNames
-from eventsim.scene.numbers import LONGEST, is_place
+from eventsim.scene.numbers import LENGTHS, LONGEST, RADII, SHORTEST, is_length, is_place
 from eventsim.scene.overlaps import (
     ENOUGH,
     Found,
@@ -102,8 +102,8 @@ def _domain_problems(domain: Domain) -> Iterator[str]:
     """Rules for size and origin."""
     if isinstance(domain, Open):
         return
-    if not is_place(domain.size) or min(domain.size) <= 0.0:
-        yield f"domain.size = {list(domain.size)}: both lengths must be above 0 and at most {LONGEST}"
+    if not all(map(is_length, domain.size)):
+        yield f"domain.size = {list(domain.size)}: both lengths {LENGTHS}"
     if not is_place(domain.origin):
         yield f"domain.origin = {list(domain.origin)}: must be two finite numbers, at most {LONGEST}"
 
@@ -118,8 +118,8 @@ def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -
             ),
             "velocity": (np.isfinite(disks.velocity).all(axis=1), "must be two finite numbers"),
             "radius": (
-                (disks.radius >= 0.0) & (disks.radius <= LONGEST),
-                f"must be at least 0 and at most {LONGEST}",
+                (disks.radius == 0.0) | ((disks.radius >= SHORTEST) & (disks.radius <= LONGEST)),
+                RADII,
             ),
             "mass": (disks.mass >= 0.0, "must be at least 0 (inf: cannot be deflected)"),
         }

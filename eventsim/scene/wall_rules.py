@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
-from eventsim.scene.numbers import LONGEST, is_place
+from eventsim.scene.numbers import LENGTHS, LONGEST, SHORTEST, Point, is_length, is_place
 from eventsim.scene.outlines import bounds, circle_through
 from eventsim.scene.walls import Arc, Circle, Polygon, Polyline, Segment, Wall, features, wall_names
 
@@ -50,8 +51,8 @@ def shape_problems(wall: Wall) -> Iterator[str]:
         keys = {".start": wall.start, ".through": wall.through, ".end": wall.end}
     elif isinstance(wall, Circle):
         keys = {".center": wall.center}
-        if not 0.0 < wall.radius <= LONGEST:
-            yield f".radius = {wall.radius}: must be above 0 and at most {LONGEST}"
+        if not is_length(wall.radius):
+            yield f".radius = {wall.radius}: {LENGTHS}"
     else:
         keys = {f".points[{k}]": p for k, p in enumerate(wall.points)}
     infinite = [key for key, p in keys.items() if not is_place(p)]
@@ -62,6 +63,8 @@ def shape_problems(wall: Wall) -> Iterator[str]:
         return
     if isinstance(wall, Segment) and wall.start == wall.end:
         yield f": start and end are the same point {wall.start}: a segment needs a length"
+    elif isinstance(wall, Segment):
+        yield from _length_problems("", wall.start, wall.end)
     elif isinstance(wall, Arc) and not _is_round(wall):
         yield (
             f": start {wall.start}, through {wall.through} and end {wall.end} do not determine a circle:"
@@ -76,12 +79,22 @@ def shape_problems(wall: Wall) -> Iterator[str]:
             if start == end:
                 hint = " (a polygon closes by itself)" if k == len(wall.points) - 1 else ""
                 yield f".points[{k}] and the next point are the same, {start}: an edge needs a length{hint}"
+            else:
+                yield from _length_problems(f".points[{k}]", start, end)
+
+
+def _length_problems(key: str, start: Point, end: Point) -> Iterator[str]:
+    """The rule that the square of an edge's length is a number."""
+    length = math.dist(start, end)
+    if length < SHORTEST:
+        yield f"{key}: the edge from {start} to {end} has the length {length}: must be at least {SHORTEST}"
 
 
 def _is_round(arc: Arc) -> bool:
     """Whether three points determine a circle that floats can hold."""
     (x, y), radius = circle_through(arc.start, arc.through, arc.end)
-    return is_place((x, y, radius)) and radius > 0.0 and arc.through not in (arc.start, arc.end)
+    chords = math.dist(arc.start, arc.through), math.dist(arc.through, arc.end)
+    return is_place((x, y)) and is_length(radius) and min(chords) >= SHORTEST
 
 
 def _period_problems(wall: Wall, domain: Domain) -> Iterator[str]:
@@ -89,7 +102,7 @@ def _period_problems(wall: Wall, domain: Domain) -> Iterator[str]:
 
     Disks cannot be inside a container and inside its image, so it must not stick out of a period.
     """
-    if isinstance(domain, Open) or not is_place((*domain.size, *domain.origin)) or min(domain.size) <= 0.0:
+    if isinstance(domain, Open) or not is_place(domain.origin) or not all(map(is_length, domain.size)):
         return
     for axis in (0, 1):
         if not domain.periodic[axis]:

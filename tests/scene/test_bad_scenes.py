@@ -128,6 +128,24 @@ BAD = {
             ["wall[3].radius = 0.0", "above 0"],
         ],
     ),
+    "lengths without squares": (
+        '[domain]\nkind = "box"\nsize = [1e-160, 1]\n[[disk]]\nposition = [0, 0]\nradius = 1e-160\n'
+        + '[[disk]]\nposition = [1e-161, 0.5]\nradius = 0\n'
+        + '[[gas]]\ncount = 2\nradius = 1e-151\nseed = 1\n'
+        + '[[wall]]\nkind = "segment"\nstart = [0, 0]\nend = [1e-160, 0]\n'
+        + '[[wall]]\nkind = "polyline"\npoints = [[0, 0], [1, 0], [1, 1e-155]]\n'
+        + '[[wall]]\nkind = "arc"\nstart = [0, 0]\nthrough = [1e-160, 1e-160]\nend = [0, 2e-160]\n'
+        + '[[wall]]\nkind = "circle"\ncenter = [0, 0]\nradius = 1e-151\n',
+        [
+            ["domain.size = [1e-160, 1.0]", "above 0", "1e-150"],
+            ["disk[0].radius = 1e-160", "0 is a point", "1e-150"],
+            ["gas[0].radius = 1e-151", "0 is a point"],
+            ["wall[0]", "length 1e-160", "at least 1e-150"],
+            ["wall[1].points[1]", "length 1e-155", "at least 1e-150"],
+            ["wall[2]", "do not determine a circle"],
+            ["wall[3].radius = 1e-151", "above 0 (at least 1e-150)"],
+        ],
+    ),
     "wall names": (
         BOX
         + DISK

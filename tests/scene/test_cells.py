@@ -65,7 +65,7 @@ def test_one_large_disk_among_many_small_ones_is_no_burden():
     Scene(disks, Periodic((350, 350)))
 
 
-@pytest.mark.parametrize("scale", [1e-300, 1.0, 1e149])
+@pytest.mark.parametrize("scale", [1e-149, 1.0, 1e149])
 def test_the_search_knows_no_unit_of_length(scale):
     Scene(Disks(np.array([[0, 0], [1, 0], [3, 5]]) * scale, radius=0.5 * scale), Open())
     chunks = Cells(np.array([[0, 0], [0.99, 0], [3, 5]]) * scale, np.full(3, 0.5 * scale), np.ones(3), PERIODS[0])
