@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from eventsim.cli.suggest import did_you_mean
 from eventsim.errors import SceneError
 
@@ -16,11 +18,28 @@ SCENE_SUFFIXES = (".toml", ".json")
 
 
 def chosen_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene:
-    """Return the scene meant by the argument SCENE and the options --set and --seed.
+    """Return the scene meant by the argument SCENE and the options --set and --seed; tell of a seed that changes nothing.
 
     Raises:
         SceneError: if there is no such scene, a setting does not fit, or the scene breaks a rule.
     """
+    made = seeded_scene(scene, settings, seed)
+    if seed is not None and not _draws_at_random(scene, settings):
+        click.echo(f"note: --seed {seed} changes nothing: {scene} draws no random numbers", err=True)
+    return made
+
+
+def _draws_at_random(scene: str, settings: Sequence[str]) -> bool:
+    from eventsim.scene.files import draws_at_random
+    from eventsim.scene.gallery import describe
+
+    if Path(scene).suffix.lower() in SCENE_SUFFIXES:
+        return draws_at_random(scene, settings)
+    return "seed" in describe(scene).parameters
+
+
+def seeded_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene:
+    """Return the same scene without a word; raises SceneError alike."""
     from eventsim.scene.files import load_scene
     from eventsim.scene.gallery import names
 

@@ -74,7 +74,7 @@ def _list(as_json: bool, quiet: bool) -> None:
 
 def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool) -> None:
     """Print the story of one scene, or copy it into a file."""
-    from eventsim.cli.choose import SCENE_SUFFIXES, built_in_scene
+    from eventsim.cli.choose import SCENE_SUFFIXES, chosen_scene
     from eventsim.cli.words import aligned, as_json_text
     from eventsim.scene.gallery import describe
 
@@ -83,7 +83,7 @@ def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | No
     if target is not None:
         if target.exists():
             raise click.UsageError(f"--copy {target}: there is such a file already; it is left as it is")
-        _write_scene(target, built_in_scene(name, settings, seed))
+        _write_scene(target, chosen_scene(name, settings, seed))
     if as_json:
         data = {
             "name": name,

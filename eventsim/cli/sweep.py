@@ -131,6 +131,6 @@ def command(
 
 def _scene(scene: str, settings: tuple[str, ...], seed: int | None) -> Scene:
     """The scene of a task, in whichever process."""
-    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.choose import seeded_scene
 
-    return chosen_scene(scene, settings, seed)
+    return seeded_scene(scene, settings, seed)

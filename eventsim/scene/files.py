@@ -16,7 +16,7 @@ from eventsim.scene.overrides import apply_overrides
 from eventsim.scene.scene import Scene
 from eventsim.scene.walls import Wall
 
-__all__ = ["apply_overrides", "load_scene", "scene_from_dict", "scene_to_dict", "scene_to_toml"]
+__all__ = ["apply_overrides", "draws_at_random", "load_scene", "scene_from_dict", "scene_to_dict", "scene_to_toml"]
 
 
 def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
@@ -33,6 +33,17 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     path = Path(path)
     data = _read(path)
     return scene_from_dict(apply_overrides(data, overrides), path.parent, str(path), seed)
+
+
+def draws_at_random(path: str | Path, overrides: Iterable[str] | None = None) -> bool:
+    """Whether the scene of a file has a gas that cannot be made without random numbers; its mistakes are not looked at.
+
+    Raises:
+        SceneError: where the file cannot be read or the overrides lead nowhere.
+    """
+    from eventsim.scene.tables import uses_chance
+
+    return uses_chance(apply_overrides(_read(Path(path)), overrides))
 
 
 def scene_from_dict(

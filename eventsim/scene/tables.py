@@ -62,6 +62,11 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Sce
     return found.scene(disks)
 
 
+def uses_chance(data: Mapping[str, Any]) -> bool:
+    """Whether a [[gas]] table among these, as far as they can be read, cannot be placed without random numbers."""
+    return any(gas.uses_chance for _, gas in _read_gases(data, None, None, []))
+
+
 def _grows_with(gas: Gas, other: Gas, domain: Domain) -> bool:
     return other.arrangement == "compressed" and region_of(gas, domain) == region_of(other, domain)
 

@@ -102,6 +102,18 @@ def test_set_reaches_keys_of_a_built_in_scene_too(eventsim):
     assert summary["residuals"]["energy"] is None
 
 
+def test_a_seed_without_chance_is_told(eventsim, scene_file):
+    for scene in (scene_file, "two-disks"):
+        result = eventsim("run", scene, "--seed", 3, "--json")
+        assert result.exit_code == 0
+        assert f"--seed 3 changes nothing: {scene} draws no random numbers" in result.stderr
+    scene_file.write_text(
+        scene_file.read_text() + '\n[[gas]]\ncount = 2\nradius = 0.01\nregion = [3, 0, 4, 1]\nseed = 1\n'
+    )
+    assert "changes nothing" not in eventsim("run", scene_file, "--seed", 3).stderr
+    assert "changes nothing" not in eventsim("check", "gas", "--seed", 3).stderr
+
+
 def test_a_seed_draws_another_start_and_the_same_seed_the_same(eventsim):
     def digest(seed):
         words = ("run", "gas", "--set", "n=20", "--seed", seed, "--events", 20, "--digest", "--json")
