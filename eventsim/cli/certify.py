@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
-from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
 from eventsim.cli.target import LOG_SUFFIXES, writable
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ USUAL_EVENTS = 1000
 
 @click.command()
 @scene_options(required=True)
-@click.option("--events", type=click.IntRange(min=1), metavar="N", help="Prove this many events (1000 without a stop).")
+@click.option("--events", type=Whole(min=1), metavar="N", help="Prove this many events (1000 without a stop).")
 @click.option("--until", type=float, metavar="T", help="Prove what happens up to this time.")
 @click.option("--log", metavar="FILE", help=f"Keep the certified log in FILE, one of {', '.join(LOG_SUFFIXES)}.")
 @click.option("--bits", type=click.IntRange(64, 2**20), default=1024, show_default=True, help="Of the first attempt.")

@@ -3,11 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from decimal import Decimal, InvalidOperation
 from typing import Any, TypeVar
 
 import click
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
+
+MOST_DIGITS = 18
+"""Of a number written with an exponent: more than can be counted."""
+
+
+class Whole(click.IntRange):
+    """A whole number, which may be written as 1e6."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the number; refuse what is none, or outside the range."""
+        try:
+            number = Decimal(str(value))
+            if number.is_finite() and number.adjusted() < MOST_DIGITS and number == int(number):
+                value = int(number)
+        except InvalidOperation:
+            pass  # no number at all: the message is the usual one
+        return super().convert(value, param, ctx)
+
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout instead of text.")
 quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print no summary and no progress.")

@@ -7,7 +7,7 @@ import math
 import click
 
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
-from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
 from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES, writable
 
 FIRST_SCENE = "break"
@@ -20,7 +20,7 @@ EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 @click.option("--until", type=float, metavar="T", help="Stop at this time on the scene's clock.")
 @click.option(
     "--events",
-    type=click.IntRange(min=0),
+    type=Whole(min=0),
     metavar="N",
     help="Stop after this many events; contacts at one instant are not cut apart.",
 )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eventsim.cli.options import Verb
+from eventsim.cli.options import Verb, Whole
 from eventsim.cli.target import LOG_SUFFIXES
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ GROWING = ".part"
 
 def stop_options(verb: Verb) -> Verb:
     """Add --until and --events, for a scene."""
-    events = click.option("--events", type=click.IntRange(min=0), metavar="N", help="Of a scene: stop after N events.")
+    events = click.option("--events", type=Whole(min=0), metavar="N", help="Of a scene: stop after N events.")
     until = click.option("--until", type=float, metavar="T", help="Of a scene: simulate until this time.")
     return until(events(verb))
 

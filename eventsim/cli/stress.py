@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from eventsim.cli.exits import FAILED
-from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.options import Whole, json_option, quiet_option
 from eventsim.cli.target import writable
 
 FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
@@ -36,7 +36,7 @@ FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
     help="Engines that run at the same time.",
 )
 @click.option(
-    "--soak", type=click.IntRange(min=1), metavar="N", help="Instead: N random scenes, engine against engine."
+    "--soak", type=Whole(min=1), metavar="N", help="Instead: N random scenes, engine against engine."
 )
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="S", help="First seed of --soak."

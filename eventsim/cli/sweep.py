@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim.cli.exits import BAD_INPUT, INTERRUPTED
-from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.options import Whole, json_option, quiet_option
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given sever
 @click.option("--out", required=True, metavar="FILE", help="The table: FILE.csv or .parquet.")
 @click.option("--figure", metavar="FILE", help="Draw Z against the packing fraction to FILE.png, .svg or .pdf.")
 @click.option("--until", type=float, metavar="T", help="Stop every run at this time.")
-@click.option("--events", type=click.IntRange(min=1), metavar="N", help="Stop every run after N events.")
+@click.option("--events", type=Whole(min=1), metavar="N", help="Stop every run after N events.")
 @click.option("--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this time at the beginnings.")
 @click.option("--engine", default="auto", show_default=True, metavar="NAME", help="Which engine simulates.")
 @click.option("--workers", type=click.IntRange(min=1), metavar="W", help="Processes; default: one for each core.")

@@ -53,9 +53,19 @@ def optional_whole(value: object, key: str) -> int | None:
     """
     if value is None:
         return None
-    if isinstance(value, bool) or not isinstance(value, Integral):
+    whole = as_whole(value)
+    if whole is None:
         raise SceneError(f"{key} = {value!r}: must be a whole number")
-    return int(value)
+    return whole
+
+
+def as_whole(value: object) -> int | None:
+    """The whole number that a value is, also where it is written as 1e6; None where it is none."""
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, Integral):
+        return int(value)
+    return int(value) if isinstance(value, float) and value.is_integer() else None
 
 
 def point(value: object, key: str) -> Point:

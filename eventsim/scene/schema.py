@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
-from numbers import Integral, Real
+from numbers import Real
 from typing import Any
 
 from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFieldInvalid, Schema
 
 from eventsim.scene.domain import DOMAINS
+from eventsim.scene.numbers import as_whole
 from eventsim.scene.walls import WALLS
 
 ARRANGEMENTS = ("random", "square", "hexagonal", "compressed")
@@ -39,9 +40,10 @@ def whole(least: int) -> Callable[[object], int]:
     """A whole number from `least` on."""
 
     def whole_number(value: object) -> int:
-        if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        found = as_whole(value)
+        if found is None or found < least:
             raise Invalid(f"must be a whole number, at least {least}")
-        return int(value)
+        return found
 
     return whole_number
 

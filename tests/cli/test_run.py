@@ -102,6 +102,21 @@ def test_set_reaches_keys_of_a_built_in_scene_too(eventsim):
     assert summary["residuals"]["energy"] is None
 
 
+@pytest.mark.parametrize("written", ["30", "3e1", "0.3e2", "30.0"])
+def test_a_number_of_events_may_be_written_with_an_exponent(eventsim, written):
+    words = ("run", "gas", "--set", "n=2e1", "--json", "--events")
+    assert json.loads(eventsim(*words, written).stdout)["events"] == 30
+    set_in_scene = ("run", "gas", "--set", "n=20", "--set", f"events={written}", "--json")
+    assert json.loads(eventsim(*set_in_scene).stdout)["events"] == 30
+
+
+@pytest.mark.parametrize("written", ["1.5", "1e-1", "-1e3", "many", "nan", "inf", "1e999999999"])
+def test_what_is_no_number_of_events_is_refused(eventsim, written):
+    result = eventsim("run", "gas", "--events", written)
+    assert result.exit_code == 2
+    assert "--events" in result.stderr
+
+
 def test_a_seed_without_chance_is_told(eventsim, scene_file):
     for scene in (scene_file, "two-disks"):
         result = eventsim("run", scene, "--seed", 3, "--json")

@@ -117,7 +117,7 @@ class FastSession:
 
     def _advance(self, stop: Stop, budget: int) -> str | None:
         state, counts = self.state, self._counts
-        target = FOREVER if stop.events is None else stop.events
+        target = FOREVER if stop.events is None else min(stop.events, FOREVER)
         last = int(counts[layout.STEPS]) + min(budget, LARGEST_BUDGET)
         while counts[layout.STEPS] < last:
             until = self._remainder(stop.until)

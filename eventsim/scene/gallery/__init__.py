@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TypeAlias
 
 from eventsim.errors import SceneError
+from eventsim.scene.numbers import as_whole
 from eventsim.scene.scene import Scene
 
 Value: TypeAlias = bool | int | float | str
@@ -74,8 +75,9 @@ def gallery(name: str, **parameters: Value) -> Scene:
             problems.append(f"{name} has no parameter {key!r}{_hint(key, list(defaults))}; {_allowed(defaults)}")
             continue
         wanted = type(defaults[key])
-        # A whole number will do where any number does; true and false are no numbers here.
-        fits = type(value) is wanted or (wanted is float and type(value) is int)
+        # A whole number will do where any number does, and may be written as 1e3; true and false are no numbers here.
+        whole = as_whole(value) is not None
+        fits = type(value) is wanted or (wanted in (int, float) and whole)
         if not fits:
             problems.append(f"{name}: {key} = {value!r}: must be {_WORDS[wanted]}; {_allowed(defaults)}")
             continue
