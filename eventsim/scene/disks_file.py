@@ -97,7 +97,8 @@ def _read_npz(path: Path) -> tuple[dict[str, Floats], str, Indices]:
             wanted = [*COLUMNS, *(["time"] if "time" in arrays.files else [])]
             columns = {name: np.asarray(arrays[name], dtype=np.float64) for name in wanted}
     except (ValueError, TypeError, EOFError, AttributeError, zipfile.BadZipFile):
-        raise SceneError(f"{path}: is not an npz file with arrays of numbers") from None
+        hint = "" if zipfile.is_zipfile(path) else "; a table of text is named .csv"
+        raise SceneError(f"{path}: is not an npz file with arrays of numbers{hint}") from None
     shapes = {name: array.shape for name, array in columns.items() if name != "time"}
     if len(set(shapes.values())) > 1 or len(shapes["x"]) != 1:
         listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())

@@ -175,6 +175,18 @@ def test_what_is_no_log_is_refused_with_a_sentence(tmp_path: Path, suffix: str, 
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("named", SUFFIXES)
+def test_a_log_under_another_suffix_is_told_by_its_looks(tmp_path: Path, suffix: str, named: str) -> None:
+    random_log(20).save(tmp_path / f"log{suffix}")
+    (tmp_path / f"log{suffix}").rename(tmp_path / f"other{named}")
+    if suffix == named:
+        assert len(load_log(tmp_path / f"other{named}")) == 20
+        return
+    with pytest.raises(LogError, match=f"other{named}: not a {named} file; it looks like a {suffix} file"):
+        load_log(tmp_path / f"other{named}")
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
 @pytest.mark.parametrize("share", [0.05, 0.5, 0.9, 0.999])
 def test_a_log_that_was_cut_off_is_refused(tmp_path: Path, suffix: str, share: float) -> None:
     random_log(200).save(tmp_path / f"log{suffix}")

@@ -229,7 +229,7 @@ def test_a_bad_file_of_disks_is_told_with_its_line(tmp_path, text, words):
 
 def test_a_bad_npz_is_told_in_a_sentence(tmp_path):
     (tmp_path / "start.npz").write_bytes(b"no zip")
-    with pytest.raises(SceneError, match="not an npz file"):
+    with pytest.raises(SceneError, match="a table of text is named"):
         load_with_disks(tmp_path, "start.npz")
     np.savez(
         tmp_path / "start.npz",

@@ -12,6 +12,7 @@ from os import PathLike
 from pathlib import Path
 
 from eventsim.errors import LogError
+from eventsim.record.files.looks import demand_looks
 from eventsim.record.files.sink import PART, FileSink
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance
@@ -61,6 +62,8 @@ def reader_for(path: Path) -> Callable[[Path], EventLog]:
         raise LogError(f"{path}: no such file")
     if not path.is_file():
         raise LogError(f"{path}: not a file")
+    if not growing:
+        demand_looks(path, suffix)
     match suffix:
         case ".csv":
             from eventsim.record.files.csv import read_csv
