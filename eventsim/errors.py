@@ -26,5 +26,9 @@ class LogError(EventsimError):
     """An event log cannot be read, written or replayed."""
 
 
+class LogWarning(UserWarning):
+    """An event log can be read, but does not say what its run wrote."""
+
+
 class CollapseError(EventsimError):
     """The contacts of a scene accumulate at an instant, so that time cannot go on."""

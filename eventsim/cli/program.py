@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import sys
+import warnings
 from importlib import import_module
 
 import click
@@ -12,7 +13,7 @@ import click
 from eventsim import __version__
 from eventsim.cli.exits import BAD_INPUT, DONE, INTERRUPTED
 from eventsim.cli.suggest import did_you_mean
-from eventsim.errors import EventsimError, SceneError
+from eventsim.errors import EventsimError, LogWarning, SceneError
 
 VERBS = {
     "run": "Simulate a scene from event to event; print a summary, keep a log.",
@@ -73,7 +74,10 @@ class Program(click.Group):
     def invoke(self, ctx: click.Context) -> object:
         """Call the verb; turn what goes wrong into a sentence on stderr and an exit code."""
         try:
-            result: object = super().invoke(ctx)
+            with warnings.catch_warnings():
+                warnings.simplefilter("always", LogWarning)
+                warnings.showwarning = lambda message, *place: click.echo(f"warning: {message}", err=True)
+                result: object = super().invoke(ctx)
             sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
             return result
         except EventsimError as error:

@@ -96,8 +96,9 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         stopped, last_rows, elapsed, written = _simulate(session, stop, wishes, sinks, digester)
         began = perf_counter()
         stopped, reason = diagnosed(session, stopped, last_rows)
+        digest = None if digester is None else digester.hexdigest()
         for sink in sinks:
-            sink.close(Ending(*session.clock, stopped))
+            sink.close(Ending(*session.clock, stopped, digest))
         written += perf_counter() - began
     except BaseException:
         for sink in sinks:
@@ -113,7 +114,7 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         residuals=residuals_of(session),
         stopped=stopped,
         reason=reason,
-        digest=None if digester is None else digester.hexdigest(),
+        digest=digest,
         elapsed_s=elapsed - (compiled - compiled_before),
         compile_s=compiled,
         write_s=written,

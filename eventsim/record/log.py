@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from eventsim.errors import LogWarning
 from eventsim.record.digest import digest_of
 from eventsim.record.events import COLUMNS, LABELS, Column, Rows, blank_rows
 from eventsim.record.provenance import Ending, Provenance, kicks_of
@@ -92,6 +94,21 @@ class EventLog:
 
         return EventLog(replace(self.provenance, compact=False), expand_rows(self))
 
+    def verify(self, name: str) -> None:
+        """Warn (LogWarning) where full rows are not those that the run closed the log with; `name` is how to call it.
+
+        Nothing is known of a log without the digest of its run.  A compact one needs none: a contact that is not due at its
+        time does not replay.
+        """
+        ending = self.provenance.ending
+        if ending is None or ending.digest is None or self.compact or ending.digest == self.digest():
+            return
+        warnings.warn(
+            f"{name} is not what its run wrote: its rows have another digest than the one it was closed with",
+            LogWarning,
+            stacklevel=2,
+        )
+
     def digest(self) -> str:
         """Return the SHA-256 of the log (see `eventsim.record.digest`); a compact log is expanded first."""
         return digest_of(self.expand().rows)
@@ -104,6 +121,9 @@ class EventLog:
         from eventsim.record.files import open_sink  # files read logs, so they import this module
 
         log = self if compact else self.expand()
+        ending = log.provenance.ending
+        if ending is not None and ending.digest is None and not log.compact:
+            ending = replace(ending, digest=log.digest())
         sink = open_sink(path, log.provenance, compact=compact)
         try:
             for first in range(0, len(log), SAVE_BLOCK):
@@ -111,7 +131,7 @@ class EventLog:
         except BaseException:
             sink.abandon()
             raise
-        sink.close(log.provenance.ending)
+        sink.close(ending)
 
 
 class MemorySink:
@@ -145,10 +165,13 @@ class MemorySink:
 def load_log(path: str | PathLike[str]) -> EventLog:
     """Read a log file of any format; raise LogError with a sentence where it is not one.
 
-    A text log that still grows (NAME.csv.part, NAME.jsonl.part) is read up to its last whole line.
+    A text log that still grows (NAME.csv.part, NAME.jsonl.part) is read up to its last whole line.  Warns (LogWarning) where
+    its numbers were changed since it was written.
     """
     from eventsim.record.files import reader_for
 
     file = Path(path)
     read: Callable[[Path], EventLog] = reader_for(file)
-    return read(file)
+    log = read(file)
+    log.verify(str(file))
+    return log

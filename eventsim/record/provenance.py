@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from eventsim.errors import LogError, SceneError
@@ -22,11 +22,16 @@ Kick = tuple[int, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """Where a run ended: the exact clock (epoch, remainder) and the reason in one word."""
+    """Where a run ended: the exact clock (epoch, remainder) and the reason in one word.
+
+    digest: of its full rows (`record.digest`), by which a reader notices that they were changed; None where nobody computed it.
+    It follows from the rows, so endings that differ in nothing else are equal.
+    """
 
     epoch: int
     remainder: float
     reason: str
+    digest: str | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +80,12 @@ def provenance_text(provenance: Provenance) -> str:
         "kicks": [list(kick) for kick in provenance.kicks],
         "ending": None
         if ending is None
-        else {"epoch": ending.epoch, "remainder": ending.remainder, "reason": ending.reason},
+        else {
+            "epoch": ending.epoch,
+            "remainder": ending.remainder,
+            "reason": ending.reason,
+            "digest": ending.digest,
+        },
         "rows": provenance.rows,
     }
     return json.dumps(data)
@@ -117,12 +127,16 @@ def _provenance(data: Mapping[str, Any], scene: Scene) -> Provenance:
         command=None if data["command"] is None else str(data["command"]),
         compact=bool(data["compact"]),
         kicks=tuple((int(event), float(vx), float(vy)) for event, vx, vy in data["kicks"]),
-        ending=None
-        if ending is None
-        else Ending(int(ending["epoch"]), float(ending["remainder"]), str(ending["reason"])),
+        ending=None if ending is None else _ending(ending),
         rows=None if data["rows"] is None else int(data["rows"]),
     )
 
 
 def _ending(data: Mapping[str, Any]) -> Ending:
-    return Ending(epoch=int(data["epoch"]), remainder=float(data["remainder"]), reason=str(data["reason"]))
+    digest = data.get("digest")  # older logs have none
+    return Ending(
+        epoch=int(data["epoch"]),
+        remainder=float(data["remainder"]),
+        reason=str(data["reason"]),
+        digest=None if digest is None else str(digest),
+    )

@@ -75,3 +75,14 @@ def test_bad_usage_is_one_clear_message(eventsim, log_file, tmp_path, monkeypatc
     assert expected in result.stderr
     assert result.stdout == ""
     assert list(tmp_path.iterdir()) == [log_file]
+
+
+def test_a_changed_log_is_told_in_one_line(eventsim, tmp_path):
+    log = tmp_path / "log.csv"
+    eventsim("run", "two-disks", "--log", log)
+    assert eventsim("state", log, "--at", 1).stderr == ""
+    log.write_text(log.read_text().replace(",pair,0,1,,4.0,", ",pair,0,1,,4.25,", 1))
+    result = eventsim("state", log, "--at", 1)
+    assert result.exit_code == 0
+    assert result.stderr.startswith(f"warning: {log} is not what its run wrote")
+    assert result.stderr.count("\n") == 1

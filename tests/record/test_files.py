@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eventsim.errors import LogError
+from eventsim.errors import LogError, LogWarning
 from eventsim.record import EventLog, load_log
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, ROW
 from eventsim.record.files import SUFFIXES, open_sink
+from eventsim.scene.gallery import gallery
+from eventsim.simulation import simulate
 from tests.record.logs import FLOATS, any_float, provenance, random_log, random_rows
 
 TEXT = (".csv", ".jsonl")
@@ -172,6 +175,27 @@ def test_what_is_no_log_is_refused_with_a_sentence(tmp_path: Path, suffix: str, 
     path.write_bytes(content)
     with pytest.raises(LogError, match=r"log\."):
         load_log(path)
+
+
+def test_a_changed_number_in_a_log_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    run = simulate(gallery("two-disks"), log=path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ending = load_log(path).provenance.ending
+    assert ending is not None
+    assert ending.digest == run.digest
+    path.write_text(path.read_text().replace(",pair,0,1,,4.0,", ",pair,0,1,,4.25,", 1))
+    with pytest.warns(LogWarning, match=r"log\.csv is not what its run wrote"):
+        load_log(path)
+
+
+def test_a_changed_number_in_a_compact_log_does_not_replay(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    simulate(gallery("two-disks"), log=path, compact=True)
+    path.write_text(path.read_text().replace(",0,22.5\n", ",0,22.25\n", 1))
+    with pytest.raises(LogError, match="does not fit its scene at event 7"):
+        load_log(path).expand()
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
