@@ -1,79 +1,69 @@
 """NPZ logs: one array per column (kind and wall as text) and the array `eventsim` with the metadata as JSON.
 
-Columns grow as raw files in the directory NAME.npz.part and are put together when the log is closed. Floats are
-stored as they are, whole numbers and texts deflated: those shrink, floats hardly do.
+Columns grow as raw files in the directory NAME.npz.part and are put together when the log is closed.  What hardly changes
+from row to row is deflated, in passing; the rest would shrink little and take more time than the simulation.
 """
 
 from __future__ import annotations
 
+import io
 import shutil
 import zipfile
 import zlib
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows
+from eventsim.record.files.archive import Entry, write_archive
 from eventsim.record.files.sink import PART, FileSink
 from eventsim.record.files.table import checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
 
 METADATA = "eventsim"
-CHUNK = 1 << 16
-"""Rows copied at a time."""
+DEFLATED = ("kind", "wall", "joint", "epoch")
 
 
 class NpzSink(FileSink):
     """Writes NPZ."""
 
-    _files: dict[str, IO[bytes]]
+    _entries: dict[str, Entry]
 
     def _open(self) -> None:
         if self.part.is_dir():
             shutil.rmtree(self.part)  # left over from a run that was killed
         self.part.mkdir()
-        self._files = {name: self._spill(name).open("wb") for name in self.columns}
+        self._labels = {name: labels_of(name, self.provenance.wall_names) for name in self.columns}
+        self._entries = {name: self._entry(name, name in DEFLATED) for name in self.columns}
 
     def _append(self, rows: Rows) -> None:
-        for name, file in self._files.items():
-            file.write(rows[name].tobytes())
+        for name, entry in self._entries.items():
+            labels = self._labels[name]
+            entry.write((rows[name] if labels is None else labels[rows[name]]).tobytes())
 
     def _finish(self, provenance: Provenance) -> None:
-        for file in self._files.values():
-            file.close()
+        text = np.frombuffer(provenance_text(provenance).encode("ascii"), dtype=np.uint8)
+        metadata = self._entry(METADATA, deflated=True)
+        metadata.write(text.tobytes())
+        metadata.finish(_header(text.dtype, len(text)))
+        for name, entry in self._entries.items():
+            labels = self._labels[name]
+            entry.finish(_header(ROW[name] if labels is None else labels.dtype, self._count))
         whole = self.part.with_name(self.part.name + PART)
-        with zipfile.ZipFile(whole, "w", allowZip64=True) as archive:
-            self._add_text(archive, provenance_text(provenance))
-            for name in self.columns:
-                self._add_column(archive, name)
+        write_archive(whole, [metadata, *self._entries.values()])
         shutil.rmtree(self.part)
         whole.replace(self.part)
 
     def _discard(self) -> None:
-        for file in self._files.values():
-            file.close()
+        for entry in self._entries.values():
+            entry.file.close()
         shutil.rmtree(self.part, ignore_errors=True)
 
-    def _spill(self, name: str) -> Path:
-        return self.part / name
-
-    def _add_text(self, archive: zipfile.ZipFile, text: str) -> None:
-        letters = np.frombuffer(text.encode("ascii"), dtype=np.uint8)
-        with archive.open(_entry(METADATA, zipfile.ZIP_DEFLATED), "w") as target:
-            _write_header(target, letters.dtype, len(letters))
-            target.write(letters.tobytes())
-
-    def _add_column(self, archive: zipfile.ZipFile, name: str) -> None:
-        labels = labels_of(name, self.provenance.wall_names)
-        stored = ROW[name].kind == "f"
-        entry = _entry(name, zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED)
-        with open(self._spill(name), "rb") as source, archive.open(entry, "w", force_zip64=True) as target:
-            _write_header(target, ROW[name] if labels is None else labels.dtype, self._count)
-            while chunk := source.read(CHUNK * ROW[name].itemsize):
-                target.write(chunk if labels is None else labels[np.frombuffer(chunk, ROW[name])].tobytes())
+    def _entry(self, name: str, deflated: bool) -> Entry:
+        return Entry(f"{name}.npy", self.part / name, deflated)
 
 
 def read_npz(path: Path) -> EventLog:
@@ -95,13 +85,9 @@ def read_npz(path: Path) -> EventLog:
     return checked_log(provenance, rows, path)
 
 
-def _entry(name: str, compression: int) -> zipfile.ZipInfo:
-    """Describe an entry with a fixed date, so that equal logs are equal files."""
-    entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-    entry.compress_type = compression
-    return entry
-
-
-def _write_header(target: IO[bytes], dtype: np.dtype[Any], count: int) -> None:
+def _header(dtype: np.dtype[Any], count: int) -> bytes:
+    """What an .npy file begins with."""
     header = {"descr": np.lib.format.dtype_to_descr(dtype), "fortran_order": False, "shape": (count,)}
+    target = io.BytesIO()
     np.lib.format.write_array_header_2_0(target, header)
+    return target.getvalue()

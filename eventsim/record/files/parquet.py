@@ -24,12 +24,19 @@ METADATA = b"eventsim"
 GROUP = 1 << 17
 """Rows of one row group; smaller blocks are collected."""
 
+TEXTS = ("kind", "wall")
+LEAN: dict[str, Any] = {"use_dictionary": list(TEXTS), "write_statistics": False, "compression": "none"}
+"""How columns are written: whole numbers as small differences, floats as they are.  Statistics, dictionaries of numbers and
+compression would take longer than the simulation, and gain less."""
+
 
 class ParquetSink(FileSink):
     """Writes parquet; kind and wall are dictionaries of text, missing is null."""
 
     def _open(self) -> None:
-        self._writer = pq.ParquetWriter(self.part, _schema(self.columns), store_schema=False)
+        whole = {name: "DELTA_BINARY_PACKED" for name in self.columns if name not in TEXTS and ROW[name].kind == "i"}
+        schema = _schema(self.columns)
+        self._writer = pq.ParquetWriter(self.part, schema, store_schema=False, column_encoding=whole, **LEAN)
         self._waiting: list[Rows] = []
 
     def _append(self, rows: Rows) -> None:
@@ -86,7 +93,7 @@ def read_parquet(path: Path) -> EventLog:
 
 def _schema(names: tuple[str, ...]) -> Any:
     text = pa.dictionary(pa.int32(), pa.string())
-    return pa.schema([(name, text if name in ("kind", "wall") else pa.from_numpy_dtype(ROW[name])) for name in names])
+    return pa.schema([(name, text if name in TEXTS else pa.from_numpy_dtype(ROW[name])) for name in names])
 
 
 def _array(rows: Rows, name: str, provenance: Provenance) -> Any:
