@@ -58,24 +58,11 @@ def simulate(
     from eventsim.measure import Meter  # only who measures pays for it
 
     meter = Meter(scene, None if measure is True else measure)
-    wishes.on_event = _both(meter.write, on_event)
+    wishes.takers.append(meter.write)
     run = engine_named(engine).run(scene, stop, wishes, **options)
     if run.time > scene.start_time:
         run.measures = meter.finish(run.time - scene.start_time)
     return run
-
-
-def _both(first: OnEvent, second: OnEvent | None) -> OnEvent:
-    """One after the other."""
-    if second is None:
-        return first
-    also = second
-
-    def tell(rows: Rows) -> None:
-        first(rows)
-        also(rows)
-
-    return tell
 
 
 def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:

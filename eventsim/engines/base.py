@@ -162,8 +162,8 @@ class Run:
 
     log_path: where the log was streamed to.  measures: where they were asked for.  stopped: `until`, `events`, `quiet` (no
     event ahead), `collapse`, `digits`, `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s:
-    simulating only; compile_s and write_s apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not
-    follow from its log.
+    simulating only; compile_s and write_s (waiting for rows to be written and measured) apart, seconds.  trajectory: samples,
+    of a stepped engine, whose motion does not follow from its log.
     """
 
     scene: Scene

@@ -19,6 +19,7 @@ from eventsim import __version__
 from eventsim.engines.base import OnEvent, Progress, Run, Session, Stop
 from eventsim.engines.collapse import TAIL, diagnosis
 from eventsim.engines.residuals import residuals_of
+from eventsim.engines.writer import Writer
 from eventsim.errors import EventsimError
 from eventsim.formulas.clock import clock_time
 from eventsim.record.digest import Digester
@@ -54,7 +55,10 @@ class Sink(Protocol):
 
 @dataclass(slots=True)
 class Wishes:
-    """What a caller wants to have besides the state: a log (in memory: True, or a path), a digest, to be told."""
+    """What a caller wants to have besides the state: a log (in memory: True, or a path), a digest, to be told.
+
+    on_event is called between two stints of the engine, takers beside it, in the writer's thread.
+    """
 
     log: bool | str | PathLike[str] = False
     compact: bool = False
@@ -62,12 +66,12 @@ class Wishes:
     progress: Progress | None = None
     on_event: OnEvent | None = None
     command: str | None = None
-    sinks: list[Sink] = field(default_factory=list)
+    takers: list[OnEvent] = field(default_factory=list)
 
     @property
     def rows(self) -> bool:
         """Whether anything wants the rows."""
-        return self.log is not False or self.digest or self.on_event is not None
+        return self.log is not False or self.digest or self.on_event is not None or bool(self.takers)
 
 
 def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishes) -> Run:
@@ -92,15 +96,19 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         sinks.append(open_sink(path, provenance, compact=wishes.compact))
     digester = Digester() if wishes.rows and (wishes.digest or wishes.log is not False) else None
     compiled_before = _compile_seconds(session)
+    digests = [] if digester is None else [digester.update]
+    writer = Writer([sink.write for sink in sinks] + digests + wishes.takers)
     try:
-        stopped, last_rows, elapsed, written = _simulate(session, stop, wishes, sinks, digester)
-        began = perf_counter()
+        stopped, last_rows, elapsed = _simulate(session, stop, wishes, writer)
         stopped, reason = diagnosed(session, stopped, last_rows)
+        writer.finish()
+        began = perf_counter()
         digest = None if digester is None else digester.hexdigest()
         for sink in sinks:
             sink.close(Ending(*session.clock, stopped, digest))
-        written += perf_counter() - began
+        written = writer.waited_s + perf_counter() - began
     except BaseException:
+        writer.abandon()
         for sink in sinks:
             sink.abandon()
         raise
@@ -168,12 +176,10 @@ def state_of(session: Session, stop: Stop | None = None, stopped: str | None = N
     return State(time, position, np.column_stack([motion.vx, motion.vy]))
 
 
-def _simulate(
-    session: Session, stop: Stop, wishes: Wishes, sinks: list[Sink], digester: Digester | None
-) -> tuple[str, Rows, float, float]:
-    """(why it stopped, the last rows, seconds simulating, seconds writing); in stints short enough to be interrupted."""
+def _simulate(session: Session, stop: Stop, wishes: Wishes, writer: Writer) -> tuple[str, Rows, float]:
+    """(why it stopped, the last rows, seconds simulating); in stints short enough to be interrupted."""
     budget = FIRST_BUDGET
-    elapsed = written = 0.0
+    elapsed = 0.0
     last_rows = blank_rows(0)
     with _interruptible() as interrupted:
         while True:
@@ -185,23 +191,18 @@ def _simulate(
                 budget *= 2
             elif stint > LONGEST_STINT:
                 budget = max(budget // 2, 1)
-            began = perf_counter()
             rows = session.take_rows()
             if len(rows):
                 last_rows = rows[-TAIL:] if len(rows) >= TAIL else np.concatenate([last_rows, rows])[-TAIL:]
-                for sink in sinks:
-                    sink.write(rows)
-                if digester is not None:
-                    digester.update(rows)
+                writer.write(rows)
                 if wishes.on_event is not None:
                     wishes.on_event(rows)
-            written += perf_counter() - began
             if stopped is None and interrupted():
                 stopped = "interrupted"
             if wishes.progress is not None:
                 _tell(wishes.progress, session, stop)
             if stopped is not None:
-                return stopped, last_rows, elapsed, written
+                return stopped, last_rows, elapsed
 
 
 def _tell(progress: Progress, session: Session, stop: Stop) -> None:

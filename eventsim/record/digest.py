@@ -31,9 +31,9 @@ class Digester:
             records[name] = rows[name]
         for name in FLOATS:
             values = rows[name] + 0.0  # -0.0 + 0.0 is 0.0
-            values[np.isnan(values)] = np.nan
+            np.copyto(values, np.nan, where=np.isnan(values))
             records[name] = values
-        self._sha.update(records.tobytes())
+        self._sha.update(records.view(np.uint8).data)
 
     def hexdigest(self) -> str:
         """Return the digest of all rows so far, 64 hexadecimal digits."""

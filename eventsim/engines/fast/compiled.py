@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from time import perf_counter
 from types import ModuleType
@@ -101,8 +101,8 @@ part = njit(error_model="numpy")
 
 
 def kernel(function: Callable[..., Any]) -> Any:
-    """A compiled function that Python calls; kept on disk where that is possible."""
-    return _kept(njit, function)
+    """A compiled function that Python calls; kept on disk where that is possible.  Other threads go on meanwhile."""
+    return _kept(partial(njit, nogil=True), function)
 
 
 def _kept(compiler: Callable[..., Any], function: Callable[..., Any], *signature: Any) -> Any:

@@ -28,8 +28,8 @@ from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import clock_times
 from eventsim.scene.stage import Stage
 
-BUFFER = 1 << 16
-"""Rows in the buffer that kernels fill."""
+BUFFER = 1 << 13
+"""Rows in the buffer that kernels fill: a megabyte, which stays in the caches until it is drained."""
 
 FEW_DISKS = 24
 """Below it, looking at all disks is as fast as cells."""
