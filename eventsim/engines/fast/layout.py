@@ -123,9 +123,10 @@ STATUS_BUDGET, STATUS_LIMIT, STATUS_EVENTS, STATUS_ROWS = 0, 1, 2, 3
 STATUS_TIE, STATUS_FULL, STATUS_STUCK, STATUS_IDLE = 4, 5, 6, 7
 """Contacts of equal time; a full cell, or a disk that has left the grid; an instant does not end; a long time without events."""
 
-DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS = range(12)
+DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS, EPOCH = range(13)
 """Places in `counts`.  ROW_COUNT: rows in the buffer; ROOM: how many fit; DISK: the one that a
-status is about."""
+status is about; EPOCH: of the clock."""
 
-NOW, DEEPEST, OUTER_X, OUTER_Y = range(4)
-"""Places in `sums`: the time, the deepest overlap, momentum from outside."""
+NOW, DEEPEST, OUTER_X, OUTER_Y, EPOCH_BEGIN, EPOCH_ERROR = range(6)
+"""Places in `sums`: the time, the deepest overlap, momentum from outside; where the epoch begins on the scene's clock, and
+the rounding error of that."""

@@ -17,6 +17,9 @@ from eventsim.engines.fast.layout import (
     DISK,
     DOWN,
     DUE,
+    EPOCH,
+    EPOCH_BEGIN,
+    EPOCH_ERROR,
     EVENTS,
     LEFT,
     NOW,
@@ -102,6 +105,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
     """Handle events before `limit` (a time) until `target` rows in all, `budget` steps, or no room for a row; the status."""
     m = pointers(arrays)
     day, now, deepest = counts[DAY], sums[NOW], sums[DEEPEST]
+    clock = counts[EPOCH], sums[EPOCH_BEGIN], sums[EPOCH_ERROR]
     begun = counts[EVENTS]
     events, walls, wraps, stale = begun, 0, 0, 0
     first_slot = counts[ROW_COUNT] - begun
@@ -138,7 +142,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             else:
                 take(m, i)
                 take(m, code)
-                overlap = resolve_pair(m, rules, sums, i, code, now, events, first_slot + events)
+                overlap = resolve_pair(m, rules, sums, i, code, now, clock, events, first_slot + events)
                 deepest = overlap if overlap > deepest else deepest
                 events += 1
                 predict(m, grid, rules, code, now, now)
@@ -148,7 +152,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 status = STATUS_TIE
                 break
             take(m, i)
-            resolve_wall(m, rules, sums, i, code, now, events, first_slot + events)
+            resolve_wall(m, rules, sums, i, code, now, clock, events, first_slot + events)
             walls += 1
             events += 1
         else:

@@ -126,7 +126,7 @@ def _image_due(m, rules, a, b, t):
 
 
 @inline
-def resolve_pair(m, rules, sums, i, j, t, number, slot):
+def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     """Resolve the contact of disks i and j at time t; its overlap in reaches."""
     a, b = _in_order(m, i, j, m.mass, m.rows)
     xa, ya = place(m, rules, a, t)
@@ -147,7 +147,7 @@ def resolve_pair(m, rules, sums, i, j, t, number, slot):
     reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
     overlap = (reach - distance) / reach
     _book_pair(sums, a, b, -(q * reduced) * dx, -(q * reduced) * dy, m.mass)
-    write_row(m, number, slot, a, b, -1, -(q * reduced) * distance, t, m.rows)
+    write_row(m, number, slot, a, b, -1, -(q * reduced) * distance, t, clock, m.rows)
     return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
 
 
@@ -178,7 +178,7 @@ def _carefully_parted(m, a, b, dx, dy):
 
 
 @part
-def resolve_wall(m, rules, sums, i, code, t, number, slot):
+def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     """Resolve the contact of disk i with the wall that the code of the event stands for."""
     wall_code = WALL - code
     place_, side = wall_code // 2, -1 if wall_code % 2 else 1
@@ -209,7 +209,7 @@ def resolve_wall(m, rules, sums, i, code, t, number, slot):
         sums[OUTER_X] += mass * du
         sums[OUTER_Y] += mass * dw
         impulse = mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))
-    write_row(m, number, slot, i, -1, wall, impulse, t, m.rows)
+    write_row(m, number, slot, i, -1, wall, impulse, t, clock, m.rows)
 
 
 @inline

@@ -16,15 +16,18 @@ SIZE = ROW.itemsize
 EVENT, KIND, A, B, WALL, XA, YA, VXA, VYA = (
     _AT[k] for k in ("event", "kind", "a", "b", "wall", "xa", "ya", "vxa", "vya")
 )
-XB, YB, VXB, VYB, IMPULSE, JOINT, REMAINDER = (
-    _AT[k] for k in ("xb", "yb", "vxb", "vyb", "impulse", "joint", "remainder")
+XB, YB, VXB, VYB, IMPULSE, JOINT, TIME, EPOCH, REMAINDER = (
+    _AT[k] for k in ("xb", "yb", "vxb", "vyb", "impulse", "joint", "time", "epoch", "remainder")
 )
 PAIR_KIND, WALL_KIND = int(Kind.PAIR), int(Kind.WALL)
 
 
 @inline
-def write_row(m, number, slot, a, b, wall, impulse, t, rows):
-    """Write row `number` of the log, if rows are kept; a has the smaller label.  Python fills in the time and the epoch."""
+def write_row(m, number, slot, a, b, wall, impulse, t, clock, rows):
+    """Write row `number` of the log, if rows are kept; a has the smaller label.
+
+    clock: the epoch, and as a sum of two numbers where it begins on the scene's clock.
+    """
     if rows is None:
         return
     at = SIZE * slot
@@ -50,4 +53,15 @@ def write_row(m, number, slot, a, b, wall, impulse, t, rows):
         put(rows, at + VYB, math.nan)
     put(rows, at + IMPULSE, impulse)
     put(rows, at + JOINT, np.int64(-1))
+    epoch, begin, error = clock
+    put(rows, at + TIME, _sum_of_three(begin, t, error))
+    put(rows, at + EPOCH, np.int64(epoch))
     put(rows, at + REMAINDER, t)
+
+
+@inline
+def _sum_of_three(a, b, small):
+    """a + b + small, the error of the first sum carried along: as `eventsim.record.times.clock_times`."""
+    total = a + b
+    back = total - a
+    return total + (small + ((a - (total - back)) + (b - back)))

@@ -25,7 +25,7 @@ from eventsim.formulas.clock import FIRST_WINDOW, next_window, remainder_since, 
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import ROW, Floats, Rows
-from eventsim.record.times import clock_times
+from eventsim.record.times import two_sum
 from eventsim.scene.stage import Stage
 
 BUFFER = 1 << 13
@@ -67,8 +67,8 @@ class FastSession:
         self.counters = Counters()
         self.reason: str | None = None
         self._keep_rows = keep_rows
-        self._counts = np.zeros(12, np.int64)
-        self._sums = np.zeros(4)
+        self._counts = np.zeros(13, np.int64)
+        self._sums = np.zeros(6)
         self._sizes = sizes
         self._depth = layout.USUAL_DEPTH
         straight = stage.gravity is None
@@ -86,7 +86,6 @@ class FastSession:
         self._blocks: list[Rows] = []
         self.compile_s = 0.0
         self._marked = False
-        self._dated = 0
         self._days = self._steps = 0
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
@@ -256,32 +255,21 @@ class FastSession:
         counters.deepest_overlap = float(self._sums[layout.DEEPEST])
         counters.outer_momentum = [float(self._sums[layout.OUTER_X]), float(self._sums[layout.OUTER_Y])]
 
-    def _date_rows(self) -> None:
-        """Note the epoch in the rows of the buffer that do not have it yet."""
-        count = int(self._counts[layout.ROW_COUNT])
-        if self._keep_rows and count > self._dated:
-            self._buffer["epoch"][self._dated : count] = self.state.epoch
-        self._dated = count
-
     def _flush(self) -> None:
         """Hand the rows of the buffer on; the kernels get a new one."""
-        self._date_rows()
-        count = self._dated
-        self._counts[layout.ROW_COUNT] = self._dated = 0
+        count = int(self._counts[layout.ROW_COUNT])
+        self._counts[layout.ROW_COUNT] = 0
         if count and self._keep_rows:
-            rows = self._buffer[:count]
-            rows["time"] = clock_times(rows["epoch"], rows["remainder"], self.stage.epoch_length, self.stage.start_time)
-            self._blocks.append(rows)
+            self._blocks.append(self._buffer[:count])
             self._buffer = np.empty(BUFFER, ROW)
             self._arrays = self._arrays._replace(rows=self._buffer.view(np.uint8))
 
     def _turn_over(self) -> None:
         state = self.state
         self.counters.turnovers += 1
-        self._date_rows()
         end = state.window_end
         turn_over(self._arrays, self._grid, self._rules, end)
-        state.epoch += 1 << state.window
+        self._set_epoch(state.epoch + (1 << state.window))
         state.window = next_window(state.window, state.window_rows, state.n, state.window_cap)
         state.window_end = window_length(state.window, state.epoch_length)
         state.window_rows = 0
@@ -290,6 +278,11 @@ class FastSession:
             self._choose_days()
         schedule(self._arrays, self._grid, self._counts, 0.0)
         self._predict(0, state.n, 0.0)
+
+    def _set_epoch(self, epoch: int) -> None:
+        self.state.epoch = self._counts[layout.EPOCH] = epoch
+        begin = two_sum(epoch * self.stage.epoch_length, self.stage.start_time)
+        self._sums[layout.EPOCH_BEGIN], self._sums[layout.EPOCH_ERROR] = begin
 
     def _set_now(self, now: float) -> None:
         self.state.now = now
@@ -440,7 +433,8 @@ class FastSession:
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot, this engine's or another's."""
         s = self.state
-        s.epoch, s.window, s.window_rows = saved.epoch, saved.window, saved.window_rows
+        self._set_epoch(saved.epoch)
+        s.window, s.window_rows = saved.window, saved.window_rows
         s.window_end = window_length(s.window, s.epoch_length)
         self._set_now(saved.now)
         for name in self._columns:
@@ -456,7 +450,8 @@ class FastSession:
     def _begin(self) -> None:
         """Go to the beginning, where all but the flights is zero."""
         s, stage = self.state, self.stage
-        s.epoch, s.window, s.window_rows = 0, FIRST_WINDOW, 0
+        self._set_epoch(0)
+        s.window, s.window_rows = FIRST_WINDOW, 0
         s.window_end = window_length(s.window, s.epoch_length)
         self._set_now(0.0)
         for name in ("x", "y", "vx", "vy"):
