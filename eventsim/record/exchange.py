@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +10,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, State
-from eventsim.record.files.sink import PART
+from eventsim.record.files.whole import whole_file
 from eventsim.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -31,16 +30,11 @@ def write_exchange(path: Path, scene: Scene, states: Sequence[State]) -> None:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise EventsimError(f"{path}: a trajectory ends in {' or '.join(SUFFIXES)}")
-    part = path.with_name(path.name + PART)
-    try:
+    with whole_file(path) as part:
         if suffix == ".xyz":
             _write_xyz(part, scene, states)
         else:
             _write_gsd(part, scene, states)
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise EventsimError(f"{path}: cannot be written ({error.strerror or error})") from None
 
 
 def species_of(scene: Scene) -> Any:

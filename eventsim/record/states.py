@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 from eventsim.errors import EventsimError
 from eventsim.record import exchange
 from eventsim.record.events import Column, State
-from eventsim.record.files.sink import PART
+from eventsim.record.files.whole import whole_file
 from eventsim.scene import Scene
 
 SUFFIXES = (".csv", ".npz", *exchange.SUFFIXES)
@@ -50,17 +49,11 @@ def write_states(path: str | PathLike[str], scene: Scene, states: Sequence[State
         exchange.write_exchange(file, scene, states)
         return
     columns = state_columns(scene, states)
-    part = file.with_name(file.name + PART)
-    try:
-        with part.open("wb") as target:
-            if file.suffix.lower() == ".npz":
-                np.savez(target, allow_pickle=False, **columns)
-            else:
-                write_csv(target, columns)
-        os.replace(part, file)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise EventsimError(f"{file}: cannot be written ({error.strerror or error})") from None
+    with whole_file(file) as part, part.open("wb") as target:
+        if file.suffix.lower() == ".npz":
+            np.savez(target, allow_pickle=False, **columns)
+        else:
+            write_csv(target, columns)
 
 
 def write_csv(target: IO[bytes], columns: dict[str, Column]) -> None:

@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
+from eventsim.record.files.whole import whole_file
 from eventsim.record.log import EventLog
 from eventsim.record.replay import Replay
 from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4
-from eventsim.show.output import suffix_of, whole_file
+from eventsim.show.output import suffix_of
 from eventsim.show.picture import Look, Picture
 from eventsim.show.player.page import page, write_page
 from eventsim.show.strip import write_strip

@@ -10,7 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from eventsim.show.output import suffix_of, whole_file
+from eventsim.record.files.whole import whole_file
+from eventsim.show.output import suffix_of
 from eventsim.show.palette import LIGHT
 from eventsim.validate.stress.catalogue import CASES
 from eventsim.validate.stress.verdict import Verdict, Word

@@ -5,12 +5,11 @@ from __future__ import annotations
 import csv
 import json
 import math
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eventsim.errors import EventsimError
-from eventsim.record.files.sink import PART
+from eventsim.record.files.whole import whole_file
 from eventsim.sweep.task import Cell, Row
 
 SUFFIXES = (".csv", ".parquet")
@@ -34,8 +33,7 @@ def columns_of(rows: Sequence[Row]) -> list[str]:
 def write_table(path: Path, rows: Sequence[Row], provenance: Mapping[str, object]) -> None:
     """Write rows to .csv (missing: empty; a first line that begins with "# " carries the provenance) or .parquet."""
     text = json.dumps(provenance)
-    part = path.with_name(path.name + PART)
-    try:
+    with whole_file(path) as part:
         if path.suffix.lower() == ".csv":
             with part.open("w", newline="", encoding="utf-8") as file:
                 file.write(f"# {text}\n")
@@ -47,10 +45,6 @@ def write_table(path: Path, rows: Sequence[Row], provenance: Mapping[str, object
 
             columns = {key: [_missing(row.get(key)) for row in rows] for key in columns_of(rows)}
             write_plain_table(part, columns, {"eventsim_sweep": text})
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise EventsimError(f"{path}: cannot be written ({error.strerror or error})") from None
 
 
 def load_table(path: str | Path) -> list[Row]:

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim import __version__
-from eventsim.errors import EventsimError
-from eventsim.record.files.sink import PART
+from eventsim.record.files.whole import whole_file
 from eventsim.validate.chart import Chart
 from eventsim.validate.compare import Comparison, Line
 
@@ -102,13 +101,8 @@ def write_csv(path: Path, rows: Sequence[Mapping[str, Any]], comments: Sequence[
     writer = csv.DictWriter(text, keys, lineterminator="\n", restval="")
     writer.writeheader()
     writer.writerows({key: "" if value is None else _plain(value) for key, value in row.items()} for row in rows)
-    part = path.with_name(path.name + PART)
-    try:
+    with whole_file(path) as part:
         part.write_text(text.getvalue(), encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise EventsimError(f"{path}: cannot be written ({error.strerror or error})") from None
 
 
 def _plain(value: Any) -> Any:

@@ -12,10 +12,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from eventsim.errors import EventsimError
+from eventsim.record.files.whole import whole_file
 from eventsim.record.log import EventLog
 from eventsim.show.figures import TITLES
 from eventsim.show.figures.style import new_figure
-from eventsim.show.output import suffix_of, whole_file
+from eventsim.show.output import suffix_of
 
 SUFFIXES = (".png", ".svg", ".pdf")
 

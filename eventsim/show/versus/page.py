@@ -9,8 +9,9 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from eventsim.record.files.whole import whole_file
 from eventsim.show.figures.write import SUFFIXES
-from eventsim.show.output import suffix_of, whole_file
+from eventsim.show.output import suffix_of
 
 
 def save_page(figure: Figure, path: str | PathLike[str]) -> None:
