@@ -6,11 +6,13 @@ import math
 
 import click
 
+from eventsim.cli.engine_options import DT_HELP, KNOWN, OPTION_HELP, engine_options
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
 from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES, writable
 
 FIRST_SCENE = "break"
+ENGINE_HELP = f"Which engine simulates: auto, reference, fast, certified; with time steps: {', '.join(KNOWN)}."
 EARLY = ("collapse", "digits", "undecided tie")
 EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 
@@ -27,7 +29,9 @@ EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 @click.option("--log", metavar="FILE", help=f"Keep every event in FILE, one of {', '.join(LOG_SUFFIXES)}.")
 @click.option("--compact", is_flag=True, help="Log only what replay cannot compute.")
 @click.option("--state", metavar="FILE", help="Write the final state to FILE (.csv or .npz).")
-@click.option("--engine", default="auto", show_default=True, metavar="NAME", help="Which engine simulates.")
+@click.option("--engine", default="auto", show_default=True, metavar="NAME", help=ENGINE_HELP)
+@click.option("--dt", type=float, metavar="DT", help=DT_HELP)
+@click.option("--option", "engine_settings", multiple=True, metavar="KEY=VALUE", help=OPTION_HELP)
 @click.option("--digest", is_flag=True, help="Compute the log's digest also where no log is kept.")
 @click.option("--horizon", is_flag=True, help="Estimate until when the float64 trajectory is the true one.")
 @json_option
@@ -42,6 +46,8 @@ def command(
     compact: bool,
     state: str | None,
     engine: str,
+    dt: float | None,
+    engine_settings: tuple[str, ...],
     digest: bool,
     horizon: bool,
     as_json: bool,
@@ -59,6 +65,7 @@ def command(
       eventsim run galperin --set mass_ratio=10000 --json   pi from a hundred to one
       eventsim run gas --events 5000 --state end.csv        where all disks are in the end
       eventsim run gas --events 5000 --horizon              how long to believe every single contact
+      eventsim run gas --engine frames --dt 0.01            what an engine with time steps makes of it
 
     \b
     Keys of --json:
@@ -91,6 +98,8 @@ def command(
     if until is not None and math.isnan(until):
         raise click.UsageError("--until nan: must be a time")
 
+    options = engine_options(engine, dt, engine_settings)
+
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.summary import summary_data, summary_text
@@ -114,6 +123,7 @@ def command(
             digest=digest,
             progress=progress,
             command=click.get_current_context().obj,
+            **options,
         )
     estimate = None
     if horizon:

@@ -11,12 +11,13 @@ import numpy as np
 
 from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Session, Stop
+from eventsim.engines.drive import Wishes
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
 from eventsim.scene import Scene
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import Stage, stage_of
-from eventsim.validate.compare import Tell, truth_to_compare
+from eventsim.validate.compare import Comparison, Tell, compare, truth_to_compare
 from eventsim.validate.entrants import ENTRANTS, Entrant
 from eventsim.validate.follow import follow, position_errors
 from eventsim.validate.pile import pile
@@ -29,6 +30,9 @@ CONTACTS = 3.0
 CHAOS_CONTACTS = 48
 CHAOS_STEPS = (0.1, 0.01)
 """The panel on chaos: contacts per disk, and steps (in radii) of `stepped-located`."""
+
+LOSSES_UNTIL = 0.3
+"""The panels on losses: how long the gas of 300 disks is followed; some 900 contacts are compared one by one."""
 
 SIZES = (30, 100, 300, 1000, 3000)
 RATE_CONTACTS, RATE_STEP = 4.0, 0.05
@@ -47,9 +51,13 @@ class Chaos:
 
 @dataclass(slots=True)
 class Chart:
-    """All that the figure shows; rates: contacts per second against the number of disks, per engine."""
+    """All that the figure shows.
+
+    losses: contacts and energy of the gas against the step.  rates: contacts per second against the number of disks, per engine.
+    """
 
     tasks: list[Curves] = field(default_factory=list)
+    losses: Comparison | None = None
     chaos: Chaos | None = None
     rates: dict[str, list[tuple[int, float]]] = field(default_factory=dict)
 
@@ -85,10 +93,11 @@ def task_of(
 def chart_of(
     tasks: Sequence[Task], patience_s: float, further: bool = True, tell: Tell = lambda _: None
 ) -> Chart:
-    """Measure all tasks; further: also chaos and rates, on the gas."""
+    """Measure all tasks; further: also losses, chaos and rates, on the gas."""
     entrants = list(ENTRANTS.values())
     chart = Chart([curves(task, entrants, patience_s, tell) for task in tasks])
     if further:
+        chart.losses = compare(gallery("gas"), entrants, until=LOSSES_UNTIL, patience_s=patience_s, tell=tell)
         tell("chaos")
         chart.chaos = chaos()
         chart.rates = rates(patience_s, tell)
@@ -105,7 +114,7 @@ def chaos(n: int = 100) -> Chaos:
     entrant = ENTRANTS["stepped-located"]
     for step in CHAOS_STEPS:
         dt = step * truth.radius / truth.speed
-        run = follow(STEPPED[entrant.engine].open(truth.stage, keep_rows=False, **entrant.at(dt)), truth.times.tolist())
+        run = follow(STEPPED[entrant.engine].open(truth.stage, keep_rows=True, **entrant.at(dt)), truth.times.tolist())
         errors[f"{entrant.label}, {step:g} radii a step"] = position_errors(truth.stage, run, truth.run)
     growing = (truth.uncertainty > 1e-13) & (truth.uncertainty < 1e-3)
     slope = float(np.polyfit(contacts[growing], np.log2(truth.uncertainty[growing]), 1)[0]) if growing.sum() > 2 else math.nan
@@ -118,10 +127,10 @@ def rates(patience_s: float, tell: Tell = lambda _: None) -> dict[str, list[tupl
     for n in SIZES:
         scene = gallery("gas", n=n)
         stage = stage_of(scene)
-        probe = ENGINES[best_engine()].run(scene, Stop(events=4 * n))
+        probe = ENGINES[best_engine()].run(scene, Stop(events=4 * n), Wishes(log=True))
         free = probe.time * n / (2 * probe.counters.pair_contacts + probe.counters.wall_contacts)
         until = RATE_CONTACTS * free
-        truth = follow(ENGINES[best_engine()].open(stage, keep_rows=False), [until])
+        truth = follow(ENGINES[best_engine()].open(stage, keep_rows=True), [until])
         contacts = truth.counters.pair_contacts + truth.counters.wall_contacts
         speed = float(np.sqrt(np.mean(stage.vx**2 + stage.vy**2)))
         dt = RATE_STEP * float(stage.radius[0]) / speed
@@ -145,10 +154,10 @@ def _contestants(dt: float) -> list[tuple[str, Callable[[Stage], Session]]]:
     """Who takes part in the panel on rates: (label, how to open it on a stage)."""
 
     def event_driven(name: str) -> Callable[[Stage], Session]:
-        return lambda stage: ENGINES[name].open(stage, keep_rows=False)
+        return lambda stage: ENGINES[name].open(stage, keep_rows=True)
 
     def stepped(entrant: Entrant) -> Callable[[Stage], Session]:
-        return lambda stage: STEPPED[entrant.engine].open(stage, keep_rows=False, **entrant.at(dt))
+        return lambda stage: STEPPED[entrant.engine].open(stage, keep_rows=True, **entrant.at(dt))
 
     named = [(name, event_driven(name)) for name in ("reference", "fast")]
     return named + [(label, stepped(ENTRANTS[label])) for label in ("stepped", "frames", "pymunk")]

@@ -1,133 +1,127 @@
-"""What a chart comes to: advantages as numbers, and where a stepped engine is the right choice, in sentences."""
+"""What a chart comes to: the five questions that a reader has, each with its answer in a sentence or two."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
+from eventsim.validate.advantages import Advantage, advantages, amount, own_points, stepped_labels, time_at
 from eventsim.validate.chart import Chart
-from eventsim.validate.precision import Curves, Point
-
-EVENT_DRIVEN = ("fast", "reference")
-WANTED = 1e-2
-"""The error at which times are compared: diameters for trajectories, relative for pressures, see `precision` for unrest."""
+from eventsim.validate.precision import Curves
+from eventsim.validate.verdict import ALL, blindest, whole_from
 
 
-@dataclass(frozen=True, slots=True)
-class Advantage:
-    """The event-driven engine against another one on one scene.
+class Answer(NamedTuple):
+    """A question and what the chart says to it."""
 
-    time_ratio: the other's time over its own, both at an error of WANTED or less; inf where only the other one fails to
-    reach it, 0 where only the event-driven engine fails, nan where both do.  error_ratio: the other's error over its own at
-    equal time; nan where the other one has no run so short.
+    question: str
+    answer: str
+
+    def __str__(self) -> str:
+        return f"{self.question} {self.answer}"
+
+
+def conclusions(chart: Chart) -> list[Answer]:
+    """The answers that this chart can give."""
+    every = [_engine(chart), _steps(chart), _energy(chart), _float64(chart), _stepped_wins(chart)]
+    return [answer for answer in every if answer is not None]
+
+
+def _engine(chart: Chart) -> Answer | None:
+    """On the scenes whose trajectories are compared: who reaches the error first, and who comes next."""
+    known = [a for a in advantages(chart) if a.scene in _measured(chart, "trajectory")]
+    if not known:
+        return None
+    wanted = known[0].wanted
+    own = {curves.task.name: own_points(curves)[0].label for curves in chart.tasks if own_points(curves)}
+    ahead = [_ahead(scene, [a for a in known if a.scene == scene]) for scene in dict.fromkeys(a.scene for a in known)]
+    name = own[known[0].scene]
+    question = f"Which engine for an error of {wanted:g}?"
+    if any(a.bound == "" and a.time_ratio < 1.0 for a in known):
+        return Answer(question, f"Against event-driven ({name}): {'; '.join(ahead)}.")
+    return Answer(question, f"Event-driven ({name}), with ten digits to spare: {'; '.join(ahead)}.")
+
+
+def _measured(chart: Chart, measure: str) -> list[str]:
+    return [curves.task.name for curves in chart.tasks if curves.task.measure == measure]
+
+
+def _ahead(scene: str, those: list[Advantage]) -> str:
+    """How the nearest stepped engine does on one scene."""
+    reached = [a for a in those if a.bound == "" and not math.isnan(a.time_ratio)]
+    if reached:
+        nearest = min(reached, key=lambda a: a.time_ratio)
+        return f"on {scene} the next, {nearest.label}, takes {amount(nearest.time_ratio)} x the time"
+    most = max((a.time_ratio for a in those if a.bound == ">"), default=math.nan)
+    return f"on {scene} no other reached it" + ("" if math.isnan(most) else f" in up to {amount(most)} x the time")
+
+
+def _steps(chart: Chart) -> Answer | None:
+    """The largest step with which each engine finds all but one in a hundred contacts."""
+    if chart.losses is None:
+        return None
+    found, never = whole_from(chart.losses)
+    parts = [f"{line.label} {line.step:.2g}" for line in found]
+    text = f"More than {1.0 - ALL:.0%} are missed where a disk flies more than so many radii a step: {', '.join(parts)}."
+    lost = [f"{line.label} (even at {line.step:.2g}, {line.census.share(line.census.missed):.0%})" for line in never]
+    text = (text if parts else "") + (f" With every step tried: {', '.join(lost)}." if lost else "")
+    return Answer("At which step are contacts lost?", text.strip())
+
+
+def _energy(chart: Chart) -> Answer | None:
+    """The run that loses most while its energy looks perfect."""
+    blind = [] if chart.losses is None else blindest(chart.losses)
+    if not blind:
+        return None
+    worst = blind[0]
+    return Answer(
+        "What does energy hide?",
+        f"Lost contacts. {worst.label} at {worst.step:.2g} radii a step keeps it to the last bits and misses "
+        f"{worst.census.share(worst.census.missed):.0%} of the contacts; {len(blind)} runs are of this kind.",
+    )
+
+
+def _float64(chart: Chart) -> Answer | None:
+    if chart.chaos is None or math.isnan(chart.chaos.slope):
+        return None
+    return Answer(
+        "Where does float64 end?",
+        f"After {chart.chaos.horizon:.0f} contacts of each disk in this gas: {chart.chaos.slope:.2g} bits are lost in each. "
+        "From there on only statistics are true, or the certified engine with more bits.",
+    )
+
+
+def _stepped_wins(chart: Chart) -> Answer | None:
+    """Where a stepped engine is nearer to the truth in less time, and where the best of them comes nearest to that."""
+    places = [win for curves in chart.tasks if (win := winning(curves)) is not None]
+    question = "Where does a stepped engine win?"
+    if not places:
+        return Answer(question, "On none of these scenes.") if advantages(chart) else None
+    parts = [f"on the {win.scene} {win.label} is within {win.error:.1g} of rest {amount(win.ratio)} x sooner" for win in places]
+    return Answer(question, f"Where contacts last: {'; '.join(parts)}. Event-driven pays for ever more contacts there.")
+
+
+class Win(NamedTuple):
+    """Where a stepped engine is ahead: it came to an error that an event-driven run had, in a ratio-th of its time.
+
+    begins: the error below which a stepped engine is the faster one.
     """
 
     scene: str
     label: str
-    time_ratio: float
-    error_ratio: float
+    error: float
+    ratio: float
+    begins: float
 
 
-def best_event_driven(curves: Curves) -> list[Point]:
-    """The points of the fastest event-driven engine that took part."""
-    for label in EVENT_DRIVEN:
-        if curves.of(label):
-            return curves.of(label)
-    return []
-
-
-def time_at(points: Sequence[Point], error: float) -> float:
-    """The least time for which an error was reached; inf where it was not."""
-    return min((point.elapsed for point in points if point.error <= error), default=math.inf)
-
-
-def error_at(points: Sequence[Point], elapsed: float) -> float:
-    """The least error that was reached within a time; nan where no run was so short."""
-    return min((point.error for point in points if point.elapsed <= elapsed), default=math.nan)
-
-
-def advantages(chart: Chart) -> list[Advantage]:
-    """The event-driven engine against every stepped one, scene by scene."""
-    found = []
-    for curves in chart.tasks:
-        own = best_event_driven(curves)
-        if not own:
-            continue
-        reference = min(own, key=lambda point: point.error)
-        mine = time_at(own, WANTED)
-        for label in curves.labels:
-            if label in (*EVENT_DRIVEN, "certified"):
-                continue
-            points = curves.of(label)
-            theirs = time_at(points, WANTED)
-            ratio = math.nan if math.isinf(mine) and math.isinf(theirs) else theirs / mine
-            errors = error_at(points, reference.elapsed) / reference.error
-            found.append(Advantage(curves.task.name, label, ratio, errors))
-    return found
-
-
-def conclusions(chart: Chart) -> list[str]:
-    """The sentences of the figure, one for each question that a reader has."""
-    return [*_scenes(chart), *_float64(chart), *_pile(chart)]
-
-
-def _scenes(chart: Chart) -> list[str]:
-    """On each scene with a truth: the advantage at equal error and at equal time."""
-    sentences = []
-    every = advantages(chart)
-    for curves in chart.tasks:
-        if curves.task.measure == "unrest":
-            continue
-        own = best_event_driven(curves)
-        others = [advantage for advantage in every if advantage.scene == curves.task.name]
-        if not own or not others:
-            continue
-        reached = [a for a in others if 0.0 < a.time_ratio < math.inf]
-        nearest = min(reached, key=lambda a: a.time_ratio, default=None)
-        at_time = [a for a in others if not math.isnan(a.error_ratio)]
-        closest = min(at_time, key=lambda a: a.error_ratio, default=None)
-        text = f"{curves.task.name}: error {WANTED:g} is reached by "
-        if nearest is None:
-            text += f"{own[0].label} alone"
-        elif nearest.time_ratio >= 1.0:
-            text += f"{own[0].label} {nearest.time_ratio:,.0f} x faster than by {nearest.label}"
-        else:
-            text += f"{nearest.label} {1.0 / nearest.time_ratio:,.1f} x faster than by {own[0].label}"
-        if closest is not None:
-            text += f"; in equal time {closest.label}, the best, errs {closest.error_ratio:.0e} x as much"
-        sentences.append(text + ".")
-    return sentences
-
-
-def _float64(chart: Chart) -> list[str]:
-    if chart.chaos is None or math.isnan(chart.chaos.slope):
-        return []
-    return [
-        f"float64 ends after {chart.chaos.horizon:.0f} contacts a disk: {chart.chaos.slope:.2g} bits are lost in each; "
-        "after that only statistics are true, or the certified engine."
+def winning(curves: Curves) -> Win | None:
+    """The largest win of a stepped engine on a scene; None where there is none."""
+    wins = [
+        Win(curves.task.name, label, point.error, point.elapsed / time_at(curves.of(label), point.error), point.error)
+        for label in stepped_labels(curves)
+        for point in own_points(curves)
     ]
-
-
-def _pile(chart: Chart) -> list[str]:
-    """Where a stepped engine wins: long contacts."""
-    sentences = []
-    for curves in chart.tasks:
-        own = best_event_driven(curves)
-        if curves.task.measure != "unrest" or not own:
-            continue
-        wins = [
-            (point.elapsed / time_at(curves.of(label), point.error), point.error, label)
-            for label in curves.labels
-            if label not in EVENT_DRIVEN
-            for point in own
-        ]
-        ratio, error, label = max(wins, default=(0.0, 0.0, ""))
-        if ratio > 1.0:
-            sentences.append(
-                f"{curves.task.name}: here a stepped engine wins. {label} is within {error:.0e} of rest {ratio:,.0f} x sooner: "
-                f"{own[0].label} pays for each of ever more contacts, and has no state of rest."
-            )
-        else:
-            sentences.append(f"{curves.task.name}: no stepped engine was nearer to rest in less time.")
-    return sentences
+    wins = [win for win in wins if win.ratio > 1.0]
+    if not wins:
+        return None
+    return max(wins, key=lambda win: win.ratio)._replace(begins=max(win.error for win in wins))

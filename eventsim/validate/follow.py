@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from time import perf_counter
+from time import thread_time
 
 import numpy as np
 
@@ -23,7 +23,8 @@ class Followed:
     """What an engine did.
 
     times: (T,) on the scene's clock, those that it reached.  position, velocity: (T, n, 2) then.  rows: its log.
-    elapsed_s: simulating only.  stopped: the reason where it did not reach the last time, else None.
+    elapsed_s: simulating only, in CPU seconds: what a stopwatch shows where nothing else runs, and what other programs do not
+    change.  stopped: the reason where it did not reach the last time, else None.
     """
 
     times: Floats
@@ -37,16 +38,16 @@ class Followed:
 
 
 def follow(session: Session, times: Sequence[float], patience_s: float = float("inf")) -> Followed:
-    """Let a session run through increasing times; it is given up when it takes longer than `patience_s` seconds."""
+    """Let a session run through increasing times; it is given up when it takes longer than `patience_s` CPU seconds."""
     blocks = [blank_rows(0)]
     states = []
     elapsed, stopped, before = 0.0, None, _compiled(session)
     for time in times:
         reason = None
         while reason is None and elapsed < patience_s:
-            began = perf_counter()
+            began = thread_time()
             reason = session.advance(Stop(until=time), STINT)
-            elapsed += perf_counter() - began
+            elapsed += thread_time() - began
             blocks.append(session.take_rows())
         if reason not in ("until", "quiet"):
             stopped = reason or "patience"

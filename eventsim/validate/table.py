@@ -13,6 +13,7 @@ from typing import Any
 
 from eventsim import __version__
 from eventsim.record.files.whole import whole_file
+from eventsim.validate.advantages import advantages
 from eventsim.validate.chart import Chart
 from eventsim.validate.compare import Comparison, Line
 
@@ -72,6 +73,8 @@ def chart_rows(chart: Chart) -> list[dict[str, Any]]:
                     "calendar_events": point.calendar,
                 }
             )
+    if chart.losses is not None:
+        rows += [{"panel": "losses", "scene": "gas", **line_data(line)} for line in chart.losses.lines]
     if chart.chaos is not None:
         for label, errors in chart.chaos.errors.items():
             for contacts, error in zip(chart.chaos.contacts, errors, strict=False):
@@ -83,6 +86,19 @@ def chart_rows(chart: Chart) -> list[dict[str, Any]]:
             {"panel": "rate", "engine": label, "parameter": "disks", "value": n, "contacts_per_s": rate}
             for n, rate in points
         ]
+    for each in advantages(chart):
+        rows.append(
+            {
+                "panel": "advantage",
+                "scene": each.scene,
+                "engine": each.label,
+                "parameter": "wanted error",
+                "value": each.wanted,
+                "time_ratio": each.time_ratio,
+                "bound": each.bound,
+                "error_ratio": each.error_ratio,
+            }
+        )
     return rows
 
 

@@ -80,7 +80,7 @@ def truth_of(scene: Scene, times: Sequence[float], engine: str | None = None) ->
     run = follow(ENGINES[name].open(stage, keep_rows=True), times)
     if not len(run.times):
         raise EventsimError(f"the event-driven run stopped ({run.stopped}) before {times[0]:g}: there is nothing to compare")
-    neighbour = follow(ENGINES[name].open(neighbouring(stage), keep_rows=False), times)
+    neighbour = follow(ENGINES[name].open(neighbouring(stage), keep_rows=True), times)
     uncertainty = position_errors(stage, run, neighbour)
     moving = np.isfinite(stage.radius) & np.isfinite(scene.disks.mass)
     speed = float(np.sqrt(np.mean(np.sum(run.velocity[:, moving] ** 2, axis=-1)))) if np.any(moving) else 0.0

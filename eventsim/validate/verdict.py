@@ -22,16 +22,21 @@ def verdict(comparison: Comparison) -> list[str]:
     return sentences or ["No engine lost a contact with any of these steps."]
 
 
-def _energy(comparison: Comparison) -> list[str]:
-    """The runs whose energy looks perfect while contacts go missing."""
+def blindest(comparison: Comparison) -> list[Line]:
+    """The runs whose energy looks perfect while contacts go missing, the worst first."""
     blind = [
         line
         for line in comparison.lines
         if line.energy is not None and abs(line.energy) < PERFECT_ENERGY and line.census.share(line.census.found) < ENOUGH
     ]
+    return sorted(blind, key=lambda line: line.census.share(line.census.found))
+
+
+def _energy(comparison: Comparison) -> list[str]:
+    blind = blindest(comparison)
     if not blind:
         return []
-    worst = min(blind, key=lambda line: line.census.share(line.census.found))
+    worst = blind[0]
     return [
         f"Energy hides it: {worst.label} with a step of {worst.step:.2g} radii keeps the energy to "
         f"{max(abs(worst.energy or 0.0), ROUNDING):.0e} and finds {worst.census.share(worst.census.found):.0%} of the "
@@ -45,18 +50,23 @@ def _angle(line: Line) -> str:
     return "no angle to compare" if math.isnan(angle) else f"its angles are {angle:.2g} degrees off"
 
 
-def _complete(comparison: Comparison) -> list[str]:
-    """From which step on each engine finds all contacts."""
+def whole_from(comparison: Comparison) -> tuple[list[Line], list[Line]]:
+    """(the run with the largest step that finds ALL contacts, for each engine; the best run of each that never does)."""
     whole, never = [], []
     for label in dict.fromkeys(line.label for line in comparison.lines):
-        lines = [line for line in comparison.lines if line.label == label]
+        lines = [line for line in comparison.lines if line.label == label and line.census.exact]
         good = [line for line in lines if line.census.share(line.census.found) >= ALL]
         if good:
-            first = max(good, key=lambda line: line.dt)
-            whole.append(f"{label} at {first.step:.2g} ({first.elapsed / comparison.exact.elapsed:.2g} x the time)")
-        else:
-            best = max(lines, key=lambda line: line.census.share(line.census.found))
-            never.append(f"{label} ({best.census.share(best.census.found):.1%} at {best.step:.2g})")
+            whole.append(max(good, key=lambda line: line.dt))
+        elif lines:
+            never.append(max(lines, key=lambda line: line.census.share(line.census.found)))
+    return whole, never
+
+
+def _complete(comparison: Comparison) -> list[str]:
+    good, bad = whole_from(comparison)
+    whole = [f"{line.label} at {line.step:.2g} ({line.elapsed / comparison.exact.elapsed:.2g} x the time)" for line in good]
+    never = [f"{line.label} ({line.census.share(line.census.found):.1%} at {line.step:.2g})" for line in bad]
     sentences = []
     if whole:
         sentences.append(

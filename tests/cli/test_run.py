@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -195,6 +196,45 @@ def test_a_collapse_ends_with_exit_code_3_and_keeps_its_log(eventsim, tmp_path):
     assert result.exit_code == 3
     assert "early" in result.stdout
     assert len(load_log(log)) > 10
+
+
+def test_the_step_of_a_stepped_engine_is_given_with_dt(eventsim):
+    summary = json.loads(eventsim("run", "two-disks", "--until", "3", "--engine", "stepped", "--dt", "0.01", "--json").stdout)
+    assert summary["engine"] == "stepped"
+    assert summary["counters"]["steps"] == 300
+
+
+def test_options_of_an_engine_are_read_as_what_they_are(eventsim):
+    located = ("--engine", "stepped", "--dt", "0.5", "--option", "locate=true")
+    positions = [
+        load_log_of(eventsim, "run", "two-disks", "--until", "9", *options)
+        for options in ((), located, ("--engine", "stepped", "--dt", "0.5"))
+    ]
+    assert np.allclose(positions[0], positions[1], atol=1e-12)
+    assert not np.allclose(positions[0], positions[2], atol=1e-3)
+
+
+def load_log_of(eventsim, *words):
+    """The positions at the contacts of a run."""
+    with tempfile.TemporaryDirectory() as folder:
+        assert eventsim(*words, "--log", f"{folder}/log.csv").exit_code == 0
+        return load_log(f"{folder}/log.csv").xa
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--dt", "0.1"), "the engine auto has no option 'dt'; steps belong to the engines frames, stepped"),
+        (("--engine", "stepped", "--option", "memory=frame"), "has no option 'memory'; it has dt, locate"),
+        (("--engine", "stepped", "--option", "locate"), "must be KEY=VALUE"),
+        (("--engine", "stepped", "--option", "locate=maybe"), "--option locate=maybe: must be true or false"),
+        (("--engine", "stepped", "--dt", "0"), "a step must be a finite time above 0"),
+    ],
+)
+def test_an_option_that_the_engine_does_not_have_is_a_sentence_and_exit_code_2(eventsim, words, message):
+    result = eventsim("run", "two-disks", *words)
+    assert result.exit_code == 2
+    assert message in result.stderr
 
 
 def test_an_interrupt_keeps_the_log_and_exits_130(tmp_path):

@@ -11,9 +11,10 @@ from click.testing import CliRunner
 import eventsim as es
 from eventsim.cli.program import main
 from eventsim.scene.stage import stage_of
+from eventsim.validate.advantages import Advantage, advantages, cell, table
 from eventsim.validate.chart import Chaos, Chart
 from eventsim.validate.compare import compare
-from eventsim.validate.conclusions import advantages, conclusions
+from eventsim.validate.conclusions import conclusions
 from eventsim.validate.entrants import ENTRANTS, able, chosen_entrants
 from eventsim.validate.pile import pile, unrest
 from eventsim.validate.precision import Curves, Point, Task, curves
@@ -124,24 +125,58 @@ def a_chart():
     box = es.gallery("two-disks")
     gas = Curves(Task("gas", box, "trajectory", 1.0))
     gas.points = points("gas", "trajectory", "fast", (0.1, 1e-12)) + points(
-        "gas", "trajectory", "stepped", (0.05, 1.0), (0.1, 0.1), (1.0, 0.01)
+        "gas", "trajectory", "stepped", (0.05, 1.0), (0.1, 0.1), (1.0, 0.001)
     )
+    gas.points += points("gas", "trajectory", "frames", (0.2, 1.0), (3.0, 0.1))
     heap = Curves(Task("pile", pile(), "unrest", 1.0))
     heap.points = points("pile", "unrest", "reference", (1.0, 0.1)) + points("pile", "unrest", "penalty", (0.2, 0.05))
     contacts = np.arange(1.0, 4.0)
     chaos = Chaos(contacts, {"event-driven": 1e-15 * 2.0**contacts}, 1.0, 30.0)
-    return Chart([gas, heap], chaos, {"fast": [(30, 1e6), (100, 2e6)]})
+    return Chart([gas, heap], chaos=chaos, rates={"fast": [(30, 1e6), (100, 2e6)]})
 
 
 def test_advantages_are_numbers_at_equal_error_and_at_equal_time():
-    gas, heap = advantages(a_chart())
-    assert gas.time_ratio == pytest.approx(10.0)
-    assert gas.error_ratio == pytest.approx(0.1 / 1e-12)
+    stepped, frames, heap = advantages(a_chart())
+    assert (stepped.time_ratio, stepped.bound) == (pytest.approx(10.0), "")
+    assert stepped.error_ratio == pytest.approx(0.1 / 1e-12)
+    assert (frames.time_ratio, frames.bound) == (pytest.approx(30.0), ">")  # not reached in 30 times the time
+    assert math.isnan(frames.error_ratio)  # its coarsest run takes longer
     assert math.isnan(heap.time_ratio)  # neither reaches the error
-    words = conclusions(a_chart())
-    assert "fast 10 x faster than by stepped" in words[0]
-    assert "float64 ends after 30 contacts a disk" in words[1]
-    assert "a stepped engine wins. penalty is within 1e-01 of rest 5 x sooner" in words[2]
+
+
+@pytest.mark.parametrize(
+    ("advantage", "text"),
+    [
+        (Advantage("gas", "frames", 1e-3, 38.4, "", 2.3e14), "38 | 2e14"),
+        (Advantage("gas", "frames", 1e-3, 1234.0, ">", math.nan), ">1200 | -"),
+        (Advantage("pile", "penalty", 1e-2, 0.148, "", 0.39), "0.15 | 0.39"),
+        (None, "left out"),
+    ],
+)
+def test_a_cell_says_both_numbers(advantage, text):
+    assert cell(advantage) == text
+
+
+def test_the_table_has_a_row_for_each_stepped_engine_and_a_column_for_each_scene():
+    head, rows = table(a_chart())
+    assert head == ["engine", "gas: 0.001", "pile: 0.01"]
+    assert [row[0] for row in rows] == ["stepped", "frames", "penalty"]
+    assert rows[2][1] == "left out"
+
+
+def test_each_question_is_answered_with_numbers_of_the_chart(gas):
+    chart = a_chart()
+    chart.losses = gas
+    engine, steps, energy, float64, wins = (answer.answer for answer in conclusions(chart))
+    assert "on gas the next, stepped, takes 10 x the time" in engine
+    assert "stepped-located" in steps
+    assert energy.startswith("Lost contacts.")
+    assert "After 30 contacts of each disk" in float64
+    assert "on the pile penalty is within 0.1 of rest 5 x sooner" in wins
+
+
+def test_a_chart_without_stepped_engines_answers_nothing():
+    assert conclusions(Chart()) == []
 
 
 def test_figures_are_drawn(gas, tmp_path):
@@ -149,10 +184,12 @@ def test_figures_are_drawn(gas, tmp_path):
     from eventsim.show.versus.precision import write_chart
 
     write_comparison(gas, tmp_path / "gas.png")
-    write_chart(a_chart(), tmp_path / "chart.svg")
+    chart = a_chart()
+    chart.losses = gas
+    write_chart(chart, tmp_path / "chart.svg")
     assert (tmp_path / "gas.png").stat().st_size > 20_000
     assert (tmp_path / "chart.svg").read_text().startswith("<?xml")
-    assert {row["panel"] for row in chart_rows(a_chart())} == {"precision", "chaos", "rate"}
+    assert {row["panel"] for row in chart_rows(chart)} == {"precision", "losses", "chaos", "rate", "advantage"}
 
 
 def test_validate_prints_a_table_a_verdict_and_json(tmp_path):

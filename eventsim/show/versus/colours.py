@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from eventsim.show.palette import KINDS
 
@@ -13,29 +13,38 @@ class Look(NamedTuple):
     colour: str
     marker: str
     line: str
+    hollow: bool = False
 
+    def drawn(self, size: float) -> dict[str, Any]:
+        """What matplotlib's `plot` wants to know."""
+        face = "white" if self.hollow else self.colour
+        return {"color": self.colour, "marker": self.marker, "ls": self.line, "ms": size, "mfc": face, "mec": self.colour}
+
+
+PURPLE = "#6A3D9A"
+"""Not of the palette: dark enough to be told from its pink, and no stepped engine has it."""
 
 LOOKS = {
     "fast": Look("#000000", "*", "-"),
     "reference": Look("#6b6b6b", "P", "-"),
     "event-driven": Look("#000000", "*", "-"),
-    "certified": Look("#0b6623", "D", ":"),
+    "certified": Look(PURPLE, "D", ":"),
     "frames": Look(KINDS[5], "s", "-"),
-    "frames-forget": Look(KINDS[5], "s", ":"),
+    "frames-forget": Look(KINDS[5], "s", ":", hollow=True),
     "stepped": Look(KINDS[0], "o", "-"),
-    "stepped-located": Look(KINDS[4], "o", "--"),
+    "stepped-located": Look(KINDS[3], "o", "--", hollow=True),
     "penalty": Look(KINDS[2], "^", "-"),
-    "pymunk": Look(KINDS[3], "v", "-"),
+    "pymunk": Look(KINDS[1], "v", "-"),
 }
 
 NAMES = {
-    "fast": "event-driven, fast engine (compiled)",
-    "reference": "event-driven, reference engine (Python)",
-    "certified": "event-driven, balls of 64 to 1024 bits",
+    "fast": "event-driven: fast (compiled)",
+    "reference": "event-driven: reference (Python)",
+    "certified": "event-driven: certified, balls of 64 to 1024 bits",
     "frames": "frames (memory until apart)",
-    "frames-forget": "frames (memory emptied each frame)",
-    "stepped": "stepped",
-    "stepped-located": "stepped, impact located in the step",
+    "frames-forget": "frames-forget (memory of one frame)",
+    "stepped": "stepped (fixed step)",
+    "stepped-located": "stepped-located (impact found in the step)",
     "penalty": "penalty (springs)",
     "pymunk": "pymunk (Chipmunk)",
 }

@@ -1,117 +1,131 @@
-"""The figure of a chart: error against time, scene by scene; chaos; rate against size; and what it all comes to."""
+"""The figure of a chart: five answers, then error against time scene by scene, losses, chaos, rates, and all advantages."""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 from os import PathLike
-from textwrap import fill
+from textwrap import wrap
+from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
+from eventsim.show.versus.chaos import draw_chaos
 from eventsim.show.versus.colours import NAMES, look
+from eventsim.show.versus.losses import draw_energy, draw_missed
 from eventsim.show.versus.page import save_page
-from eventsim.validate.chart import Chaos, Chart
+from eventsim.show.versus.work import draw_work
+from eventsim.validate.advantages import table
+from eventsim.validate.chart import RATE_STEP, Chart
 from eventsim.validate.conclusions import conclusions
-from eventsim.validate.precision import Curves
 
-COLUMNS, PANEL = 3, (5.0, 4.0)
+COLUMNS, PANEL = 3, (4.4, 3.9)
 """Panels in a row; inches of one."""
 
-ERRORS = {
-    "trajectory": "position error [diameters]",
-    "pressure": "relative error of the virial",
-    "unrest": "speed or overlap that is left [diameters]",
-}
+LETTERS, LINE = 108, 0.215
+"""Letters in a line of the answers; inches of its height."""
+
+HEAD_WIDTH = COLUMNS * PANEL[0]
+"""Inches that the answers need."""
+
+ANSWERS_AT = 0.275
+"""Where the answers begin, as a share of the width; the questions stand before them."""
+
+TABLE_TITLE = (
+    "By what event-driven is ahead of each engine: times the time at equal error (head) | times the error in equal time\n"
+    "(>: did not come to that error in so much; <: event-driven did not; -: even its coarsest run takes longer)"
+)
+
+Draw = Callable[[Axes], None]
 
 
 def write_chart(chart: Chart, path: str | PathLike[str]) -> None:
     """Draw a chart to `path`: .png, .svg or .pdf.  Raises EventsimError where it cannot be written."""
-    panels = len(chart.tasks) + (chart.chaos is not None) + bool(chart.rates) + 1
-    rows = math.ceil(panels / COLUMNS)
-    figure = Figure(figsize=(COLUMNS * PANEL[0], rows * PANEL[1]), dpi=110, facecolor="white", layout="constrained")
-    grid = figure.subplots(rows, COLUMNS, squeeze=False)
-    free = iter(grid.ravel().tolist())
-    for curves in chart.tasks:
-        draw_curves(next(free), curves)
-    if chart.chaos is not None:
-        draw_chaos(next(free), chart.chaos)
-    if chart.rates:
-        draw_rates(next(free), chart)
-    draw_words(next(free), chart)
-    for axes in free:
-        axes.set_axis_off()
+    panels = panels_of(chart)
+    head, rows = table(chart)
+    lines = answer_lines(chart)
+    across = min(COLUMNS, max(len(panels), 2))
+    # The table takes what is left of the last row of panels where that is most of it; else a row of its own.
+    free = -len(panels) % across
+    beside = free >= 2
+    last = -(-len(panels) // across)
+    head_height = LINE * (len(lines) + 4) + 0.5
+    table_height = [] if beside or not rows else [0.34 * (len(rows) + 3)]
+    heights = [head_height, *[PANEL[1]] * last, *table_height]
+    figure = Figure(figsize=(max(across * PANEL[0], HEAD_WIDTH), sum(heights)), dpi=120, facecolor="white", layout="constrained")
+    grid = figure.add_gridspec(len(heights), across, height_ratios=heights)
+    draw_head(figure.add_subplot(grid[0, :]), chart, lines, head_height)
+    for place, draw in enumerate(panels):
+        draw(figure.add_subplot(grid[1 + place // across, place % across]))
+    if rows:
+        where = grid[last, across - free :] if beside else grid[last + 1, :]
+        draw_table(figure.add_subplot(where), head, rows)
     save_page(figure, path)
 
 
-def draw_curves(axes: Axes, curves: Curves) -> None:
-    """One scene: error against seconds per time unit of the scene, a curve for each engine."""
-    for name in curves.labels:
-        points, style = curves.of(name), look(name)
-        alone = len(points) == 1
-        axes.plot(
-            [point.elapsed for point in points],
-            [point.error for point in points],
-            style.line,
-            marker=style.marker,
-            ms=13 if alone else 4.5,
-            lw=1.3,
-            color=style.colour,
-            mec="white" if alone else style.colour,
-            zorder=5 if alone else 2,
-        )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    if curves.floor > 0.0:
-        axes.axhspan(axes.get_ylim()[0], curves.floor, color="#e3e6ea", zorder=0)
-        if curves.floor > 1e-6:
-            place = (0.2, 0.02)
-            axes.annotate("below: chance", place, xycoords="axes fraction", fontsize=8.5)
-    title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
-    label(axes, "seconds of computing per time unit", ERRORS[curves.task.measure], title)
-    axes.title.set_fontsize(9.5)
+def panels_of(chart: Chart) -> list[Draw]:
+    """What draws each panel, in the order of the questions."""
+    panels: list[Draw] = [lambda axes, curves=curves: draw_work(axes, curves) for curves in chart.tasks]  # type: ignore[misc]
+    losses, chaos = chart.losses, chart.chaos
+    if losses is not None:
+        panels += [lambda axes: draw_missed(axes, losses), lambda axes: draw_energy(axes, losses)]
+    if chaos is not None:
+        panels.append(lambda axes: draw_chaos(axes, chaos))
+    if chart.rates:
+        panels.append(lambda axes: draw_rates(axes, chart))
+    return panels
 
 
-def draw_chaos(axes: Axes, chaos: Chaos) -> None:
-    """Errors against contacts per disk: straight in a logarithmic plot until nothing is left of them."""
-    for name, errors in chaos.errors.items():
-        style = look(name)
-        axes.semilogy(chaos.contacts[: len(errors)], np.maximum(errors, 1e-17), style.line, color=style.colour, lw=1.4)
-        place = len(errors) // 3 if name == "event-driven" else 2
-        text = "event-driven, float64" if name == "event-driven" else name.split(", ")[1]
-        spot = (chaos.contacts[place], max(errors[place], 1e-17))
-        axes.annotate(text, spot, xytext=(6, -9), textcoords="offset points", fontsize=8)
-    if not math.isnan(chaos.slope):
-        steep = 1e-16 * 2.0 ** (chaos.slope * chaos.contacts)
-        shown = steep < 10.0
-        axes.semilogy(chaos.contacts[shown], steep[shown], ":", color=LIGHT.faint, lw=1.2)
-        axes.axvline(chaos.horizon, color=LIGHT.faint, lw=0.9, ls="--")
-        axes.annotate("float64 ends", (chaos.horizon, 1e-14), xytext=(4, 0), textcoords="offset points", fontsize=8.5)
-    title = f"Chaos in the gas: {chaos.slope:.2g} bits lost a contact" if not math.isnan(chaos.slope) else "Chaos in the gas"
-    label(axes, "contacts of each disk", ERRORS["trajectory"], title)
-    axes.title.set_fontsize(9.5)
+def answer_lines(chart: Chart) -> list[tuple[str, str]]:
+    """(question, answer) line by line; the question stands beside the first line of its answer."""
+    lines = []
+    for answer in conclusions(chart):
+        lines += [("" if place else answer.question, text) for place, text in enumerate(wrap(answer.answer, LETTERS))]
+    return lines
+
+
+def draw_head(axes: Axes, chart: Chart, lines: list[tuple[str, str]], height: float) -> None:
+    """The title, the answers, and the legend of all panels; height: of the axes, inches."""
+    axes.set_axis_off()
+    above: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "color": LIGHT.ink}
+    axes.text(0.0, 1.0, "Speed against accuracy, and where each engine is the right one", fontsize=16, weight="bold", **above)
+    for place, (question, text) in enumerate(lines):
+        y = 1.0 - (0.42 + LINE * place) / height
+        axes.text(0.0, y, question, fontsize=11, weight="bold", **above)
+        axes.text(ANSWERS_AT, y, text, fontsize=11, **above)
+    present = [name for name in NAMES if any(name in curves.labels for curves in chart.tasks)]
+    for name in present:
+        axes.plot([], [], label=NAMES[name], **look(name).drawn(8))
+    axes.legend(loc="lower left", ncols=3, frameon=False, fontsize=10.5, borderaxespad=0.0, columnspacing=2.0)
 
 
 def draw_rates(axes: Axes, chart: Chart) -> None:
     """Contacts per second against the number of disks."""
     for name, points in chart.rates.items():
-        style = look(name)
         n, rate = zip(*points, strict=True)
-        axes.loglog(n, rate, style.line, marker=style.marker, ms=5, lw=1.3, color=style.colour)
-    label(axes, "disks", "contacts simulated per second", "Rate in the gas; stepped engines with 0.05 radii a step")
-    axes.title.set_fontsize(9.5)
+        axes.loglog(n, rate, lw=1.3, **look(name).drawn(6))
+    axes.set_xticks([30, 100, 300, 1000, 3000], ["30", "100", "300", "1000", "3000"])
+    axes.set_xticks([], minor=True)
+    label(axes, "disks", "contacts simulated per second", f"Rates in the gas (stepped: {RATE_STEP:g} radii a step)")
 
 
-def draw_words(axes: Axes, chart: Chart) -> None:
-    """The legend, and the conclusions below it."""
+def draw_table(axes: Axes, head: list[str], rows: list[list[str]]) -> None:
+    """By what the event-driven engine is ahead of every other one on every scene."""
     axes.set_axis_off()
-    present = [name for name in NAMES if any(name in curves.labels for curves in chart.tasks)]
-    for name in present:
-        style = look(name)
-        axes.plot([], [], style.line, marker=style.marker, color=style.colour, label=NAMES[name], ms=7)
-    axes.legend(loc="upper left", frameon=False, fontsize=8.5, borderaxespad=0.0, labelspacing=0.25)
-    text = "\n".join(fill(sentence, 72) for sentence in conclusions(chart))
-    axes.text(0.0, 0.5, text, transform=axes.transAxes, va="top", fontsize=8.6, linespacing=1.15, color=LIGHT.ink)
+    axes.set_title(TABLE_TITLE, loc="left", fontsize=10.5, color=LIGHT.ink)
+    widths = [0.19, *[0.81 / (len(head) - 1)] * (len(head) - 1)]
+    names = [text.replace(": ", "\n") for text in head]
+    drawn = axes.table(rows, colLabels=names, colWidths=widths, cellLoc="center", loc="upper left", edges="horizontal")
+    drawn.auto_set_font_size(False)
+    drawn.set_fontsize(9.5)
+    drawn.scale(1.0, 1.45)
+    for (row, column), cell in drawn.get_celld().items():
+        cell.set_edgecolor("#c8cdd3")
+        if row == 0:
+            cell.set_height(1.6 * cell.get_height())
+            cell.get_text().set_fontweight("bold")
+        elif column == 0:
+            cell.get_text().set_color(look(rows[row - 1][0]).colour)
+            cell.get_text().set_fontweight("bold")

@@ -1,0 +1,56 @@
+"""Two panels on one gas: contacts that are missed, and the energy that does not show it, against the step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from eventsim.show.figures.style import label
+from eventsim.show.palette import LIGHT
+from eventsim.show.versus.colours import look
+from eventsim.show.versus.notes import ACROSS, note
+from eventsim.validate.compare import Comparison, Line
+from eventsim.validate.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
+
+STEP = "step: radii that a typical disk flies in it"
+
+
+def draw_missed(axes: Axes, comparison: Comparison) -> None:
+    """Contacts missed, per cent of those ahead of exact states; runs that miss none lie on the lower edge."""
+    least = 50.0 / max((line.census.exact for line in comparison.lines), default=1)
+    _draw(axes, comparison, lambda line: max(100.0 * line.census.share(line.census.missed), least))
+    bound = 100.0 * (1.0 - ALL)
+    axes.axhline(bound, color=LIGHT.ink, lw=0.9, ls=(0, (4, 3)))
+    note(axes, "1 in 100", (0.0, bound), ACROSS, (4, 3))
+    axes.set_ylim(0.8 * least, 130.0)
+    axes.set_yticks([1.0, 10.0, 100.0], ["1", "10", "100"])
+    axes.set_yticks([least], ["none"], minor=True)
+    label(axes, STEP, "contacts missed [%]", "At which step are contacts lost?")
+
+
+def draw_energy(axes: Axes, comparison: Comparison) -> None:
+    """The relative change of energy of the same runs."""
+    _draw(axes, comparison, lambda line: math.nan if line.energy is None else max(abs(line.energy), ROUNDING))
+    axes.set_ylim(0.3 * ROUNDING, 3.0)
+    axes.axhspan(0.3 * ROUNDING, PERFECT_ENERGY, color="#eef3ea", zorder=0)
+    blind = blindest(comparison)
+    text = "energy looks perfect here"
+    if blind:
+        labels = dict.fromkeys(line.label for line in blind)
+        share = blind[0].census.share(blind[0].census.missed)
+        text += f",\nwith up to {share:.0%} of the contacts missed\n({', '.join(labels)})"
+    note(axes, text, (0.03, 3e-10), ACROSS, va="top", bbox=None)
+    label(axes, STEP, "relative change of energy", "What does energy hide? The losses on the left")
+
+
+def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) -> None:
+    """A curve for each engine."""
+    for name in dict.fromkeys(line.label for line in comparison.lines):
+        lines = [line for line in comparison.lines if line.label == name]
+        axes.plot([line.step for line in lines], np.array([value(line) for line in lines]), lw=1.3, **look(name).drawn(5.5))
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xticks([0.01, 0.1, 1.0], ["0.01", "0.1", "1"])

@@ -1,0 +1,104 @@
+"""One scene of a chart: error against computing time, a curve for each engine, and what lies between them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from eventsim.show.figures.style import label
+from eventsim.show.palette import LIGHT
+from eventsim.show.versus.colours import look
+from eventsim.show.versus.notes import ACROSS, note
+from eventsim.validate.advantages import (
+    WANTED,
+    Advantage,
+    advantages_on,
+    amount,
+    own_points,
+    stepped_labels,
+    time_at,
+)
+from eventsim.validate.conclusions import Win, winning
+from eventsim.validate.precision import Curves
+
+ERRORS = {
+    "trajectory": "position error [diameters]",
+    "pressure": "relative error of the pressure (virial)",
+    "unrest": r"unrest: overlap [d] or speed [$\sqrt{gd}$]",
+}
+ARROW = "#333333"
+SHADE, WON = "#e3e6ea", "#fbe9d7"
+"""Backgrounds: what is chance, and where a stepped engine is ahead."""
+
+
+def draw_work(axes: Axes, curves: Curves) -> None:
+    """Error against seconds per time unit of the scene; arrows: the other's error in equal time, its time at equal error."""
+    for name in curves.labels:
+        points, alone = curves.of(name), len(curves.of(name)) == 1
+        style = look(name).drawn(13 if alone else 5)
+        axes.plot([p.elapsed for p in points], [p.error for p in points], lw=1.3, zorder=5 if alone else 3, **style)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low / 3.0, high * 2.0)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(numticks=8))
+        axis.set_minor_formatter(NullFormatter())
+    if curves.floor > 0.0:
+        axes.axhspan(axes.get_ylim()[0], curves.floor, color=SHADE, zorder=0)
+        note(axes, "below: chance", (0.98, 0.015), "axes fraction", ha="right", color=LIGHT.faint, bbox=None)
+    win = winning(curves)
+    if win is not None:
+        _draw_win(axes, win)
+    else:
+        _draw_advantages(axes, curves)
+    title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
+    label(axes, "seconds of computing per time unit of the scene", ERRORS[curves.task.measure], title)
+    axes.title.set_fontsize(10.5)
+
+
+def _draw_win(axes: Axes, win: Win) -> None:
+    """Shade the errors at which a stepped engine is the faster one."""
+    axes.axhspan(axes.get_ylim()[0], win.begins, color=WON, zorder=0)
+    text = f"shaded: {win.label} is ahead,\n{amount(win.ratio)} x sooner at {win.error:.1g}"
+    note(axes, text, (0.02, 0.03), "axes fraction", bbox=None)
+
+
+def _draw_advantages(axes: Axes, curves: Curves) -> None:
+    """Two arrows from the event-driven engine: up to the best error in its time, right to the least time for its error."""
+    own, found = own_points(curves), advantages_on(curves)
+    if not own or not found:
+        return
+    best = min(own, key=lambda point: point.error)
+    wanted = WANTED[curves.task.measure]
+    in_time = [a for a in found if not math.isnan(a.error_ratio)]
+    if in_time:
+        nearest = min(in_time, key=lambda a: a.error_ratio)
+        _arrow(axes, (best.elapsed, best.error), (best.elapsed, best.error * nearest.error_ratio))
+        middle = math.sqrt(best.error * best.error * nearest.error_ratio)
+        text = f"equal time: the next\nerrs {amount(nearest.error_ratio)} x as much"
+        note(axes, text, (best.elapsed, middle), offset=(6, 0), va="center")
+    axes.axhline(wanted, color=ARROW, lw=0.8, ls=(0, (4, 3)), zorder=1)
+    note(axes, f"{wanted:g}", (1.0, wanted), ACROSS, (0, 3), ha="right")
+    _draw_time(axes, curves, found, time_at(own, wanted), wanted)
+
+
+def _draw_time(axes: Axes, curves: Curves, found: list[Advantage], mine: float, wanted: float) -> None:
+    """The arrow at equal error, to the first stepped engine that comes to it; a sentence where none does."""
+    reached = [a for a in found if a.bound == "" and not math.isnan(a.time_ratio)]
+    if reached:
+        nearest = min(reached, key=lambda a: a.time_ratio)
+        _arrow(axes, (mine, wanted), (mine * nearest.time_ratio, wanted))
+        text, place = f"equal error: {amount(nearest.time_ratio)} x the time", mine * math.sqrt(nearest.time_ratio)
+    else:
+        longest = max(point.elapsed for name in stepped_labels(curves) for point in curves.of(name))
+        text, place = f"no stepped engine comes to {wanted:g}", math.sqrt(mine * longest)
+    note(axes, text, (place, wanted), offset=(0, -4), ha="center", va="top")
+
+
+def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
+    if np.all(np.isfinite([*start, *end])):
+        axes.annotate("", end, xytext=start, arrowprops={"arrowstyle": "<->", "color": ARROW, "lw": 1.3}, zorder=4)
