@@ -6,13 +6,6 @@ from eventsim.validate.stress.catalogue import CASES, chosen
 from eventsim.validate.stress.verdict import Word, judge
 
 LONG = ("c2-lattice", "f19-jammed")
-AWAITED = ("f21-subnormal",)
-"""Right as soon as scenes whose lengths have no squares are refused."""
-
-
-def marked(names):
-    awaited = pytest.mark.xfail(reason="lengths without squares are not refused yet", strict=False)
-    return [pytest.param(name, marks=awaited) if name in AWAITED else name for name in names]
 
 
 def judged(name, engine="reference"):
@@ -21,7 +14,7 @@ def judged(name, engine="reference"):
     return verdict
 
 
-@pytest.mark.parametrize("name", marked(name for name in CASES if name not in LONG))
+@pytest.mark.parametrize("name", [name for name in CASES if name not in LONG])
 def test_the_reference_engine_is_right_or_refuses_with_the_documented_reason(name):
     judged(name)
 
@@ -33,7 +26,7 @@ def test_the_reference_engine_is_right_on_large_cases(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", marked(CASES))
+@pytest.mark.parametrize("name", CASES)
 def test_the_fast_engine_is_right_or_refuses_with_the_documented_reason(name):
     pytest.importorskip("numba")
     judged(name, "fast")
