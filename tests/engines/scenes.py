@@ -46,3 +46,21 @@ def run_of(scene, **options):
     stop = Stop(options.pop("until", None), options.pop("events", None))
     session = session_of(scene, **options)
     return session, session.advance(stop, 10**9)
+
+
+def wide_mixture(n, seed, domain=es.Box, side=8.0, **scene):
+    """About n small disks, points among them, around a few that are up to thirty times as large; some immovable, some tracers."""
+    rng = np.random.default_rng(seed)
+    large = rng.uniform(0.6, 1.2, int(rng.integers(1, 5)))
+    small = rng.choice([0.0, 0.04, 0.05, 0.2], n, p=[0.1, 0.4, 0.4, 0.1])
+    position, radius = np.empty((0, 2)), np.empty(0)
+    for r in (*large, *small):
+        for place in rng.uniform(r, side - r, (50, 2)):
+            if np.all(np.sum((position - place) ** 2, axis=1) > (radius + r) ** 2):
+                position, radius = np.vstack([position, place]), np.append(radius, r)
+                break
+    mass = np.maximum(radius, 0.04) ** 2
+    if seed % 3 == 0:
+        mass[0], mass[-20:] = math.inf, 0.0
+    disks = es.Disks(position, rng.normal(size=position.shape), radius, mass)
+    return es.Scene(disks=disks, domain=es.Open() if domain is es.Open else domain((side, side)), **scene)

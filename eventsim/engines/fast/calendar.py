@@ -6,7 +6,7 @@ the list of the present day.
 
 from __future__ import annotations
 
-from eventsim.engines.fast.cells import depth_of
+from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline
 from eventsim.engines.fast.layout import (
     COLUMN,
@@ -22,6 +22,7 @@ from eventsim.engines.fast.layout import (
     ROW,
     WORDS,
 )
+from eventsim.engines.fast.levels import home_of
 from eventsim.engines.fast.memory import prefetch, real, store, word
 
 
@@ -145,8 +146,9 @@ def fetch_record(m, i):
 @inline
 def fetch_around(m, grid, i, disks):
     """Ask for the slots of the cells around disk i; or for the first line of each disk in them."""
-    depth, width = depth_of(grid, grid.deep), grid.columns + 2
-    start = depth * (word(m.disks, i * WORDS + COLUMN) - 1 + width * (word(m.disks, i * WORDS + ROW) - 1))
+    home = home_of(m, grid, i)
+    depth, width = depth_of(home, home.deep), home.columns + 2
+    start = slot_of(home, word(m.disks, i * WORDS + COLUMN) - 1, word(m.disks, i * WORDS + ROW) - 1)
     for _ in range(3):
         if disks:
             for k in range(3 * depth):

@@ -27,9 +27,14 @@ def depth_of(grid, deep):
 
 
 @inline
-def cell_of(grid, column, row):
-    """The number of a cell; columns and rows count from 1."""
-    return column + (grid.columns + 2) * row
+def slot_of(grid, column, row):
+    """The first slot of a cell; columns and rows count from 1."""
+    return _behind(grid.first, depth_of(grid, grid.deep) * (column + (grid.columns + 2) * row))
+
+
+@inline
+def _behind(first, slot):
+    return slot if first is None else first + slot
 
 
 @inline
@@ -48,7 +53,7 @@ def _occupy(m, grid, rules, i, column, row, edge, slots):
     if slots is None:
         return True
     depth = depth_of(grid, grid.deep)
-    start = depth * cell_of(grid, column, row)
+    start = slot_of(grid, column, row)
     k = 0
     while k < depth and word(slots, start + k) != grid.n:
         k += 1
@@ -65,7 +70,7 @@ def leave(m, grid, rules, i):
     """Take disk i out of its cell."""
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     depth = depth_of(grid, grid.deep)
-    start = depth * cell_of(grid, column, row)
+    start = slot_of(grid, column, row)
     for k in range(depth):
         disk = word(m.slots, start + k)
         store(m.slots, start + k, grid.n if disk == i else disk)
@@ -75,19 +80,19 @@ def leave(m, grid, rules, i):
 
 @inline
 def _copy_to_ghosts(m, grid, column, row, along_x, along_y):
-    """Copy a cell at the border of the grid to where it is seen from beyond a periodic boundary."""
+    """Copy a cell at the border of the grid to where it is seen from beyond a periodic boundary; a single one is seen anyway."""
     ghost_column, ghost_row = -1, -1
-    if along_x:
+    if along_x and grid.columns > 1:
         ghost_column = grid.columns + 1 if column == 1 else (0 if column == grid.columns else -1)
-    if along_y:
+    if along_y and grid.rows > 1:
         ghost_row = grid.rows + 1 if row == 1 else (0 if row == grid.rows else -1)
     depth = depth_of(grid, grid.deep)
-    start = depth * cell_of(grid, column, row)
+    start = slot_of(grid, column, row)
     for k in range(depth):
         disk = word(m.slots, start + k)
         if ghost_column >= 0:
-            store(m.slots, depth * cell_of(grid, ghost_column, row) + k, disk)
+            store(m.slots, slot_of(grid, ghost_column, row) + k, disk)
         if ghost_row >= 0:
-            store(m.slots, depth * cell_of(grid, column, ghost_row) + k, disk)
+            store(m.slots, slot_of(grid, column, ghost_row) + k, disk)
         if ghost_column >= 0 and ghost_row >= 0:
-            store(m.slots, depth * cell_of(grid, ghost_column, ghost_row) + k, disk)
+            store(m.slots, slot_of(grid, ghost_column, ghost_row) + k, disk)

@@ -92,11 +92,11 @@ class _Watcher(event.Listener):
             self._note(perf_counter() - self._began)
 
 
-inline = njit(forceinline=True, error_model="numpy")
+inline = njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """A part of a kernel; without force a small helper stays a real call, which costs a fifth of the rate."""
 
 
-part = njit(error_model="numpy")
+part = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """A part that is rarely reached, and stays a call of its own."""
 
 

@@ -21,6 +21,7 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
+from eventsim.engines.fast.levels import gather_near, home_of
 from eventsim.engines.fast.loop import pointers
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.predict import corner_slot, images, pair_is_due, shape_time
@@ -38,7 +39,7 @@ def contacts_at(arrays, grid, rules, counts, now, found):
     i = word(m.disks, bucket(grid, counts[DAY]))
     while i != grid.n:
         if real(m.disks, i * REALS + DUE) == now:
-            count = _pairs_at(m, grid, rules, i, now, found, count, m.slots)
+            count = _pairs_at(m, grid, rules, i, now, found, count, m.slots, grid.levels)
             count = _shapes_at(m, rules, i, now, found, count, rules.features)
             count = _walls_at(m, grid, rules, i, now, found, count)
         i = word(m.disks, i * WORDS + NEXT)
@@ -66,19 +67,29 @@ def _add(found, count, i, partner, kx, ky):
 
 
 @inline
-def _pairs_at(m, grid, rules, i, now, found, count, slots):
+def _pairs_at(m, grid, rules, i, now, found, count, slots, levels):
     if slots is None:
         return _pairs_of_everyone(m, grid, rules, i, now, found, count)
     x, y = place(m, rules, i, now)
+    if levels is not None:
+        for k in range(gather_near(m, grid, rules, i, x, y, -1)):
+            count = _pair_at(m, rules, i, word(m.near, k), now, x, y, found, count)
+        return count
     start, depth = corner_slot(m, grid, i), depth_of(grid, grid.deep)
     for _ in range(3):
         for k in range(3 * depth):
             j = word(m.slots, start + k)
             if j != grid.n and j != i:
-                kx, ky = images(m, rules, i, j, now, x, y)
-                if pair_is_due(m, rules, i, j, kx, ky) == now:
-                    count = _add(found, count, i, j, kx, ky)
+                count = _pair_at(m, rules, i, j, now, x, y, found, count)
         start += depth * (grid.columns + 2)
+    return count
+
+
+@inline
+def _pair_at(m, rules, i, j, now, x, y, found, count):
+    kx, ky = images(m, rules, i, j, now, x, y)
+    if pair_is_due(m, rules, i, j, kx, ky) == now:
+        count = _add(found, count, i, j, kx, ky)
     return count
 
 
@@ -112,8 +123,9 @@ def _walls_at(m, grid, rules, i, now, found, count):
     gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
     x, u, y, w = real(m.disks, f + X), real(m.disks, f + VX), real(m.disks, f + Y), real(m.disks, f + VY)
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
-    count = _walls_across(x, u, t, r, gx, rules.width, column, grid.columns, now, rules.wall_x, i, found, count)
-    return _walls_across(y, w, t, r, gy, rules.height, row, grid.rows, now, rules.wall_y, i, found, count)
+    home = home_of(m, grid, i)
+    count = _walls_across(x, u, t, r, gx, rules.width, column, home.columns, now, rules.wall_x, i, found, count)
+    return _walls_across(y, w, t, r, gy, rules.height, row, home.rows, now, rules.wall_y, i, found, count)
 
 
 @inline

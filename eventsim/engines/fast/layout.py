@@ -27,8 +27,8 @@ AT_ONCE, WRAPS_X, WRAPS_Y, MET_KX, MET_KY = 27, 28, 29, 30, 31
 USUAL_DEPTH = 4
 """Slots in a cell that is too narrow for a fifth disk."""
 
-EDGE, IMMOVABLE, TRACER = 1, 2, 4
-"""Flags: in a cell at the border of the grid; infinite mass; no mass."""
+EDGE, IMMOVABLE, TRACER, FIRST_LEVEL = 1, 2, 4, 8
+"""Flags: in a cell at the border of the grid; infinite mass; no mass.  From FIRST_LEVEL on the number of the disk's level."""
 
 CLASSES = IMMOVABLE | TRACER
 
@@ -36,10 +36,12 @@ NOBODY, SEVERAL = -1, -(2**31)
 """Values of MET besides a disk and -2 - place of a wall; SEVERAL: MET_KX is the first of a chain in the table `several`."""
 
 RIGHT, LEFT, UP, DOWN = -1, -2, -3, -4
-WRAP_RIGHT, WRAP_LEFT, WRAP_UP, WRAP_DOWN = -5, -6, -7, -8
-NOTHING = -9
+LOOK = -5
+WRAP_RIGHT, WRAP_LEFT, WRAP_UP, WRAP_DOWN = -6, -7, -8, -9
+NOTHING = -10
 WALL = -16
-"""Values of PARTNER besides a disk: cell crossings, wraps, no event; WALL - 2 place - (1 if the side is -1)."""
+"""Values of PARTNER besides a disk: cell crossings, time to look for smaller disks, wraps, no event; WALL - 2 place - (1 if the
+side is -1)."""
 
 COUNTS = 1 << 30
 """Invalidation counts stay below; the bit itself in PARTNER_COUNT says that two events share the time of this one."""
@@ -53,7 +55,7 @@ class Arrays(NamedTuple):
 
     disks: the records, and behind them the calendar's buckets.
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
-    parts of velocities, (vx, vy) each.  rows: the log's buffer, bytes.
+    parts of velocities, (vx, vy) each.  levels: the table of `levels`.  rows: the log's buffer, bytes.
     """
 
     disks: object
@@ -63,6 +65,7 @@ class Arrays(NamedTuple):
     mass: object
     low: object
     features: object
+    levels: object
     rows: object
 
 
@@ -98,7 +101,8 @@ class Grid(NamedTuple):
 
     n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell; deep: None where it is the usual
     one.  low: the corner of the grid.  days: buckets, a power of two.  lanes: eight pairs at a time, or None.  look_ahead: days
-    at which memory is prefetched, or None.
+    at which memory is prefetched, or None.  levels: how many grids there are, None for one; first: the first slot of this one,
+    None for 0.
     """
 
     n: int
@@ -115,13 +119,15 @@ class Grid(NamedTuple):
     days_per_time: float
     lanes: object
     look_ahead: object
+    levels: object
+    first: object
 
 
 STATUS_BUDGET, STATUS_LIMIT, STATUS_EVENTS, STATUS_ROWS = 0, 1, 2, 3
 """Why a kernel returned: its steps are done; no event before the limit; enough events; the row buffer is full."""
 
-STATUS_TIE, STATUS_FULL, STATUS_STUCK, STATUS_IDLE = 4, 5, 6, 7
-"""Contacts of equal time; a full cell, or a disk that has left the grid; an instant does not end; a long time without events."""
+STATUS_TIE, STATUS_FULL, STATUS_STUCK, STATUS_IDLE, STATUS_BEYOND = 4, 5, 6, 7, 8
+"""Contacts of equal time; a full cell; an instant does not end; a long time without events; a disk has left the grid."""
 
 DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS, EPOCH = range(13)
 """Places in `counts`.  ROW_COUNT: rows in the buffer; ROOM: how many fit; DISK: the one that a

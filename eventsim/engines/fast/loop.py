@@ -22,6 +22,7 @@ from eventsim.engines.fast.layout import (
     EPOCH_ERROR,
     EVENTS,
     LEFT,
+    LOOK,
     NOW,
     PAIRS,
     PARTNER,
@@ -32,6 +33,7 @@ from eventsim.engines.fast.layout import (
     ROW,
     ROW_COUNT,
     STALE,
+    STATUS_BEYOND,
     STATUS_BUDGET,
     STATUS_EVENTS,
     STATUS_FULL,
@@ -52,6 +54,7 @@ from eventsim.engines.fast.layout import (
     WRAPS,
     Arrays,
 )
+from eventsim.engines.fast.levels import home_of, level_of, place_in
 from eventsim.engines.fast.memory import pointer, real, store, word
 from eventsim.engines.fast.predict import predict
 from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
@@ -68,17 +71,19 @@ def pointers(a):
         pointer(a.mass),
         pointer(a.low),
         pointer(a.features),
+        pointer(a.levels),
         pointer(a.rows),
     )
 
 
 @inline
 def move(m, grid, rules, i, code, slots):
-    """Move disk i, which is at the edge of its cell, into the next one; True if there is room and the grid goes on there."""
-    if slots is None:
-        return True
+    """Move disk i, which is at the edge of its cell, into the next one; 0, or the status that says why it cannot be there."""
+    if slots is None or _only_looks(code, grid.levels):
+        return 0
+    home = home_of(m, grid, i)
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
-    leave(m, grid, rules, i)
+    leave(m, home, rules, i)
     if code == RIGHT:
         column += 1
     elif code == LEFT:
@@ -90,14 +95,19 @@ def move(m, grid, rules, i, code, slots):
     elif code == WRAP_RIGHT:
         column = 1
     elif code == WRAP_LEFT:
-        column = grid.columns
+        column = home.columns
     elif code == WRAP_UP:
         row = 1
     else:
-        row = grid.rows
-    if column < 1 or row < 1 or column > grid.columns or row > grid.rows:
-        return False
-    return enter(m, grid, rules, i, column, row)
+        row = home.rows
+    if column < 1 or row < 1 or column > home.columns or row > home.rows:
+        return STATUS_BEYOND
+    return 0 if enter(m, home, rules, i, column, row) else STATUS_FULL
+
+
+@inline
+def _only_looks(code, levels):
+    return False if levels is None else code == LOOK
 
 
 @kernel
@@ -160,8 +170,10 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             if code <= WRAP_RIGHT:
                 wraps += 1
                 wrap(m, rules, i, code, now)
-            if not move(m, grid, rules, i, code, m.slots):
-                status = STATUS_FULL
+            failure = move(m, grid, rules, i, code, m.slots)
+            if failure:
+                counts[DISK] = i
+                status = failure
                 break
         predict(m, grid, rules, i, now, now)
         push(m, grid, i, day)
@@ -184,15 +196,16 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
 
 @kernel
 def fill(arrays, grid, rules, now):
-    """Put every disk into the cell where it is; False if a cell is full."""
+    """Put every disk into the cell where it is; the level of one that finds a cell full, or -1."""
     m = pointers(arrays)
     for i in range(grid.n):
         x, y = place(m, rules, i, now)
-        column = min(max(int((x - grid.low_x) / grid.side_x), 0), grid.columns - 1) + 1
-        row = min(max(int((y - grid.low_y) / grid.side_y), 0), grid.rows - 1) + 1
-        if not enter(m, grid, rules, i, column, row):
-            return False
-    return True
+        home = home_of(m, grid, i)
+        column = place_in(x, home.low_x, home.side_x, home.columns)
+        row = place_in(y, home.low_y, home.side_y, home.rows)
+        if not enter(m, home, rules, i, column, row):
+            return level_of(m, i)
+    return -1
 
 
 @kernel

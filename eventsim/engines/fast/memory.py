@@ -40,6 +40,13 @@ def pointer(typing, array):
 
 
 @intrinsic
+def either(typing, thing, given, absent):
+    """One of two functions: `given` if there is such a thing, `absent` if it is None; the other one is not even compiled."""
+    kind = absent if isinstance(thing, types.NoneType) else given
+    return kind(thing, given, absent), lambda context, builder, signature, arguments: context.get_dummy_value()
+
+
+@intrinsic
 def real(typing, data, index):
     """The float64 at an index."""
     return f64(data, index), lambda c, b, s, a: b.load(place(c, b, s, a, F64))

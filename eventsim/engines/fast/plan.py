@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
+from eventsim.engines.fast.layout import USUAL_DEPTH
 from eventsim.engines.reference.cells import MARGIN
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
+
+Pair: TypeAlias = tuple[float, float]
 
 FEWEST_COLUMNS = 5
 """Along a period: disks in neighbouring cells are then nearer than half a period, so their image is the nearest one."""
@@ -19,6 +23,18 @@ WIDEST = 1.41
 
 DILUTE, VERY_DILUTE = 1.6, 2.4
 """Mean distance of disks, in reaches, from which on wide cells, and cells with room for several disks, pay."""
+
+DEEP = 8
+"""Slots of a cell with room for several disks, to begin with."""
+
+CROWDED = 3.0
+"""In mean distances of disks: a largest diameter from which on cells as wide as that would hold too many."""
+
+CLASS = 4.0
+"""How much wider the largest disk of a class of radii is than the smallest, at most; of the smallest class: than most of them."""
+
+FEWEST_SEEN = 3
+"""Along a period: with fewer columns, cells on both sides of one would be the same."""
 
 MANY_DISKS = 50_000
 """From here on the records outgrow the caches: memory is prefetched, and days are shorter."""
@@ -33,43 +49,113 @@ LEAST_DAYS = 64
 
 
 class Sizes(NamedTuple):
-    """A grid of cells: its corner, how many columns and rows, how wide, how many slots each."""
+    """A grid of cells: its corner, how many columns and rows, how wide, how many slots each, the largest radius in it."""
 
     low: tuple[float, float]
     columns: int
     rows: int
     side: tuple[float, float]
     depth: int
+    radius: float = math.inf
 
 
-def cell_sizes(stage: Stage, x: Floats, y: Floats, depth: int) -> Sizes | None:
-    """The cells for disks at (x, y); None where a period is too short for cells: everyone looks at everyone.
+def cell_sizes(
+    stage: Stage, x: Floats, y: Floats, classes: tuple[float, ...], depths: dict[int, int]
+) -> tuple[Sizes, ...] | None:
+    """The cells for disks at (x, y), finest level first; depths: slots of a cell on levels where they are told.
 
-    In an open domain the grid covers twice the extent of the disks and is made anew when one leaves it.
+    classes: the largest radius on each level.  None where a period is too short for cells: everyone looks at everyone.  In an
+    open domain the grids cover twice the extent of the disks and are made anew when one leaves them.
     """
-    least = 2.0 * float(stage.radius.max()) * MARGIN
     if stage.size is None:
         low, size = _around(x, y)
     else:
         low, size = (0.0, 0.0), stage.size
-    spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(stage.n)
+    level = levels_of(stage, classes)
+    grids: list[Sizes] = []
+    for k in range(len(classes)):
+        radius = stage.radius[level == k]
+        if k == 0:
+            grids.append(_finest(low, size, radius, depths.get(k, USUAL_DEPTH)))
+        else:
+            grids.append(_coarser(low, size, stage.period, radius, grids, depths.get(k, DEEP)))
+    return tuple(grids) if _images_are_clear(stage, grids) else None
+
+
+def _finest(low: Pair, size: Pair, radius: Floats, depth: int) -> Sizes:
+    """The grid for most of the disks: as narrow as the reach of two of them allows, or as wide as they are apart."""
+    largest = float(radius.max())
+    least = 2.0 * largest * MARGIN
+    spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(len(radius))
     if not spacing > 0.0:
         spacing = least or 1.0
     wide = max(least, 1e-6 * max(size))
     if spacing < DILUTE * least:
         side, most = wide, False
-    elif spacing < VERY_DILUTE * least and np.ptp(stage.radius) == 0.0:
+    elif spacing < VERY_DILUTE * least and np.ptp(radius) == 0.0:
         side, most = WIDEST * least, True
     else:
-        side, depth, most = max(wide, spacing), max(depth, 8), False
+        side, depth, most = max(wide, spacing), max(depth, DEEP), False
     columns, rows = (_number(length, side, wide, most) for length in size)
-    for count, length in zip((columns, rows), stage.period, strict=True):
+    return Sizes(low, columns, rows, (size[0] / columns, size[1] / rows), depth, largest)
+
+
+def _coarser(
+    low: Pair, size: Pair, period: tuple[float | None, float | None], radius: Floats, finer: list[Sizes], depth: int
+) -> Sizes:
+    """The grid of a class of larger disks.
+
+    So wide that a disk of a finer grid, wherever it is in its own cell, reaches no further than the next cell of this one.
+    """
+    largest = float(radius.max())
+    spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(len(radius))
+    wide = max([2.0 * largest, spacing, *(largest + grid.radius + max(grid.side) for grid in finer)]) * MARGIN
+    columns, rows = (max(1, int(length / wide)) for length in size)
+    columns, rows = (
+        1 if length is not None and count < FEWEST_SEEN else count
+        for count, length in zip((columns, rows), period, strict=True)
+    )
+    return Sizes(low, columns, rows, (size[0] / columns, size[1] / rows), depth, largest)
+
+
+def _images_are_clear(stage: Stage, grids: list[Sizes]) -> bool:
+    """Whether a pair that can meet before it is predicted again is always nearest in the image in which it meets.
+
+    On a single level neighbouring cells hold them.  On several a disk flies no further along an axis, until it is predicted
+    again, than the finest cells are wide.
+    """
+    finest, longest = grids[0], float(np.partition(stage.radius, -2)[-2:].sum()) * MARGIN
+    for count, side, length in zip((finest.columns, finest.rows), finest.side, stage.period, strict=True):
         if length is not None and count < FEWEST_COLUMNS:
-            return None
-    return Sizes(low, columns, rows, (size[0] / columns, size[1] / rows), depth)
+            return False
+        if length is not None and len(grids) > 1 and not longest + 2.0 * side < 0.5 * length:
+            return False
+    return True
 
 
-def _around(x: Floats, y: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
+def classes_of(stage: Stage) -> tuple[float, ...]:
+    """The largest radius of each class of radii, in rising order: one class where a single grid does."""
+    radius = np.unique(stage.radius)
+    size = stage.size if stage.size is not None else (float(np.ptp(stage.x)), float(np.ptp(stage.y)))
+    spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(stage.n)
+    largest = bound = float(radius[-1])
+    if 2.0 * largest <= CROWDED * spacing:
+        return (largest,)
+    usual = max(float(np.median(stage.radius)), spacing / CLASS)
+    bounds = [bound]
+    while bound / CLASS >= usual > 0.0:
+        bound /= CLASS
+        bounds.append(bound)
+    last = np.searchsorted(radius, bounds, side="right") - 1  # the largest radius that a bound lets in
+    return tuple(np.unique(radius[last[last >= 0]]).tolist())
+
+
+def levels_of(stage: Stage, classes: tuple[float, ...]) -> NDArray[np.int64]:
+    """(n,) the level of each disk, by the largest radii on each level."""
+    return np.searchsorted(classes, stage.radius)
+
+
+def _around(x: Floats, y: Floats) -> tuple[Pair, Pair]:
     """Corner and size of a rectangle around all centres, with as much room again on each side as they fill."""
     low = float(x.min()), float(y.min())
     size = [float(np.ptp(x)), float(np.ptp(y))]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pull, speed
-from eventsim.engines.fast.cells import depth_of
+from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.lanes import contact_of_eight, gather_disks
 from eventsim.engines.fast.layout import (
@@ -17,7 +17,9 @@ from eventsim.engines.fast.layout import (
     FLAGS,
     IMMOVABLE,
     LEFT,
+    LOOK,
     MET,
+    NOBODY,
     NOTHING,
     PARTNER,
     PARTNER_COUNT,
@@ -40,7 +42,8 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.memory import real, store, word
+from eventsim.engines.fast.levels import gather_near, home_of, look_delay
+from eventsim.engines.fast.memory import either, real, store, word
 from eventsim.engines.fast.met import just_met, partner_just_met
 from eventsim.engines.fast.shapes import shape_delay
 from eventsim.formulas.contact import screened_pair_delay
@@ -58,13 +61,16 @@ def predict(m, grid, rules, i, now, floor):
     """Schedule the earliest event of disk i that is not before `floor`: a contact, a wrap, or the next cell crossing."""
     x, y = place(m, rules, i, now)
     u, w = speed(m, rules, i, now)
+    home = home_of(m, grid, i)
     if word(m.disks, i * WORDS + FLAGS) & EDGE:
-        time, code, shared = _border_events(m, grid, rules, i, now, floor, x, y, u, w)
+        time, code, shared = _border_events(m, home, rules, i, now, floor, x, y, u, w)
     else:
-        time, code = _crossing(m, grid, rules, i, now, x, y, u, w, rules.gx)
+        time, code = _crossing(m, home, rules, i, now, x, y, u, w, rules.gx)
         shared = 0
+    time, code, shared = _look(m, grid, rules, i, now, u, w, time, code, shared, grid.levels)
     time, code, shared = _shapes(m, rules, i, floor, time, code, shared, rules.features)
-    time, code, shared = _contacts(m, grid, rules, i, now, floor, x, y, time, code, shared, m.slots, grid.lanes)
+    contacts = either(m.slots, _contacts_in_cells, _contacts_of_everyone)
+    time, code, shared = contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
     count = word(m.disks, (code if code >= 0 else grid.n) * WORDS + COUNT)  # of the sentinel: 0
     store(m.disks, i * REALS + DUE, time)
     store(m.disks, i * WORDS + PARTNER, code)
@@ -86,6 +92,14 @@ def _earlier(time, code, shared, new_time, new_code):
             return time, code, 1
         return new_time, new_code, 0
     return time, code, shared
+
+
+@inline
+def _look(m, grid, rules, i, now, u, w, time, code, shared, levels):
+    """The time to look for smaller disks again, if that is before the given event."""
+    if levels is None:
+        return time, code, shared
+    return _earlier(time, code, shared, now + look_delay(m, grid, rules, i, u, w), LOOK)
 
 
 @inline
@@ -375,7 +389,7 @@ def _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared
 
 
 @part
-def _contacts_of_everyone(m, grid, rules, i, floor, time, code, shared):
+def _contacts_of_everyone(m, grid, rules, i, now, floor, x, y, time, code, shared):
     """The same where there are no cells: all disks, in all images."""
     span_x = 0 if rules.length_x is None else 1
     span_y = 0 if rules.length_y is None else 1
@@ -394,35 +408,64 @@ def _contacts_of_everyone(m, grid, rules, i, floor, time, code, shared):
 def corner_slot(m, grid, i):
     """The first slot of the lower left one of the nine cells around disk i."""
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
-    return depth_of(grid, grid.deep) * (column - 1 + (grid.columns + 2) * (row - 1))
+    return slot_of(grid, column - 1, row - 1)
 
 
 @inline
-def _contacts(m, grid, rules, i, now, floor, x, y, time, code, shared, slots, lanes):
-    if slots is None:
-        return _contacts_of_everyone(m, grid, rules, i, floor, time, code, shared)
-    if lanes is None:
-        return _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared)
-    return _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared)
+def _contacts_in_cells(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The earliest contact with another disk in the cells around, if that is before the given event."""
+    in_one_grid = either(grid.lanes, _contacts_in_lanes, _contacts_one_by_one)
+    on_levels = either(grid.lanes, _contacts_on_levels_in_lanes, _contacts_on_levels_one_by_one)
+    contacts = either(grid.levels, on_levels, in_one_grid)
+    return contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
 
 
 @inline
 def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
     """The same as one by one, eight at a time."""
-    f = i * REALS
     edge = word(m.disks, i * WORDS + FLAGS) & EDGE
-    skip = word(m.disks, i * WORDS + MET)
-    if skip == SEVERAL:
+    if word(m.disks, i * WORDS + MET) == SEVERAL:
         return _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    skip = _partner_to_skip(m, rules, i, now, x, y, edge)
+    start, width = corner_slot(m, grid, i), depth_of(grid, grid.deep) * (grid.columns + 2)
+    count = _gather(m, grid, start, 0, i, skip, grid.deep)
+    count = _gather(m, grid, start + width, count, i, skip, grid.deep)
+    count = _gather(m, grid, start + 2 * width, count, i, skip, grid.deep)
+    return _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, edge)
+
+
+@inline
+def _contacts_on_levels_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The same where each class of radii has a grid of its own; what is far in its own class may be near in another."""
+    skip = _partner_to_skip(m, rules, i, now, x, y, True)
+    count = gather_near(m, grid, rules, i, x, y, skip)
+    if word(m.disks, i * WORDS + MET) == SEVERAL:
+        return _contacts_of_list(m, rules, i, now, floor, x, y, True, count, time, code, shared)
+    return _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, True)
+
+
+@inline
+def _contacts_on_levels_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    count = gather_near(m, grid, rules, i, x, y, NOBODY)
+    return _contacts_of_list(m, rules, i, now, floor, x, y, True, count, time, code, shared)
+
+
+@inline
+def _partner_to_skip(m, rules, i, now, x, y, edge):
+    """The disk that disk i has just met; SEVERAL, or another number that is no disk."""
+    skip = word(m.disks, i * WORDS + MET)
     if skip >= 0:
         kx, ky = 0, 0
         if edge:
             kx, ky = images(m, rules, i, skip, now, x, y)
         skip = partner_just_met(m, rules, i, kx, ky)
-    start, width = corner_slot(m, grid, i), depth_of(grid, grid.deep) * (grid.columns + 2)
-    count = _gather(m, grid, start, 0, i, skip, grid.deep)
-    count = _gather(m, grid, start + width, count, i, skip, grid.deep)
-    count = _gather(m, grid, start + 2 * width, count, i, skip, grid.deep)
+    return skip
+
+
+@inline
+def _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, edge):
+    """The earliest contact with a disk of the list; where two of them may be seen across a boundary, `edge` says so."""
+    f = i * REALS
     x0, y0, u, w = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
@@ -453,13 +496,13 @@ def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
         if first >= count:
             break
     if doubts:
-        return _contacts_in_doubt(m, rules, i, now, floor, x, y, edge, doubts, time, code, shared)
+        return _contacts_of_list(m, rules, i, now, floor, x, y, edge, doubts, time, code, shared)
     return time, code, shared
 
 
 @part
-def _contacts_in_doubt(m, rules, i, now, floor, x, y, edge, count, time, code, shared):
-    """The same for the pairs at the head of the list, about which the lanes could not tell."""
+def _contacts_of_list(m, rules, i, now, floor, x, y, edge, count, time, code, shared):
+    """The same one by one: for pairs about which the lanes cannot tell, and where there are no lanes."""
     for k in range(count):
         j = word(m.near, k)
         kx, ky = 0, 0

@@ -10,14 +10,15 @@ import numpy as np
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.fast import layout
 from eventsim.engines.fast.compiled import link, mark_warm, timed_compiling
+from eventsim.engines.fast.grids import FEW_DISKS, Grids
 from eventsim.engines.fast.instant import contacts_at, due_at
 from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid, Rules
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.order import along_a_curve
-from eventsim.engines.fast.plan import LOOK_AHEAD, MANY_DISKS, Sizes, cell_sizes, day_length, days_of, shortest_day
+from eventsim.engines.fast.plan import MANY_DISKS, Sizes, classes_of, day_length, shortest_day
 from eventsim.engines.fast.shapes import KINDS, WIDTH
-from eventsim.engines.fast.state import FastState, aligned
+from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.loop import components, endless, row_order, squeezed
 from eventsim.engines.reference.resolve import Resolver, instant_of
@@ -30,9 +31,6 @@ from eventsim.scene.stage import Stage
 
 BUFFER = 1 << 13
 """Rows in the buffer that kernels fill: a megabyte, which stays in the caches until it is drained."""
-
-FEW_DISKS = 24
-"""Below it, looking at all disks is as fast as cells."""
 
 COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
 """What a snapshot has one number of for every disk."""
@@ -60,7 +58,7 @@ class FastSession:
         stage: Stage,
         keep_rows: bool = True,
         lanes: bool | None = None,
-        sizes: Sizes | str | None = "auto",
+        sizes: Sizes | tuple[Sizes, ...] | str | None = "auto",
         saved: Snapshot | None = None,
     ) -> None:
         self.stage = stage
@@ -69,8 +67,7 @@ class FastSession:
         self._keep_rows = keep_rows
         self._counts = np.zeros(13, np.int64)
         self._sums = np.zeros(6)
-        self._sizes = sizes
-        self._depth = layout.USUAL_DEPTH
+        self._grids = Grids(stage, sizes)
         straight = stage.gravity is None
         plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
         wanted = lanes_work() if lanes is None else lanes
@@ -134,6 +131,9 @@ class FastSession:
             elif status == layout.STATUS_STUCK:
                 return self._give_up(int(state.labels[counts[layout.DISK]]))
             elif status == layout.STATUS_FULL:
+                self._grids.deepen(int(state.words[counts[layout.DISK], layout.FLAGS]) // layout.FIRST_LEVEL)
+                self._predict_afresh()
+            elif status == layout.STATUS_BEYOND:
                 self._predict_afresh()
             elif status in (layout.STATUS_LIMIT, layout.STATUS_IDLE):
                 empty = bool(np.isinf(self._due[0]) and np.all(np.isinf(self._due)))
@@ -292,27 +292,24 @@ class FastSession:
         """Make cells and calendar anew, with more slots as long as a cell is full."""
         state, stage, now = self.state, self.stage, self.state.now
         while True:
-            sizes = self._chosen_sizes(now)
-            slots = None
-            if sizes is not None:
-                slots = aligned(sizes.depth * (sizes.columns + 2) * (sizes.rows + 2) + 16, np.int32)
-                slots[:] = stage.n
-            one = Sizes((0.0, 0.0), 1, 1, stage.size or (1.0, 1.0), 0)
-            cells = one if sizes is None else sizes
-            self._grid = self._grid_of(cells, sizes is not None, 1.0)
+            self._grids.choose(self.motion())
+            self._grid = self._grids.grid(self._lanes)
+            state.set_levels(self._grids.level)
             self._arrays = Arrays(
                 state.memory,
-                slots,
-                aligned(9 * cells.depth + 32, np.int32),
+                self._grids.slots(),
+                self._grids.near(),
                 state.several.reshape(-1),
                 self._mass,
                 state.low.reshape(-1) if state.low_parts else None,
                 self._features,
+                self._grids.table(),
                 self._buffer.view(np.uint8) if self._keep_rows else None,
             )
-            if fill(self._arrays, self._grid, self._rules, now):
+            full = fill(self._arrays, self._grid, self._rules, now)
+            if full < 0:
                 break
-            self._depth = 2 * cells.depth
+            self._grids.deepen(full)
         self._due[:] = now
         schedule(self._arrays, self._grid, self._counts, now)
         self._predict(0, stage.n, now)
@@ -321,35 +318,6 @@ class FastSession:
     def _predict(self, begin: int, end: int, floor: float) -> None:
         """Predict the disks in these places anew; what is before `floor` does not count."""
         predict_some(self._arrays, self._grid, self._rules, self._counts, begin, end, self.state.now, floor)
-
-    def _chosen_sizes(self, now: float) -> Sizes | None:
-        if self._sizes is None:
-            return None
-        if isinstance(self._sizes, Sizes):
-            return self._sizes._replace(depth=max(self._sizes.depth, self._depth))
-        if self.stage.n < FEW_DISKS:
-            return None
-        motion = self.motion()
-        return cell_sizes(self.stage, motion.x, motion.y, self._depth)
-
-    def _grid_of(self, cells: Sizes, has_slots: bool, day: float) -> Grid:
-        n = self.stage.n
-        deep = None if cells.depth == layout.USUAL_DEPTH else 1
-        ahead = LOOK_AHEAD if n >= MANY_DISKS and has_slots else None
-        return Grid(
-            n,
-            cells.columns,
-            cells.rows,
-            cells.depth,
-            deep,
-            *cells.low,
-            *cells.side,
-            days_of(n),
-            day,
-            1.0 / day,
-            self._lanes,
-            ahead,
-        )
 
     def _choose_days(self) -> None:
         """Choose a fitting length of the days, for a calendar that is to be made anew."""
@@ -489,7 +457,8 @@ def _rules(stage: Stage) -> Rules:
 
 def kind_of(stage: Stage, keep_rows: bool) -> str:
     """A name for what the scene has: scenes of one kind share their kernels."""
-    asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS]
+    levels = stage.n >= FEW_DISKS and len(classes_of(stage)) > 1
+    asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS, levels]
     needs = [*_rules(stage), stage.mass, *(True if wanted else None for wanted in asked)]
     return "".join("0" if need is None else "1" for need in needs)
 

@@ -12,6 +12,7 @@ from eventsim.engines.fast.layout import (
     CONTACT_TIME,
     COUNT,
     COUNTS,
+    FIRST_LEVEL,
     FLAGS,
     IMMOVABLE,
     LABEL,
@@ -225,6 +226,11 @@ class FastState(EngineState):
 
     def _integers(self, place: int) -> Column:
         return Column(self.words[: self.n, place], self.place_of)
+
+    def set_levels(self, level: Integers) -> None:
+        """Note the level of cells of each disk of the scene, (n,)."""
+        flags = self.words[self.place_of, FLAGS]
+        self.words[self.place_of, FLAGS] = flags % FIRST_LEVEL + FIRST_LEVEL * level
 
     def room_for(self, count: int) -> int:
         """The first of `count` free rows of the table `several`, which is cleared of forgotten ones, or grows, if it is full."""

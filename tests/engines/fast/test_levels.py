@@ -1,0 +1,72 @@
+"""Grids of several levels change no bit of the log, whatever the radii."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import eventsim as es
+from eventsim.engines.base import Stop
+from eventsim.engines.fast import FastSession
+from eventsim.engines.fast.plan import Sizes, classes_of, levels_of
+from eventsim.record.digest import digest_of
+from eventsim.scene.stage import Stage, stage_of
+from tests.engines.fast.test_same_log import assert_same, rows_of
+from tests.engines.scenes import lattice_gas, wide_mixture
+
+STOP = Stop(until=100.0, events=3000)
+slow = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    ("domain", "gravity"),
+    [
+        (es.Periodic, None),
+        pytest.param(es.Box, None, marks=slow),
+        pytest.param(es.Channel, None, marks=slow),
+        pytest.param(es.Open, None, marks=slow),
+        pytest.param(es.Box, (0.5, -1.0), marks=slow),
+        pytest.param(es.Channel, (0.5, 0.0), marks=slow),
+    ],
+)
+def test_a_wide_mixture_has_one_log(domain: type, gravity: tuple[float, float] | None) -> None:
+    for seed in range(4):
+        stage = stage_of(wide_mixture(250, seed, domain, gravity=gravity))
+        assert len(classes_of(stage)) > 1
+        assert_same(stage, STOP)
+
+
+def square(count: int, depth: int, radius: float) -> Sizes:
+    return Sizes((0.0, 0.0), count, count, (8.0 / count, 8.0 / count), depth, radius)
+
+
+def test_grids_of_any_width_and_the_scalar_kernel_give_one_log() -> None:
+    stage = stage_of(wide_mixture(250, 1, es.Periodic))
+    choices: list[dict[str, object]] = [
+        {},
+        {"lanes": False},
+        {"sizes": None},
+        {"sizes": (square(18, 8, 0.2), square(3, 16, 1.2))},
+        {"sizes": (square(40, 4, 0.05), square(16, 4, 0.2), square(1, 8, 1.2))},
+    ]
+    digests = {digest_of(rows_of(FastSession(stage, **options), STOP)[0]) for options in choices}
+    assert len(digests) == 1
+
+
+def stage_with(radius: np.ndarray) -> Stage:
+    scene = lattice_gas(len(radius), 0.1, es.Periodic)
+    disks = es.Disks(1000.0 * scene.disks.position, scene.disks.velocity, radius)
+    return stage_of(es.Scene(disks, es.Periodic(tuple(1000.0 * length for length in scene.domain.size))))
+
+
+def test_disks_of_alike_radii_share_one_grid() -> None:
+    assert classes_of(stage_with(np.linspace(300.0, 900.0, 100))) == (900.0,)
+
+
+def test_each_class_ends_with_a_radius_that_exists() -> None:
+    stage = stage_with(np.concatenate([np.full(2000, 0.5), [1.0, 3.0, 100.0], np.full(1000, 0.0)]))
+    classes = classes_of(stage)
+    assert set(classes) <= {0.0, 0.5, 1.0, 3.0, 100.0}
+    level = levels_of(stage, classes)
+    assert level.tolist() == [next(k for k, bound in enumerate(classes) if r <= bound) for r in stage.radius]
+    assert level[2002] == len(classes) - 1
