@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from eventsim.engines import ENGINES as ENGINES
     from eventsim.engines.base import Run as Run
     from eventsim.engines.base import Stop as Stop
+    from eventsim.errors import CheckpointError as CheckpointError
     from eventsim.errors import CollapseError as CollapseError
     from eventsim.errors import EventsimError as EventsimError
     from eventsim.errors import LogError as LogError
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from eventsim.scene.files import load_scene as load_scene
     from eventsim.scene.gallery import gallery as gallery
     from eventsim.simulation import Simulation as Simulation
+    from eventsim.simulation import resume as resume
     from eventsim.simulation import simulate as simulate
 
 _HOMES = {
@@ -68,6 +70,7 @@ _HOMES = {
     "load_scene": "scene.files",
     "gallery": "scene.gallery",
     "simulate": "simulation",
+    "resume": "simulation",
     "Simulation": "simulation",
     "Run": "engines.base",
     "Stop": "engines.base",
@@ -79,6 +82,7 @@ _HOMES = {
     "SceneError": "errors",
     "LogError": "errors",
     "CollapseError": "errors",
+    "CheckpointError": "errors",
 }
 
 __all__ = [*_HOMES, "__version__"]

@@ -32,3 +32,7 @@ class LogWarning(UserWarning):
 
 class CollapseError(EventsimError):
     """The contacts of a scene accumulate at an instant, so that time cannot go on."""
+
+
+class CheckpointError(EventsimError):
+    """A checkpoint cannot be read or written, or belongs to another scene or version."""

@@ -11,12 +11,14 @@ import numpy as np
 
 from eventsim.engines import AUTO, ENGINES, Engine
 from eventsim.engines.base import Counters, OnEvent, Progress, Run, Snapshot, Stop
+from eventsim.engines.checkpoint import interval, load_checkpoint, place_for
 from eventsim.engines.drive import Wishes, diagnosed, memory_log, provenance_of, state_of
-from eventsim.errors import CollapseError, EventsimError, SceneError
+from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
 from eventsim.record.events import Rows, State
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Ending
 from eventsim.scene import Scene
+from eventsim.scene.difference import difference
 from eventsim.scene.numbers import number, optional_number, optional_whole, point
 from eventsim.scene.stage import stage_of
 
@@ -36,6 +38,8 @@ def simulate(
     on_event: OnEvent | None = None,
     measure: bool | float = False,
     command: str | None = None,
+    checkpoint: str | PathLike[str] | None = None,
+    every: int | str = "60s",
     **options: Any,
 ) -> Run:
     """Simulate a scene until a time on its clock or for a number of events, whichever comes first.
@@ -44,15 +48,21 @@ def simulate(
     (counters only), True (in memory) or a path (.csv, .jsonl, .npz, .parquet; streamed; `compact` leaves out what replay
     computes).  digest: compute the digest also where no log is kept.  progress(fraction, events, time): called a few times a
     second.  on_event(rows): called with each block of new rows.  measure: True, or the time at the beginning to leave out, for
-    `run.measures`, in constant memory and without a log.  options: the engine's own, such as check=True.
+    `run.measures`, in constant memory and without a log.  checkpoint: a file that `resume` can go on from, replaced `every` so
+    many events (1000000) or so much time ("90s", "5min", "2h"), and at the end.  options: the engine's own, such as check=True.
 
     Simultaneous contacts are never cut apart, so a run that stops by `events` may have a few events more.
 
     Returns a Run; its `stopped` tells why it ended.  Raises SceneError where nothing says when to stop, EventsimError for an
-    engine that does not exist.
+    engine that does not exist and for wishes that do not go together, LogError and CheckpointError for files that cannot be
+    written: a log that has rows then stays as NAME.part, which `load_log` reads.
     """
     stop = stop_of(a_scene(scene), until, events)
     wishes = Wishes(log=log, compact=compact, digest=digest, progress=progress, on_event=on_event, command=command)
+    if checkpoint is not None:
+        wishes.checkpoint, wishes.every = place_for(checkpoint), interval(every)
+        if measure is not False:
+            raise EventsimError("measures are not in a checkpoint: keep a log, and measure that")
     if measure is False:
         return engine_named(engine).run(scene, stop, wishes, **options)
     from eventsim.measure import Meter  # only who measures pays for it
@@ -63,6 +73,51 @@ def simulate(
     if run.time > scene.start_time:
         run.measures = meter.finish(run.time - scene.start_time)
     return run
+
+
+def resume(
+    path: str | PathLike[str],
+    until: float | None = None,
+    events: int | None = None,
+    engine: str | None = None,
+    log: str | PathLike[str] | None = None,
+    digest: bool = False,
+    progress: Progress | None = None,
+    on_event: OnEvent | None = None,
+    checkpoint: str | PathLike[str] | None = None,
+    every: int | str | None = None,
+    scene: Scene | None = None,
+) -> Run:
+    """Go on with a run from its checkpoint `path`: the log it joins is that of an uninterrupted run, bit for bit.
+
+    until, events: replace both parts of the stop that the run had; events count from its beginning.  engine: another one.
+    log: where its log is now, if it was moved; rows behind the checkpoint are written anew.  digest: refused where there is no
+    log.  progress, on_event: as in `simulate`, of what comes now.  checkpoint, every: where and how often the next checkpoints
+    are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of another scene.
+
+    Returns a Run, whose counters and times include what was before.  Raises CheckpointError for a file that is no checkpoint,
+    of another version or of another scene, LogError where its log is lost.
+    """
+    saved = load_checkpoint(path)
+    provenance = saved.provenance
+    if scene is not None and a_scene(scene) != provenance.scene:
+        raise CheckpointError(f"{path}: the checkpoint is of another scene: {difference(provenance.scene, scene)}")
+    if log is not None and saved.log is None:
+        raise CheckpointError(f"{path}: the run kept no log, so none can be continued")
+    if saved.log is not None and saved.log.mark.rows != saved.counters.events:
+        raise CheckpointError(f"{path}: {saved.log.mark.rows} rows of a log do not fit {saved.counters.events} events")
+    stop = saved.stop if until is None and events is None else stop_of(provenance.scene, until, events)
+    wishes = Wishes(
+        log=False if saved.log is None else saved.log.path if log is None else log,
+        compact=saved.log is not None and saved.log.compact,
+        digest=digest,
+        progress=progress,
+        on_event=on_event,
+        checkpoint=place_for(path if checkpoint is None else checkpoint),
+        every=saved.every if every is None else interval(every),
+        resumed=saved,
+    )
+    return engine_named(provenance.engine if engine is None else engine).run(provenance.scene, stop, wishes)
 
 
 def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import click
 
 from eventsim.cli.engine_options import DT_HELP, KNOWN, OPTION_HELP, engine_options
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
-from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES, writable
+from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES, Files, writable
 
 FIRST_SCENE = "break"
 ENGINE_HELP = f"Which engine simulates: auto, reference, fast, certified; with time steps: {', '.join(KNOWN)}."
@@ -29,11 +30,14 @@ EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 @click.option("--log", metavar="FILE", help=f"Keep every event in FILE, one of {', '.join(LOG_SUFFIXES)}.")
 @click.option("--compact", is_flag=True, help="Log only what replay cannot compute.")
 @click.option("--state", metavar="FILE", help="Write the final state to FILE (.csv or .npz).")
-@click.option("--engine", default="auto", show_default=True, metavar="NAME", help=ENGINE_HELP)
+@click.option("--engine", metavar="NAME", help=f"{ENGINE_HELP}  [default: auto]")
 @click.option("--dt", type=float, metavar="DT", help=DT_HELP)
 @click.option("--option", "engine_settings", multiple=True, metavar="KEY=VALUE", help=OPTION_HELP)
 @click.option("--digest", is_flag=True, help="Compute the log's digest also where no log is kept.")
 @click.option("--horizon", is_flag=True, help="Estimate until when the float64 trajectory is the true one.")
+@click.option("--checkpoint", metavar="FILE", help="Keep FILE, from which a run that was stopped or killed can go on.")
+@click.option("--every", metavar="EVENTS|TIME", help="How often: so many events, or 90s, 5min, 2h.  [default: 60s]")
+@click.option("--resume", metavar="FILE", help="Go on from a checkpoint; its scene, stop and log are in it.")
 @json_option
 @quiet_option
 def command(
@@ -45,11 +49,14 @@ def command(
     log: str | None,
     compact: bool,
     state: str | None,
-    engine: str,
+    engine: str | None,
     dt: float | None,
     engine_settings: tuple[str, ...],
     digest: bool,
     horizon: bool,
+    checkpoint: str | None,
+    every: str | None,
+    resume: str | None,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -57,6 +64,11 @@ def command(
 
     It stops at the time or the number of events that the scene or the command line gives, whichever comes
     first; what the command line gives replaces what the scene says.
+
+    A run that was interrupted, killed, or has reached its stop goes on from its checkpoint: the joined log is that of
+    an uninterrupted run, bit for bit. With --resume, --until and --events replace the stop, --engine the engine, --log
+    says where the log was moved to; a SCENE is compared with that of the checkpoint. FILE.part of a log is what
+    a killed run has written; every verb reads it.
 
     \b
     Examples:
@@ -66,6 +78,8 @@ def command(
       eventsim run gas --events 5000 --state end.csv        where all disks are in the end
       eventsim run gas --events 5000 --horizon              how long to believe every single contact
       eventsim run gas --engine frames --dt 0.01            what an engine with time steps makes of it
+      eventsim run gas --until 1e6 --log gas.npz --checkpoint gas.checkpoint --every 10min
+      eventsim run --resume gas.checkpoint                  what was killed goes on
 
     \b
     Keys of --json:
@@ -85,60 +99,72 @@ def command(
                                them at once); events, until: how far they were compared}
       stopped, reason          until | events | quiet (no event ahead) | collapse | digits |
                                undecided tie | interrupted; and why, in words
-      log, state               the files written (null without)
+      log, state, checkpoint   the files written (null without)
 
     Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse or digits; 130 interrupted.
     """
-    log_path = writable(log, "--log", LOG_SUFFIXES, source=scene)
-    state_path = writable(state, "--state", STATE_SUFFIXES, source=scene)
-    if compact and log_path is None:
+    files = Files(
+        writable(log, "--log", LOG_SUFFIXES, source=scene),
+        writable(state, "--state", STATE_SUFFIXES, source=scene),
+        writable(checkpoint or resume, "--checkpoint", None, source=scene),
+    )
+    named = [path.resolve() for path in files if path is not None]
+    if len(set(named)) < len(named):
+        raise click.UsageError("two of --log, --state and --checkpoint name the same file")
+    if compact and log is None:
         raise click.UsageError("--compact says how the log is written: give --log FILE too")
-    if log_path is not None and state_path is not None and log_path.resolve() == state_path.resolve():
-        raise click.UsageError(f"--log and --state name the same file, {log_path}")
     if until is not None and math.isnan(until):
         raise click.UsageError("--until nan: must be a time")
+    if every is not None and files.checkpoint is None:
+        raise click.UsageError("--every says how often a checkpoint is written: give --checkpoint FILE too")
+    if resume is not None and compact:
+        raise click.UsageError("--compact: a log that goes on stays as it was begun")
+    if resume is not None and scene is None and (settings or seed is not None):
+        raise click.UsageError("--set and --seed shape a scene, and that of a checkpoint is what it is")
 
-    options = engine_options(engine, dt, engine_settings)
+    options = engine_options(engine or "auto", dt, engine_settings)
+    if resume is not None and options:
+        raise click.UsageError("--dt and --option: engines with time steps have no checkpoints")
 
+    from eventsim import simulation
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.summary import summary_data, summary_text
     from eventsim.cli.words import as_json_text
-    from eventsim.simulation import simulate
 
-    asked = scene or FIRST_SCENE
-    chosen = chosen_scene(asked, settings, seed)
-    if until is None and events is None and chosen.until is None and chosen.events is None:
+    asked = scene or resume or FIRST_SCENE
+    chosen = None if resume and scene is None else chosen_scene(asked, settings, seed)
+    if not resume and until is events is None and chosen and chosen.until is chosen.events is None:
         raise click.UsageError(
             f"nothing says when to stop {asked}: give --until T or --events N, or a key until or events in the scene"
         )
+    wanted: dict[str, Any] = {"until": until, "events": events, "log": files.log, "digest": digest}
+    wanted |= {"engine": engine, "checkpoint": files.checkpoint, "every": every}
+    wanted = {name: value for name, value in wanted.items() if value is not None}
     with ProgressBar(quiet=quiet) as progress:
-        run = simulate(
-            chosen,
-            until=until,
-            events=events,
-            engine=engine,
-            log=False if log_path is None else log_path,
-            compact=compact,
-            digest=digest,
-            progress=progress,
-            command=click.get_current_context().obj,
-            **options,
-        )
+        wanted["progress"] = progress
+        if chosen is None or resume:
+            run = simulation.resume(str(resume), scene=chosen, **wanted)
+        else:
+            command_line = click.get_current_context().obj
+            run = simulation.simulate(chosen, compact=compact, command=command_line, **wanted, **options)
+    files = files._replace(log=run.log_path)
     estimate = None
     if horizon:
+        from eventsim.engines.base import Stop
         from eventsim.engines.horizon import horizon as horizon_of
-        from eventsim.simulation import stop_of
 
-        estimate = horizon_of(run.scene, stop_of(chosen, until, events))
-    if state_path is not None:
+        estimate = horizon_of(
+            run.scene, Stop(events=run.counters.events) if run.stopped == "events" else Stop(run.time)
+        )
+    if files.state is not None:
         from eventsim.record.states import write_states
 
-        write_states(state_path, run.scene, [run.state])
+        write_states(files.state, run.scene, [run.state])
     if as_json:
-        click.echo(as_json_text(summary_data(asked, run, log_path, state_path, estimate)))
+        click.echo(as_json_text(summary_data(asked, run, files, estimate)))
     elif not quiet:
-        click.echo(summary_text(asked, run, log_path, state_path, estimate))
+        click.echo(summary_text(asked, run, files, estimate))
     if run.stopped in EXITS:
         if as_json or quiet:
             click.echo(f"stopped early: {run.reason or run.stopped}", err=True)

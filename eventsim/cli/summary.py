@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from eventsim import __version__
 from eventsim.cli.words import aligned, plural, scene_line, short, title
 
 if TYPE_CHECKING:
+    from eventsim.cli.target import Files
     from eventsim.engines.base import Run
     from eventsim.engines.horizon import Horizon
 
 
-def summary_data(
-    asked: str, run: Run, log: Path | None, state: Path | None, horizon: Horizon | None = None
-) -> dict[str, object]:
+def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> dict[str, object]:
     """Return the keys that `eventsim run --help` documents."""
     return {
         "scene": asked,
@@ -39,12 +38,11 @@ def summary_data(
         "horizon": None if horizon is None else asdict(horizon),
         "stopped": run.stopped,
         "reason": run.reason,
-        "log": None if log is None else str(log),
-        "state": None if state is None else str(state),
+        **{name: None if path is None else str(path) for name, path in files._asdict().items()},
     }
 
 
-def summary_text(asked: str, run: Run, log: Path | None, state: Path | None, horizon: Horizon | None = None) -> str:
+def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> str:
     """Return the summary as aligned lines."""
     counters, residuals = run.counters, run.residuals
     rows = [
@@ -62,10 +60,12 @@ def summary_text(asked: str, run: Run, log: Path | None, state: Path | None, hor
         rows.append(("horizon", horizon_words(horizon)))
     if run.digest is not None:
         rows.append(("digest", run.digest))
-    if log is not None:
-        rows.append(("log", f"{log}: {plural(counters.events, 'row')}"))
-    if state is not None:
-        rows.append(("state", str(state)))
+    if files.log is not None:
+        rows.append(("log", f"{files.log}: {plural(counters.events, 'row')}"))
+    if files.state is not None:
+        rows.append(("state", str(files.state)))
+    if files.checkpoint is not None:
+        rows.append(("checkpoint", f"eventsim run --resume {quote(str(files.checkpoint))} goes on from here"))
     return f"{title(asked, run.scene.name)}: {scene_line(run.scene)}\n{aligned(rows)}"
 
 

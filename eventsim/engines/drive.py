@@ -2,62 +2,42 @@
 
 from __future__ import annotations
 
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from time import perf_counter
-from types import FrameType
-from typing import Protocol
 
 import numpy as np
 
 from eventsim import __version__
 from eventsim.engines.base import OnEvent, Progress, Run, Session, Stop
-from eventsim.engines.collapse import TAIL, diagnosis
+from eventsim.engines.checkpoint import Checkpoint, Every
+from eventsim.engines.collapse import diagnosis
+from eventsim.engines.keeper import USUALLY, Keeper
 from eventsim.engines.residuals import residuals_of
+from eventsim.engines.work import Sink, Work
 from eventsim.engines.writer import Writer
 from eventsim.errors import EventsimError
-from eventsim.formulas.clock import clock_time
+from eventsim.formulas.clock import MOST_EPOCHS, clock_time
 from eventsim.record.digest import Digester
-from eventsim.record.events import Rows, State, blank_rows
-from eventsim.record.files import open_sink
+from eventsim.record.events import Rows, State
+from eventsim.record.files import FileSink, continued_sink, open_sink, rows_so_far
 from eventsim.record.log import EventLog, MemorySink
 from eventsim.record.places import on_scene_axes
 from eventsim.record.provenance import Ending, Provenance
 from eventsim.scene import Scene
-
-FIRST_BUDGET, LONGEST_STINT = 64, 0.2
-"""Steps of the first stint; seconds that a stint may take before progress and interrupts are looked at."""
-
-MOST_EPOCHS = 2.0**61
-"""What the column `epoch` can count."""
+from eventsim.scene.stage import Stage
 
 REPLAYED = ("auto", "reference", "fast")
 """Engines whose every bit follows from the scene and the order of its contacts."""
 
 
-class Sink(Protocol):
-    """Where rows go."""
-
-    def write(self, rows: Rows) -> None:
-        """Take a block of rows."""
-
-    def close(self, ending: Ending | None = None) -> None:
-        """All rows have come; the run ended like this."""
-
-    def abandon(self) -> None:
-        """Leave nothing behind."""
-
-
 @dataclass(slots=True)
 class Wishes:
-    """What a caller wants to have besides the state: a log (in memory: True, or a path), a digest, to be told.
+    """What a caller wants to have besides the state: a log (in memory: True, or a path), a digest, to be told, checkpoints.
 
-    on_event is called between two stints of the engine, takers beside it, in the writer's thread.
+    on_event is called between two stints of the engine, takers beside it, in the writer's thread.  checkpoint: the file that is
+    replaced again and again, `every` so often.  resumed: the checkpoint that the run goes on from.
     """
 
     log: bool | str | PathLike[str] = False
@@ -67,6 +47,9 @@ class Wishes:
     on_event: OnEvent | None = None
     command: str | None = None
     takers: list[OnEvent] = field(default_factory=list)
+    checkpoint: Path | None = None
+    every: Every = USUALLY
+    resumed: Checkpoint | None = None
 
     @property
     def rows(self) -> bool:
@@ -77,42 +60,46 @@ class Wishes:
 def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishes) -> Run:
     """Simulate to the stop and gather what was wished for; an interrupt keeps everything so far.
 
-    Raises EventsimError for a compact log of an engine whose floats replay cannot compute.
+    Where something breaks the run off, a log that has rows stays as NAME.part, which can be read, and the last checkpoint.
+    Raises EventsimError for wishes that do not go together, LogError and CheckpointError where files cannot be written.
     """
-    if wishes.compact and engine not in REPLAYED:
-        raise EventsimError(
-            "a compact log leaves out what replay computes, and replay computes as the reference and the fast engine do: "
-            f"the log of the engine {engine} has to be a full one"
-        )
     stage = session.stage
-    if stop.until is not None and stop.until - stage.start_time > MOST_EPOCHS * stage.epoch_length:
-        latest = stage.start_time + MOST_EPOCHS * stage.epoch_length
-        raise EventsimError(f"until = {stop.until!r}: the clock of this scene ends at {latest:g}")
-    provenance = provenance_of(session, engine, scene, wishes.command)
+    _demand_possible(engine, stop, stage, wishes)
+    resumed = wishes.resumed
+    if resumed is None:
+        provenance = provenance_of(session, engine, scene, wishes.command)
+    else:
+        provenance = resumed.provenance
+        session.restore(resumed.snapshot)
+        session.counters.copy_from(resumed.counters)
     memory = MemorySink(provenance) if wishes.log is True else None
-    path = Path(wishes.log) if not isinstance(wishes.log, bool) else None
-    sinks: list[Sink] = [] if memory is None else [memory]
-    if path is not None:
-        sinks.append(open_sink(path, provenance, compact=wishes.compact))
+    file = _file_sink(wishes, provenance)
+    sinks: list[Sink] = [sink for sink in (memory, file) if sink is not None]
     digester = Digester() if wishes.rows and (wishes.digest or wishes.log is not False) else None
     compiled_before = _compile_seconds(session)
     digests = [] if digester is None else [digester.update]
     writer = Writer([sink.write for sink in sinks] + digests + wishes.takers)
     try:
-        stopped, last_rows, elapsed = _simulate(session, stop, wishes, writer)
-        stopped, reason = diagnosed(session, stopped, last_rows)
+        if resumed is not None and file is not None and digester is not None:
+            for rows in rows_so_far(file):
+                digester.update(rows)
+        keeper = None if wishes.checkpoint is None else Keeper(wishes.checkpoint, wishes.every, provenance, stop, file)
+        work = Work(session, stop, wishes.on_event, wishes.progress, writer, keeper)
+        if resumed is not None:
+            work.go_on(resumed)
+        stopped = work.done()
+        stopped, reason = diagnosed(session, stopped, work.last_rows)
         writer.finish()
         began = perf_counter()
         digest = None if digester is None else digester.hexdigest()
         for sink in sinks:
             sink.close(Ending(*session.clock, stopped, digest))
-        written = writer.waited_s + perf_counter() - began
+        written = work.written + perf_counter() - began
     except BaseException:
         writer.abandon()
         for sink in sinks:
-            sink.abandon()
+            sink.leave() if session.counters.events else sink.abandon()
         raise
-    log = None if memory is None else memory.log()
     compiled = _compile_seconds(session)
     return Run(
         scene=scene,
@@ -123,13 +110,49 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         stopped=stopped,
         reason=reason,
         digest=digest,
-        elapsed_s=elapsed - (compiled - compiled_before),
+        elapsed_s=work.elapsed - (compiled - compiled_before),
         compile_s=compiled,
         write_s=written,
-        log_path=path,
+        log_path=None if file is None else file.path,
         trajectory=getattr(session, "trajectory", None),  # stepped engines have one
-        _log=log,
+        _log=None if memory is None else memory.log(),
     )
+
+
+def _demand_possible(engine: str, stop: Stop, stage: Stage, wishes: Wishes) -> None:
+    """Raise EventsimError for what this engine, or any, cannot do."""
+    if wishes.compact and engine not in REPLAYED:
+        raise EventsimError(
+            "a compact log leaves out what replay computes, and replay computes as the reference and the fast engine do: "
+            f"the log of the engine {engine} has to be a full one"
+        )
+    if stop.until is not None and stop.until - stage.start_time > MOST_EPOCHS * stage.epoch_length:
+        latest = stage.start_time + MOST_EPOCHS * stage.epoch_length
+        raise EventsimError(f"until = {stop.until!r}: the clock of this scene ends at {latest:g}")
+    if wishes.checkpoint is None and wishes.resumed is None:
+        return
+    if engine not in REPLAYED:
+        raise EventsimError(
+            f"the engine {engine} has no checkpoints, since its future does not follow from the flights of the disks alone; "
+            "auto, reference and fast have"
+        )
+    if wishes.log is True:
+        raise EventsimError("a log in memory does not outlive its run: with a checkpoint the log needs a file")
+    if wishes.digest and wishes.log is False:
+        raise EventsimError(
+            "a digest is of all rows, and a run that goes on has only its log to look back: give it a log file"
+        )
+
+
+def _file_sink(wishes: Wishes, provenance: Provenance) -> FileSink | None:
+    """The writer of the log file: a new one, or that of the run that goes on."""
+    if isinstance(wishes.log, bool):
+        return None
+    path = Path(wishes.log)
+    if wishes.resumed is None:
+        return open_sink(path, provenance, compact=wishes.compact)
+    assert wishes.resumed.log is not None, "only a run that kept a log goes on with one"
+    return continued_sink(path, provenance, wishes.compact, wishes.resumed.log.mark)
 
 
 def diagnosed(session: Session, stopped: str, last_rows: Rows) -> tuple[str, str | None]:
@@ -174,69 +197,6 @@ def state_of(session: Session, stop: Stop | None = None, stopped: str | None = N
         ]
     )
     return State(time, position, np.column_stack([motion.vx, motion.vy]))
-
-
-def _simulate(session: Session, stop: Stop, wishes: Wishes, writer: Writer) -> tuple[str, Rows, float]:
-    """(why it stopped, the last rows, seconds simulating); in stints short enough to be interrupted."""
-    budget = FIRST_BUDGET
-    elapsed = 0.0
-    last_rows = blank_rows(0)
-    with _interruptible() as interrupted:
-        while True:
-            began = perf_counter()
-            stopped = session.advance(stop, budget)
-            stint = perf_counter() - began
-            elapsed += stint
-            if stint < 0.5 * LONGEST_STINT:
-                budget *= 2
-            elif stint > LONGEST_STINT:
-                budget = max(budget // 2, 1)
-            rows = session.take_rows()
-            if len(rows):
-                last_rows = rows[-TAIL:] if len(rows) >= TAIL else np.concatenate([last_rows, rows])[-TAIL:]
-                writer.write(rows)
-                if wishes.on_event is not None:
-                    wishes.on_event(rows)
-            if stopped is None and interrupted():
-                stopped = "interrupted"
-            if wishes.progress is not None:
-                _tell(wishes.progress, session, stop)
-            if stopped is not None:
-                return stopped, last_rows, elapsed
-
-
-def _tell(progress: Progress, session: Session, stop: Stop) -> None:
-    stage = session.stage
-    time = clock_time(*session.clock, stage.epoch_length, stage.start_time)
-    events = session.counters.events
-    shares = []
-    if stop.until is not None and stop.until > stage.start_time:
-        shares.append((time - stage.start_time) / (stop.until - stage.start_time))
-    if stop.events:
-        shares.append(events / stop.events)
-    progress(max(shares, default=None), events, time)
-
-
-@contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C, or the signal to terminate, sets a flag instead of breaking into an event; a second one breaks in."""
-    asked = False
-
-    def ask(number: int, frame: FrameType | None) -> None:
-        nonlocal asked
-        if asked:
-            raise KeyboardInterrupt
-        asked = True
-
-    if threading.current_thread() is not threading.main_thread():
-        yield lambda: False
-        return
-    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield lambda: asked
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def memory_log(provenance: Provenance, blocks: list[Rows], ending: Ending | None) -> EventLog:

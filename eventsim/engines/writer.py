@@ -54,6 +54,14 @@ class Writer:
             self._raise_failure()
         self.waited_s += perf_counter() - began
 
+    def settle(self) -> None:
+        """Wait until all so far has been taken; raises what a taker raised."""
+        began = perf_counter()
+        if self._thread is not None:
+            self._queue.join()
+            self._raise_failure()
+        self.waited_s += perf_counter() - began
+
     def abandon(self) -> None:
         """Forget what has not been taken yet, and what went wrong."""
         self._takers = ()
@@ -79,3 +87,4 @@ class Writer:
                     self._give(rows)
                 except BaseException as failure:  # told to the caller, in the caller's thread
                     self._failure = failure
+            self._queue.task_done()

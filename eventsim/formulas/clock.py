@@ -6,6 +6,9 @@ from fractions import Fraction
 FIRST_WINDOW = 5
 """The first window is 2**5 epochs long."""
 
+MOST_EPOCHS = 2**61
+"""What the column `epoch` of a log can count, and a clock is sure not to pass within a window."""
+
 FEW, MANY = 8, 32
 """Rows per disk and window below which the next window is doubled, above which it is halved."""
 

@@ -150,6 +150,9 @@ class MemorySink:
         """Say where the run ended."""
         self._ending = ending
 
+    def leave(self) -> None:
+        """Memory holds what it holds."""
+
     def abandon(self) -> None:
         """Forget all rows."""
         self._blocks.clear()

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,12 +18,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eventsim.errors import LogError, LogWarning
-from eventsim.record import EventLog, load_log
+from eventsim.record import Ending, EventLog, load_log
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, ROW
-from eventsim.record.files import SUFFIXES, open_sink
+from eventsim.record.files import SUFFIXES, Mark, continued_sink, open_sink, rows_so_far
 from eventsim.scene.gallery import gallery
 from eventsim.simulation import simulate
-from tests.record.logs import FLOATS, any_float, provenance, random_log, random_rows
+from tests.record.logs import FLOATS, any_float, provenance, random_log, random_rows, scene
 
 TEXT = (".csv", ".jsonl")
 
@@ -98,9 +100,83 @@ def test_a_growing_text_log_can_be_read_up_to_its_last_whole_line(tmp_path: Path
     sink.abandon()
 
 
-def test_a_growing_binary_log_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match=r"unfinished \.npz log"):
-        load_log(tmp_path / "log.npz.part")
+@pytest.mark.parametrize("suffix", [".npz", ".parquet"])
+def test_a_growing_binary_log_can_be_read_up_to_its_last_whole_row(tmp_path: Path, suffix: str) -> None:
+    rows = random_rows(10)
+    sink = open_sink(tmp_path / f"log{suffix}", provenance())
+    sink.write(rows)
+    part = tmp_path / f"log{suffix}.part"
+    assert load_log(part).rows.tobytes() == rows.tobytes()
+    with (part / "remainder").open("r+b") as column:
+        column.truncate(9 * 8 - 3)
+    assert load_log(part).rows.tobytes() == rows[:8].tobytes()
+    assert load_log(part).provenance.ending is None
+    with pytest.raises(LogError, match=r"no such file; .*\.part is there"):
+        load_log(tmp_path / f"log{suffix}")
+    sink.abandon()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("compact", [False, True])
+@pytest.mark.parametrize("ended", ["killed", "closed"])
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_log_that_is_continued_is_the_same_file_as_one_written_at_once(
+    tmp_path: Path, suffix: str, ended: str, compact: bool
+) -> None:
+    log = random_log(300)
+    log.save(tmp_path / f"once{suffix}", compact=compact)
+    whole = load_log(tmp_path / f"once{suffix}")
+    path = tmp_path / f"log{suffix}"
+    kept = replace(log.provenance, kicks=(), ending=None, rows=None)
+    for rows in (0, 1, 117, 300):
+        written = log.rows[: max(rows, 200)]
+        sink = open_sink(path, replace(log.provenance, kicks=()), compact)
+        sink.write(written[:rows])
+        mark = sink.sync()
+        sink.write(written[rows:])
+        if ended == "killed":
+            sink.leave()
+        else:
+            sink.close(Ending(1, 0.5, "interrupted"))
+        sink = continued_sink(path, kept, compact, mark)
+        if not compact:  # random rows do not follow from their scene, so they cannot be expanded
+            assert b"".join(block.tobytes() for block in rows_so_far(sink)) == log.rows[:rows].tobytes()
+        sink.write(log.rows[rows:])
+        sink.close(whole.provenance.ending)
+        assert load_log(path).rows.tobytes() == whole.rows.tobytes()
+        assert load_log(path).provenance == whole.provenance
+        if suffix not in TEXT:  # there the room for so many kicks was made at another time
+            assert path.read_bytes() == (tmp_path / f"once{suffix}").read_bytes()
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_is_not_the_log_of_a_run_is_not_continued(tmp_path: Path, suffix: str) -> None:
+    path, log = tmp_path / f"log{suffix}", random_log(20)
+    with pytest.raises(LogError, match="neither this log nor"):
+        continued_sink(path, log.provenance, False, Mark(5, ()))
+    log.save(path)
+    with pytest.raises(LogError, match="holds 20 rows of 21"):
+        continued_sink(path, log.provenance, False, Mark(21, ()))
+    with pytest.raises(LogError, match="not the log of the run"):
+        continued_sink(path, provenance(scene(5)), False, Mark(5, ()))
+    sink = open_sink(path, log.provenance)
+    sink.write(log.rows[:4])
+    sink.leave()
+    with pytest.raises(LogError, match=r"holds 4 .*holds 20 rows of 21"):
+        continued_sink(path, log.provenance, False, Mark(21, ()))
+    assert load_log(path).rows.tobytes() == log.rows.tobytes()
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_vanished_directory_is_noticed_with_the_next_rows(tmp_path: Path, suffix: str) -> None:
+    place = tmp_path / "place"
+    place.mkdir()
+    sink = open_sink(place / f"log{suffix}", provenance())
+    sink.write(random_rows(10))
+    shutil.rmtree(place)
+    with pytest.raises(LogError, match="directory has vanished"):
+        sink.write(random_rows(10))
+    sink.leave()
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)

@@ -22,7 +22,7 @@ from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.loop import components, endless, row_order, squeezed
 from eventsim.engines.reference.resolve import Resolver, instant_of
-from eventsim.formulas.clock import FIRST_WINDOW, next_window, remainder_since, window_length
+from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, next_window, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import ROW, Floats, Rows
@@ -141,6 +141,8 @@ class FastSession:
                     self._schedule()
                 elif turns and not (empty and stop.until is None):
                     if stop.until is None and state.window_rows == 0 and self._drifts():
+                        return "quiet"
+                    if state.epoch >= MOST_EPOCHS:  # on the open plane disks that part cross cells for ever
                         return "quiet"
                     self._turn_over()
                 else:

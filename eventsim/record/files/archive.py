@@ -29,29 +29,38 @@ STORED_BLOCK = 65535
 
 
 class Entry:
-    """An entry that grows; `head`, which is known last, goes before what was written."""
+    """An entry that grows; `head`, which is known last, goes before what was written.
+
+    deflated: its bytes are, into the file `path`; else somebody else writes them there, as they are.
+    """
 
     def __init__(self, name: str, path: Path, deflated: bool) -> None:
         self.name = name.encode("ascii")
         self.path = path
-        self.file: IO[bytes] = path.open("wb")
+        self._file: IO[bytes] | None = path.open("wb") if deflated else None
         self.head = b""
         self._size = self._crc = 0
         self._deflate = zlib.compressobj(FASTEST, zlib.DEFLATED, -zlib.MAX_WBITS) if deflated else None
 
     def write(self, data: bytes) -> None:
-        """Append bytes."""
+        """Append bytes, or take note of them where they are written by somebody else."""
         self._size += len(data)
         self._crc = zlib.crc32(data, self._crc)
-        self.file.write(data if self._deflate is None else self._deflate.compress(data))
+        if self._file is not None and self._deflate is not None:
+            self._file.write(self._deflate.compress(data))
 
     def finish(self, head: bytes) -> None:
         """All bytes have come; `head`, shorter than 64 kB, is put before them."""
         assert len(head) <= STORED_BLOCK
-        if self._deflate is not None:
-            self.file.write(self._deflate.flush())
-        self.file.close()
+        if self._file is not None and self._deflate is not None:
+            self._file.write(self._deflate.flush())
+        self.close()
         self.head = head
+
+    def close(self) -> None:
+        """Let go of the file."""
+        if self._file is not None:
+            self._file.close()
 
     def copy_to(self, target: IO[bytes]) -> bytes:
         """Write the finished entry where `target` stands; the record of it for the directory of the archive."""

@@ -8,12 +8,10 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Sequence
-from pathlib import Path
 
 from eventsim.record.events import ROW, Rows
 from eventsim.record.files.table import columns_kept, labels_of, rows_from_columns
-from eventsim.record.files.text import TextSink, read_text, words_of
-from eventsim.record.log import EventLog
+from eventsim.record.files.text import TextForm, TextSink, words_of
 from eventsim.record.provenance import Provenance
 
 PREFIX = "# "
@@ -39,11 +37,6 @@ class CsvSink(TextSink):
                 texts = [_quoted(label) for label in labels.tolist()]
                 columns.append([texts[code] for code in rows[name].tolist()])
         return "\n".join(map(",".join, zip(*columns, strict=True))) + "\n"
-
-
-def read_csv(path: Path) -> EventLog:
-    """Read a CSV log; raise LogError where it is none."""
-    return read_text(path, PREFIX, _header, _parse)
 
 
 def _header(provenance: Provenance) -> str:
@@ -74,3 +67,6 @@ def _parse(lines: list[str], provenance: Provenance) -> Rows:
         else:
             columns[name] = list(map(int, words))
     return rows_from_columns(columns, provenance)
+
+
+FORM = TextForm(PREFIX, _header, _parse)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import numpy as np
 
 from eventsim.record.events import Rows
 from eventsim.record.files.table import columns_kept, labels_of, rows_from_columns
-from eventsim.record.files.text import TextSink, read_text, words_of
-from eventsim.record.log import EventLog
+from eventsim.record.files.text import TextForm, TextSink, words_of
 from eventsim.record.provenance import Provenance
 
 
@@ -38,11 +36,6 @@ class JsonlSink(TextSink):
         return "\n".join(map(template.__mod__, zip(*columns, strict=True))) + "\n"
 
 
-def read_jsonl(path: Path) -> EventLog:
-    """Read a JSON lines log; raise LogError where it is none."""
-    return read_text(path, "", lambda provenance: "", _parse)
-
-
 def _parse(lines: list[str], provenance: Provenance) -> Rows:
     records = json.loads("[" + ",".join(lines) + "]")
     if len(records) != len(lines) or not all(isinstance(record, dict) for record in records):
@@ -52,3 +45,6 @@ def _parse(lines: list[str], provenance: Provenance) -> Rows:
     except KeyError as error:
         raise ValueError(f"the key {error} is missing") from None
     return rows_from_columns(columns, provenance)
+
+
+FORM = TextForm("", lambda provenance: "", _parse)

@@ -1,16 +1,17 @@
 """NPZ logs: one array per column (kind and wall as text) and the array `eventsim` with the metadata as JSON.
 
-Columns grow as raw files in the directory NAME.npz.part and are put together when the log is closed.  What hardly changes
-from row to row is deflated, in passing; the rest would shrink little and take more time than the simulation.
+Columns grow as raw files in the directory NAME.npz.part (the journal) and are put together when the log is closed.  What hardly
+changes from row to row is deflated, in passing; the rest would shrink little and take more time than the simulation.
 """
 
 from __future__ import annotations
 
 import io
-import shutil
 import zipfile
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,52 +19,47 @@ import numpy as np
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows
 from eventsim.record.files.archive import Entry, write_archive
-from eventsim.record.files.sink import PART, FileSink
+from eventsim.record.files.journal import METADATA, WHOLE, JournalSink
 from eventsim.record.files.table import checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
 
-METADATA = "eventsim"
 DEFLATED = ("kind", "wall", "joint", "epoch")
+DEFLATED_FILE = ".deflated"
 
 
-class NpzSink(FileSink):
+class NpzSink(JournalSink):
     """Writes NPZ."""
 
-    _entries: dict[str, Entry]
+    _entries: Mapping[str, Entry] = MappingProxyType({})
 
-    def _open(self) -> None:
-        if self.part.is_dir():
-            shutil.rmtree(self.part)  # left over from a run that was killed
-        self.part.mkdir()
+    def _begin(self) -> None:
         self._labels = {name: labels_of(name, self.provenance.wall_names) for name in self.columns}
-        self._entries = {name: self._entry(name, name in DEFLATED) for name in self.columns}
+        self._entries = {name: self._entry(name) for name in self.columns}
 
-    def _append(self, rows: Rows) -> None:
+    def _put(self, rows: Rows) -> None:
         for name, entry in self._entries.items():
             labels = self._labels[name]
             entry.write((rows[name] if labels is None else labels[rows[name]]).tobytes())
 
-    def _finish(self, provenance: Provenance) -> None:
+    def _complete(self, provenance: Provenance) -> None:
         text = np.frombuffer(provenance_text(provenance).encode("ascii"), dtype=np.uint8)
-        metadata = self._entry(METADATA, deflated=True)
+        metadata = Entry(f"{METADATA}.npy", self.part / (METADATA + DEFLATED_FILE), deflated=True)
         metadata.write(text.tobytes())
         metadata.finish(_header(text.dtype, len(text)))
         for name, entry in self._entries.items():
             labels = self._labels[name]
             entry.finish(_header(ROW[name] if labels is None else labels.dtype, self._count))
-        whole = self.part.with_name(self.part.name + PART)
-        write_archive(whole, [metadata, *self._entries.values()])
-        shutil.rmtree(self.part)
-        whole.replace(self.part)
+        write_archive(self.part / WHOLE, [metadata, *self._entries.values()])
 
-    def _discard(self) -> None:
+    def _stop(self) -> None:
         for entry in self._entries.values():
-            entry.file.close()
-        shutil.rmtree(self.part, ignore_errors=True)
+            entry.close()
 
-    def _entry(self, name: str, deflated: bool) -> Entry:
-        return Entry(f"{name}.npy", self.part / name, deflated)
+    def _entry(self, name: str) -> Entry:
+        """What is stored as it is needs no other file than that of the journal."""
+        deflated = name in DEFLATED
+        return Entry(f"{name}.npy", self.part / (name + DEFLATED_FILE if deflated else name), deflated)
 
 
 def read_npz(path: Path) -> EventLog:

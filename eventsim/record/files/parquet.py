@@ -9,7 +9,7 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows, blank_rows
-from eventsim.record.files.sink import FileSink
+from eventsim.record.files.journal import GROUP, METADATA, WHOLE, JournalSink
 from eventsim.record.files.table import checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
@@ -20,45 +20,47 @@ try:
 except ImportError:
     raise LogError("parquet logs need pyarrow: install eventsim-disks[parquet]") from None
 
-METADATA = b"eventsim"
-GROUP = 1 << 17
-"""Rows of one row group; smaller blocks are collected."""
-
 TEXTS = ("kind", "wall")
 LEAN: dict[str, Any] = {"use_dictionary": list(TEXTS), "write_statistics": False, "compression": "none"}
 """How columns are written: whole numbers as small differences, floats as they are.  Statistics, dictionaries of numbers and
 compression would take longer than the simulation, and gain less."""
 
 
-class ParquetSink(FileSink):
+class ParquetSink(JournalSink):
     """Writes parquet; kind and wall are dictionaries of text, missing is null."""
 
-    def _open(self) -> None:
+    _writer: Any = None
+
+    def _begin(self) -> None:
         whole = {name: "DELTA_BINARY_PACKED" for name in self.columns if name not in TEXTS and ROW[name].kind == "i"}
         schema = _schema(self.columns)
-        self._writer = pq.ParquetWriter(self.part, schema, store_schema=False, column_encoding=whole, **LEAN)
+        self._writer = pq.ParquetWriter(self.part / WHOLE, schema, store_schema=False, column_encoding=whole, **LEAN)
         self._waiting: list[Rows] = []
 
-    def _append(self, rows: Rows) -> None:
+    def _put(self, rows: Rows) -> None:
         self._waiting.append(rows.copy())
         if sum(map(len, self._waiting)) >= GROUP:
-            self._write_group()
+            waiting = np.concatenate(self._waiting)
+            groups = len(waiting) // GROUP
+            for k in range(groups):
+                self._write_group(waiting[k * GROUP : (k + 1) * GROUP])
+            self._waiting = [waiting[groups * GROUP :]]
 
-    def _finish(self, provenance: Provenance) -> None:
-        self._write_group()
-        self._writer.add_key_value_metadata({METADATA.decode(): provenance_text(provenance)})
-        self._writer.close()
+    def _complete(self, provenance: Provenance) -> None:
+        rest = np.concatenate([blank_rows(0), *self._waiting])
+        if len(rest):
+            self._write_group(rest)
+        self._writer.add_key_value_metadata({METADATA: provenance_text(provenance)})
+        self._stop()
 
-    def _discard(self) -> None:
-        self._writer.close()
-        self.part.unlink(missing_ok=True)
+    def _stop(self) -> None:
+        writer, self._writer = self._writer, None
+        if writer is not None:
+            writer.close()
 
-    def _write_group(self) -> None:
-        if self._waiting:
-            rows = np.concatenate(self._waiting)
-            self._waiting = []
-            arrays = [_array(rows, name, self.provenance) for name in self.columns]
-            self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
+    def _write_group(self, rows: Rows) -> None:
+        arrays = [_array(rows, name, self.provenance) for name in self.columns]
+        self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
 
 
 def write_plain_table(path: Path, columns: dict[str, list[Any]], metadata: dict[str, str]) -> None:
@@ -76,10 +78,10 @@ def read_parquet(path: Path) -> EventLog:
     """Read a parquet log; raise LogError where it is none."""
     try:
         with pq.ParquetFile(path) as file:
-            metadata = file.metadata.metadata or {}
-            if METADATA not in metadata:
-                raise LogError(f"{path}: not an event log: its metadata have no key {METADATA.decode()}")
-            provenance = provenance_from_text(metadata[METADATA].decode(), str(path))
+            text = (file.metadata.metadata or {}).get(METADATA.encode())
+            if text is None:
+                raise LogError(f"{path}: not an event log: its metadata have no key {METADATA}")
+            provenance = provenance_from_text(text.decode(), str(path))
             names = columns_kept(provenance)
             blocks = [blank_rows(0)]
             for group in range(file.num_row_groups):

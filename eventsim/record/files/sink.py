@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from eventsim.errors import LogError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Rows
@@ -13,64 +17,132 @@ from eventsim.record.provenance import Ending, Kick, Provenance, kicks_of
 PART = ".part"
 
 
+class Mark(NamedTuple):
+    """How far a log has come: its rows, and the velocities that were set in them."""
+
+    rows: int
+    kicks: tuple[Kick, ...]
+
+
 class FileSink(ABC):
     """A streaming writer of one log file; memory is bounded by the block that is written.
 
-    A format supplies `_open`, `_append`, `_finish` and `_discard`. OSError becomes LogError.
+    A format supplies `_open`, `_reopen`, `_append`, `_sync`, `_finish`, `_release` and `_discard`. OSError becomes LogError.
     """
 
-    def __init__(self, path: Path, provenance: Provenance, kicks: tuple[Kick, ...] | None) -> None:
-        """Open `NAME.part`; kicks: None where they are to be taken from the rows, which then are full."""
+    def __init__(
+        self, path: Path, provenance: Provenance, kicks: tuple[Kick, ...] | None, mark: Mark | None = None
+    ) -> None:
+        """Open `NAME.part`.
+
+        kicks: None where they are to be taken from the rows, which then are full.  mark: go on behind these rows of the
+        part that is there, which may have more; None: begin.
+        """
         self.path = path
-        self.part = path.with_name(path.name + PART)
+        self.part = part_of(path)
         self.provenance = provenance
         self.columns = COMPACT_COLUMNS if provenance.compact else COLUMNS
         self._kicks_come_with_rows = kicks is None
-        self._kicks = list(kicks or ())
-        self._count = 0
+        self._kicks = list(kicks or ()) if mark is None else list(mark.kicks)
+        self._count = 0 if mark is None else mark.rows
         if path.is_dir():
             raise LogError(f"{path}: is a directory, so no log can be written there")
         if not path.parent.is_dir():
             raise LogError(f"{path}: the directory {path.parent} does not exist")
         try:
-            self._open()
-        except OSError as error:
-            raise self._unwritable(error) from None
+            if mark is None:
+                self._open()
+            else:
+                self._reopen(mark.rows)
+        except (LogError, OSError) as error:
+            self.leave()
+            raise self._unwritable(error) if isinstance(error, OSError) else error from None
 
     def write(self, rows: Rows) -> None:
         """Append a block of rows."""
-        if self._kicks_come_with_rows:
-            self._kicks += kicks_of(rows)
-        self._count += len(rows)
+        self.copy(rows, kicks_of(rows) if self._kicks_come_with_rows else ())
+
+    def copy(self, rows: Rows, kicks: Iterable[Kick]) -> None:
+        """Append a block of rows; kicks: the velocities that were set in them, which compact rows do not have."""
         try:
+            self.part.stat()  # an unlinked file takes rows without a word
             self._append(rows)
         except OSError as error:
             raise self._unwritable(error) from None
+        self._kicks += kicks
+        self._count += len(rows)
+
+    def sync(self) -> Mark:
+        """Have all rows so far on the disk, whatever happens to the machine; how far the log has come."""
+        try:
+            self._sync()
+        except OSError as error:
+            raise self._unwritable(error) from None
+        return Mark(self._count, tuple(self._kicks))
 
     def close(self, ending: Ending | None = None) -> None:
         """Complete the metadata and give the file its name. ending: where the run ended."""
         try:
-            self._finish(self.provenance.finished(ending, tuple(self._kicks), self._count))
-            os.replace(self.part, self.path)
+            whole = self._finish(self.provenance.finished(ending, tuple(self._kicks), self._count))
+            os.replace(whole, self.path)
+            if whole != self.part:
+                self._discard()
         except OSError as error:
             raise self._unwritable(error) from None
 
+    def leave(self) -> None:
+        """Let go of the part: what has been written stays there and can be read."""
+        with suppress(OSError):  # what could not be written before cannot be now
+            self._release()
+
     def abandon(self) -> None:
         """Remove what has been written; no file appears."""
-        self._discard()
+        self.leave()
+        with suppress(OSError):
+            self._discard()
 
     def _unwritable(self, error: OSError) -> LogError:
-        return LogError(f"{self.path}: cannot be written ({error.strerror or error})")
+        if not self.path.parent.is_dir():
+            return LogError(f"{self.path}: cannot be written any more: its directory has vanished")
+        kept = (
+            f"; {self.part} keeps what was written before and can be read" if self._count and self.part.exists() else ""
+        )
+        return LogError(f"{self.path}: cannot be written ({error.strerror or error}){kept}")
 
     @abstractmethod
     def _open(self) -> None: ...
 
     @abstractmethod
+    def _reopen(self, rows: int) -> None:
+        """Open the part that is there and cut it off behind so many rows; LogError where it has fewer, or others."""
+
+    @abstractmethod
     def _append(self, rows: Rows) -> None: ...
 
     @abstractmethod
-    def _finish(self, provenance: Provenance) -> None:
-        """Leave the whole file under `self.part`."""
+    def _sync(self) -> None: ...
+
+    @abstractmethod
+    def _finish(self, provenance: Provenance) -> Path:
+        """Make the whole file and say where it is: the part itself, or another one beside it."""
+
+    @abstractmethod
+    def _release(self) -> None: ...
 
     @abstractmethod
     def _discard(self) -> None: ...
+
+
+def part_of(path: Path) -> Path:
+    """Where a log grows until it is whole."""
+    return path.with_name(path.name + PART)
+
+
+def demand_same(found: Provenance, wanted: Provenance, path: Path) -> None:
+    """Raise LogError where a log that is to be continued tells another story than the run that goes on."""
+
+    def story(provenance: Provenance) -> Provenance:
+        return replace(provenance, kicks=(), ending=None, rows=None, command=None, engine="")
+
+    if story(found) != story(wanted):
+        raise LogError(f"{path}: is not the log of the run that goes on: its scene, version or columns are others")

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from itertools import islice
 from pathlib import Path
-from typing import IO
+from typing import IO, NamedTuple
 
 import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.record.events import Column, Rows, blank_rows
-from eventsim.record.files.sink import PART, FileSink
+from eventsim.record.files.sink import PART, FileSink, demand_same
 from eventsim.record.files.table import checked_log
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
@@ -21,7 +23,26 @@ from eventsim.record.provenance import Provenance, provenance_from_text, provena
 RESERVE = 512
 """Blanks after the first metadata line, so that the ending can be entered without moving the rows."""
 
+TAIL = b', "kicks": '
+"""Where the part of the metadata begins that the end of a run changes."""
+
+PAGE = 4096
+"""Bytes that a file system writes as one: a tail within a page is either the old one or the new one, even after a kill."""
+
 BLOCK_LINES = 1 << 15
+CHUNK = 1 << 20
+
+
+class TextForm(NamedTuple):
+    """How a text format is read.
+
+    prefix: what stands before the metadata in their line.  header_of: what must stand between metadata and rows.  parse: lines
+    without newline to rows; it may raise ValueError, TypeError, OverflowError or KeyError.
+    """
+
+    prefix: str
+    header_of: Callable[[Provenance], str]
+    parse: Callable[[list[str], Provenance], Rows]
 
 
 class TextSink(FileSink):
@@ -30,7 +51,7 @@ class TextSink(FileSink):
     prefix = ""
     """What stands before the metadata in their line."""
 
-    _file: IO[bytes]
+    _file: IO[bytes] | None = None
 
     @abstractmethod
     def header(self) -> str:
@@ -41,39 +62,92 @@ class TextSink(FileSink):
         """Return the lines of a block of rows, each ended by a newline."""
 
     def _open(self) -> None:
+        if self.part.is_dir():
+            shutil.rmtree(self.part)
         self._file = self.part.open("w+b")
-        head = self._head(self.provenance) + b" " * RESERVE
-        self._head_length = len(head)
-        self._file.write(head + b"\n" + self.header().encode())
+        stem, tail = self._head(self.provenance)
+        self._room = len(tail) + RESERVE
+        if len(stem) % PAGE + self._room > PAGE:
+            stem = stem.ljust(len(stem) + PAGE - len(stem) % PAGE)
+        self._cut = len(stem)
+        self._file.write(stem + tail.ljust(self._room) + b"\n" + self.header().encode())
         self._file.flush()
+
+    def _reopen(self, rows: int) -> None:
+        self._file = self.part.open("r+b")
+        head = self._file.readline().removesuffix(b"\n")
+        metadata = head.removeprefix(self.prefix.encode())
+        if TAIL not in metadata or not metadata.isascii():
+            raise LogError(f"{self.part}: not an event log: the first line does not hold its scene")
+        demand_same(provenance_from_text(metadata.decode(), str(self.part)), self.provenance, self.part)
+        self._cut = head.rindex(TAIL)
+        self._room = len(head) - self._cut
+        self._file.truncate(self._end_of_row(rows))
+        self._file.seek(self._cut)
+        self._file.write(self._head(self.provenance)[1].ljust(self._room))
+        self._file.seek(0, os.SEEK_END)
+        self._file.flush()
+
+    def _end_of_row(self, rows: int) -> int:
+        """Where so many rows end; LogError where there are fewer."""
+        assert self._file is not None
+        headed = self.header().count("\n")
+        place, left = self._file.tell(), headed + rows
+        while left > 0:
+            chunk = self._file.read(CHUNK)
+            found = chunk.count(b"\n")
+            if not chunk:
+                raise LogError(f"{self.part}: holds {max(rows - left, 0)} rows of {rows}")
+            if found < left:
+                place, left = place + len(chunk), left - found
+            else:
+                at = 0
+                for _ in range(left):
+                    at = chunk.index(b"\n", at) + 1
+                return place + at
+        return place
 
     def _append(self, rows: Rows) -> None:
         if len(rows):
+            assert self._file is not None
             self._file.write(self.lines(rows).encode())
             self._file.flush()
 
-    def _finish(self, provenance: Provenance) -> None:
-        head = self._head(provenance)
-        if len(head) <= self._head_length:
-            self._file.seek(0)
-            self._file.write(head.ljust(self._head_length))
-            self._file.close()
-            return
+    def _sync(self) -> None:
+        assert self._file is not None
+        os.fsync(self._file.fileno())
+
+    def _finish(self, provenance: Provenance) -> Path:
+        assert self._file is not None
+        stem, tail = self._head(provenance)
+        if len(tail) <= self._room:
+            self._file.seek(self._cut)
+            self._file.write(tail.ljust(self._room))
+            self._release()
+            return self.part
         # Many kicks of a compact log do not fit: the rows are copied behind a longer line.
         longer = self.part.with_name(self.part.name + PART)
-        self._file.seek(self._head_length)
+        self._file.seek(self._cut + self._room)
         with open(longer, "wb") as whole:
-            whole.write(head)
+            whole.write(stem + tail)
             shutil.copyfileobj(self._file, whole)
-        self._file.close()
+        self._release()
         longer.replace(self.part)
+        return self.part
+
+    def _release(self) -> None:
+        file, self._file = self._file, None
+        if file is not None:
+            file.close()
 
     def _discard(self) -> None:
-        self._file.close()
         self.part.unlink(missing_ok=True)
 
-    def _head(self, provenance: Provenance) -> bytes:
-        return (self.prefix + provenance_text(provenance)).encode("ascii")
+    def _head(self, provenance: Provenance) -> tuple[bytes, bytes]:
+        """The line of the metadata, cut before what the end of a run changes."""
+        head = (self.prefix + provenance_text(provenance)).encode("ascii")
+        cut = head.rindex(TAIL)
+        return head[:cut], head[cut:]
 
 
 def words_of(values: Column, missing: str) -> list[str]:
@@ -85,37 +159,47 @@ def words_of(values: Column, missing: str) -> list[str]:
     return words
 
 
-def read_text(
-    path: Path,
-    prefix: str,
-    header_of: Callable[[Provenance], str],
-    parse: Callable[[list[str], Provenance], Rows],
-) -> EventLog:
-    """Read a text log in blocks of lines; of a growing file (NAME.part) an unfinished last line is left out.
+def read_text(path: Path, form: TextForm) -> EventLog:
+    """Read a text log; of a growing file (NAME.part) an unfinished last line is left out.  Raises LogError."""
+    provenance, blocks = open_text(path, form)
+    return checked_log(provenance, np.concatenate([blank_rows(0), *blocks]), path)
 
-    header_of: what must stand between metadata and rows. parse: lines without newline to rows; it may raise
-    ValueError, TypeError, OverflowError or KeyError. Raises LogError.
-    """
+
+def open_text(path: Path, form: TextForm) -> tuple[Provenance, Iterator[Rows]]:
+    """The metadata of a text log and its rows in blocks, not checked yet; LogError from either."""
+    with ExitStack() as opened:
+        opened.enter_context(_told_as_log_error(path))
+        # Editors on some systems add a mark and other line ends.
+        lines = _whole_lines(opened.enter_context(open(path, encoding="utf-8-sig")), path)
+        head = next(lines, "")
+        if not head.startswith(form.prefix):
+            raise LogError(f"{path}: not an event log: the first line does not hold its scene")
+        provenance = provenance_from_text(head.removeprefix(form.prefix), str(path))
+        header = form.header_of(provenance)
+        if header and next(lines, "") + "\n" != header:
+            raise LogError(f"{path}: the columns are not those of an event log: {header.strip()}")
+        return provenance, _blocks(opened.pop_all(), lines, form, provenance, path)
+    raise AssertionError("either metadata or an error")
+
+
+def _blocks(
+    opened: ExitStack, lines: Iterator[str], form: TextForm, provenance: Provenance, path: Path
+) -> Iterator[Rows]:
+    number = 2 + form.header_of(provenance).count("\n")
+    with opened:
+        while block := list(islice(lines, BLOCK_LINES)):
+            yield _parse_block(form.parse, block, provenance, f"{path}", number)
+            number += len(block)
+
+
+@contextmanager
+def _told_as_log_error(path: Path) -> Iterator[None]:
     try:
-        with open(path, encoding="utf-8-sig") as file:  # editors on some systems add a mark and other line ends
-            lines = _whole_lines(file, path)
-            head = next(lines, "")
-            if not head.startswith(prefix):
-                raise LogError(f"{path}: not an event log: the first line does not hold its scene")
-            provenance = provenance_from_text(head.removeprefix(prefix), str(path))
-            header = header_of(provenance)
-            if header and next(lines, "") + "\n" != header:
-                raise LogError(f"{path}: the columns are not those of an event log: {header.strip()}")
-            blocks = [blank_rows(0)]
-            number = 2 + header.count("\n")
-            while block := list(islice(lines, BLOCK_LINES)):
-                blocks.append(_parse_block(parse, block, provenance, f"{path}", number))
-                number += len(block)
+        yield
     except UnicodeDecodeError:
         raise LogError(f"{path}: not a text file, so not an event log of this format") from None
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error})") from None
-    return checked_log(provenance, np.concatenate(blocks), path)
 
 
 def _whole_lines(file: IO[str], path: Path) -> Iterator[str]:

@@ -1,0 +1,137 @@
+"""The journal of a binary log that grows: each column is a raw file in the directory NAME.part.
+
+Beside it the format's own file comes into being, of which a run that was killed would leave nothing to read.  The journal keeps
+every row that was written: the shortest column says how many are whole.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from abc import abstractmethod
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from eventsim.errors import LogError
+from eventsim.record.events import ROW, Rows, blank_rows
+from eventsim.record.files.sink import PART, FileSink, demand_same
+from eventsim.record.files.table import columns_kept
+from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
+
+METADATA = "eventsim"
+"""The file with the metadata beside the columns."""
+
+WHOLE = "whole"
+"""The format's own file, in the making."""
+
+GROUP = 1 << 17
+"""Rows held at a time."""
+
+
+class JournalSink(FileSink):
+    """Keeps a journal beside the format's own file, which a format supplies by `_begin`, `_put`, `_complete` and `_stop`."""
+
+    _journal: dict[str, IO[bytes]]
+
+    @abstractmethod
+    def _begin(self) -> None:
+        """Begin the format's own file."""
+
+    @abstractmethod
+    def _put(self, rows: Rows) -> None:
+        """Append to it a block that the journal has."""
+
+    @abstractmethod
+    def _complete(self, provenance: Provenance) -> None:
+        """Have the whole file at `self.part / WHOLE`."""
+
+    @abstractmethod
+    def _stop(self) -> None:
+        """Close the files of the format, whatever is in them."""
+
+    def _open(self) -> None:
+        self._journal = {}
+        if self.part.is_dir():
+            shutil.rmtree(self.part)  # left over from a run that was killed
+        self.part.unlink(missing_ok=True)
+        self.part.mkdir()
+        begun = self.part / (METADATA + PART)
+        begun.write_text(provenance_text(self.provenance), encoding="ascii")
+        begun.replace(self.part / METADATA)
+        self._journal = {name: (self.part / name).open("wb") for name in self.columns}
+        self._begin()
+
+    def _reopen(self, rows: int) -> None:
+        self._journal = {}
+        demand_same(journal_provenance(self.part), self.provenance, self.part)
+        found = rows_in_journal(self.part, self.columns)
+        if found < rows:
+            raise LogError(f"{self.part}: holds {found} rows of {rows}")
+        for name in self.columns:
+            os.truncate(self.part / name, rows * ROW[name].itemsize)
+        self._journal = {name: (self.part / name).open("ab") for name in self.columns}
+        self._begin()
+        for block in blocks_of_journal(self.part, self.columns, rows):
+            self._put(block)
+
+    def _append(self, rows: Rows) -> None:
+        for name, file in self._journal.items():
+            file.write(rows[name].tobytes())
+            file.flush()
+        self._put(rows)
+
+    def _sync(self) -> None:
+        for file in self._journal.values():
+            os.fsync(file.fileno())
+
+    def _finish(self, provenance: Provenance) -> Path:
+        self._complete(provenance)
+        self._release()
+        return self.part / WHOLE
+
+    def _release(self) -> None:
+        files, self._journal = self._journal, {}
+        for file in files.values():
+            file.close()
+        self._stop()
+
+    def _discard(self) -> None:
+        shutil.rmtree(self.part, ignore_errors=True)
+
+
+def journal_provenance(part: Path) -> Provenance:
+    """The metadata of a log that grows, or grew until its run was killed; LogError where there are none."""
+    try:
+        text = (part / METADATA).read_text(encoding="ascii")
+    except (OSError, UnicodeDecodeError):
+        raise LogError(f"{part}: not an event log that grows: it has no readable metadata") from None
+    return provenance_from_text(text, str(part))
+
+
+def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
+    """How many rows are whole; LogError where a column is missing."""
+    try:
+        return min((part / name).stat().st_size // ROW[name].itemsize for name in columns)
+    except OSError as error:
+        raise LogError(f"{part}: not an event log that grows: {error.strerror}: {error.filename}") from None
+
+
+def blocks_of_journal(part: Path, columns: tuple[str, ...], count: int) -> Iterator[Rows]:
+    """The first `count` rows, in blocks."""
+    for first in range(0, count, GROUP):
+        rows = blank_rows(min(GROUP, count - first))
+        for name in columns:
+            with open(part / name, "rb") as source:
+                source.seek(first * ROW[name].itemsize)
+                rows[name] = np.frombuffer(source.read(len(rows) * ROW[name].itemsize), ROW[name])
+        yield rows
+
+
+def open_journal(part: Path) -> tuple[Provenance, Iterator[Rows]]:
+    """The metadata and the rows of a log that grows, in blocks; LogError where it is none."""
+    provenance = journal_provenance(part)
+    columns = columns_kept(provenance)
+    return provenance, blocks_of_journal(part, columns, rows_in_journal(part, columns))
