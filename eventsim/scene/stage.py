@@ -62,6 +62,7 @@ class Stage:
         x, y, vx, vy: (n,) start, relative to the corner; length, length / time.
         radius: (n,).
         mass: (n,), or None where all are equal, finite and positive; then common_mass is that mass.
+        mass_ratio: of the heaviest to the lightest disk, tracers and immovable ones apart.
         low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): energy is conserved and
             masses are very uneven.
         gravity: (gx, gy), or None.
@@ -86,6 +87,7 @@ class Stage:
     radius: Floats
     mass: Floats | None
     common_mass: float
+    mass_ratio: float
     low_parts: bool
     gravity: Point | None
     pair_restitution: float
@@ -125,6 +127,7 @@ def stage_of(scene: Scene) -> Stage:
     restitution = scene.restitution
     periodic = along_x is not None
     moves = bool(np.any(disks.velocity != 0.0))
+    lightest, heaviest = _extreme_masses(disks.mass)
     elastic = restitution is None or (restitution.pair == 1.0 and restitution.wall == 1.0)
     return Stage(
         n=len(disks),
@@ -135,7 +138,14 @@ def stage_of(scene: Scene) -> Stage:
         radius=disks.radius,
         mass=None if _all_equal(disks.mass) else disks.mass,
         common_mass=float(disks.mass[0]),
-        low_parts=elastic and scene.gravity is None and _uneven(disks.mass),
+        mass_ratio=heaviest / lightest,
+        low_parts=(
+            elastic
+            and scene.gravity is None
+            and heaviest / lightest > UNEVEN
+            and lightest > 1.0 / EXTREME
+            and heaviest < EXTREME
+        ),
         gravity=scene.gravity,
         pair_restitution=1.0 if restitution is None else restitution.pair,
         wall_restitution=1.0 if restitution is None else restitution.wall,
@@ -163,12 +173,10 @@ def _all_equal(mass: Floats) -> bool:
     return bool(np.all(mass == mass[0]) and 0.0 < mass[0] < math.inf)
 
 
-def _uneven(mass: Floats) -> bool:
+def _extreme_masses(mass: Floats) -> tuple[float, float]:
+    """The smallest and the largest of those that are positive and finite; 1 where none is."""
     finite = mass[(mass > 0.0) & (mass < math.inf)]
-    if len(finite) == 0:
-        return False
-    least, most = float(finite.min()), float(finite.max())
-    return most > UNEVEN * least and least > 1.0 / EXTREME and most < EXTREME
+    return (float(finite.min()), float(finite.max())) if len(finite) else (1.0, 1.0)
 
 
 def _boundaries(scene: Scene) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:

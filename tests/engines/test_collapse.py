@@ -5,6 +5,8 @@ import re
 import pytest
 
 import eventsim as es
+from eventsim.engines.reference.resolve import MOST_AT_ONCE, instant_of
+from eventsim.scene.stage import stage_of
 
 
 def bounce(**changes):
@@ -66,3 +68,9 @@ def test_with_a_contact_duration_the_run_goes_on():
     scene = es.gallery("collapse", restitution=0.05)
     gentle = es.Scene(scene.disks, scene.domain, restitution=0.05, contact_duration=1e-3)
     assert es.simulate(gentle, until=10.0, engine="reference").stopped in ("until", "quiet")
+
+
+@pytest.mark.parametrize(("ratio", "most"), [(100.0, 100_000), (1e16, 800_000_000), (1e300, MOST_AT_ONCE)])
+def test_uneven_masses_may_have_as_many_contacts_at_one_instant_as_the_law_gives_them(ratio, most):
+    """Between a heavy disk and a wall a light one has pi sqrt(M/m): 314159265 of them for 1e16."""
+    assert instant_of(stage_of(es.gallery("galperin", mass_ratio=ratio)))[1] == most

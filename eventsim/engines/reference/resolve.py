@@ -33,8 +33,12 @@ AT_ONCE = 2.0**-48
 """Contacts of a disk are at one instant where the time between them is below this part of the clock: a few of its last bits."""
 
 AT_ONCE_ELASTIC, AT_ONCE_INELASTIC = 100_000, 100
-"""Contacts of one disk at one instant that are too many.  Elastic sequences end, if late (a light disk between a heavy one and
-a wall); inelastic ones of this length are a collapse."""
+"""Contacts of one disk at one instant that are too many.  Elastic sequences end, if late; inelastic ones of this length are a
+collapse."""
+
+BETWEEN_HEAVY, MOST_AT_ONCE = 8.0, 1 << 30
+"""A light disk between a heavy one and a wall has up to pi sqrt(M/m) contacts, all at one instant where the clock cannot tell
+them apart: so many roots of the mass ratio are not too many.  The fast engine counts in int32."""
 
 AT_ONCE_SQUEEZED = 2.0**-32
 """As AT_ONCE, where energy has no bound: between moving immovable disks, or as a tracer, a disk can be driven to ever faster
@@ -45,11 +49,13 @@ def instant_of(stage: Stage) -> tuple[float, int]:
     """(share of the clock, number): contacts of a disk closer than this are at one instant, and so many of them too many."""
     if not (stage.pair_restitution == 1.0 and stage.wall_restitution == 1.0):
         return AT_ONCE, AT_ONCE_INELASTIC
+    most = AT_ONCE_ELASTIC
     if stage.mass is not None:
         driven = np.isinf(stage.mass) & ((stage.vx != 0.0) | (stage.vy != 0.0))
         if np.any(driven | (stage.mass == 0.0)):
-            return AT_ONCE_SQUEEZED, AT_ONCE_ELASTIC
-    return AT_ONCE, AT_ONCE_ELASTIC
+            return AT_ONCE_SQUEEZED, most
+        most = int(min(max(most, BETWEEN_HEAVY * math.sqrt(stage.mass_ratio)), MOST_AT_ONCE))
+    return AT_ONCE, most
 
 
 class Resolver:
