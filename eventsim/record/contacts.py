@@ -7,6 +7,7 @@ time has the bits of the row.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from itertools import product
 from typing import NamedTuple
 
@@ -37,7 +38,7 @@ class Contact(NamedTuple):
 class Contacts:
     """The contacts that disks in flight have at one time."""
 
-    def __init__(self, stage: Stage, disks: list[DiskFlight]) -> None:
+    def __init__(self, stage: Stage, disks: Mapping[int, DiskFlight]) -> None:
         self._stage = stage
         self._disks = disks
         self._boundaries = len(stage.boundaries)

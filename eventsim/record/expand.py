@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from importlib.util import find_spec
 from itertools import groupby, islice
 from typing import NamedTuple, TypeAlias
+
+import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
@@ -20,11 +23,11 @@ from eventsim.formulas.impulse import (
 from eventsim.formulas.simultaneous import JointContact, resolve_together
 from eventsim.record.contacts import Contact, Contacts
 from eventsim.record.disk_flight import DiskFlight
-from eventsim.record.events import SET_KINDS, Column, Rows
+from eventsim.record.events import ROW, SET_KINDS, Column, Rows
 from eventsim.record.log import EventLog
 from eventsim.record.times import clock_times
 from eventsim.record.windows import Windows
-from eventsim.scene.stage import stage_of
+from eventsim.scene.stage import Stage, stage_of
 
 Numbers: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 COMPUTED = ("xa", "ya", "vxa", "vya", "xb", "yb", "vxb", "vyb", "impulse")
@@ -32,22 +35,69 @@ MISSING = math.nan
 BLOCK = 1 << 14
 """Rows held as Python objects at a time."""
 
+MANY_ROWS = 50_000
+"""From so many on, loading compiled kernels takes less time than they save."""
+
 
 def expand_rows(log: EventLog) -> Rows:
     """Return the full rows of a compact log, in O(rows) time.
 
     Raises LogError where the rows do not follow from the scene.
     """
-    rows = log.rows.copy()
     expansion = Expansion(log)
+    if len(log) >= MANY_ROWS and find_spec("numba") is not None:
+        return _expanded_by_kernels(expansion, log)
+    rows = log.rows.copy()
     numbers = expansion.numbers()
     for first in range(0, len(rows), BLOCK):
         block = rows[first : first + BLOCK]
-        for name, values in zip(COMPUTED, zip(*islice(numbers, len(block)), strict=True), strict=True):
-            block[name] = values
-    stage = expansion.stage
-    rows["time"] = clock_times(rows["epoch"], rows["remainder"], stage.epoch_length, stage.start_time)
+        _fill(block, list(islice(numbers, len(block))), expansion.stage)
     return rows
+
+
+def _fill(rows: Rows, numbers: list[Numbers], stage: Stage) -> None:
+    """Enter into compact rows what they left out."""
+    for name, values in zip(COMPUTED, zip(*numbers, strict=True), strict=True):
+        rows[name] = values
+    rows["time"] = clock_times(rows["epoch"], rows["remainder"], stage.epoch_length, stage.start_time)
+
+
+def _expanded_by_kernels(expansion: Expansion, log: EventLog) -> Rows:
+    """The same with the kernels of the fast engine; what they leave out is done here, row by row."""
+    from eventsim.engines.fast.retrace import Entries, Retracer  # who has many rows pays for the compiler
+
+    rows = np.empty(len(log), ROW)
+    windows = expansion.windows
+    kind, a, b, wall, joint, remainder = (
+        np.ascontiguousarray(log.rows[name]) for name in ("kind", "a", "b", "wall", "joint", "remainder")
+    )
+    entries = Entries(kind, a, b, wall, joint, windows.index_of(log.epoch), remainder)
+    lengths, epochs = np.array(windows.length), np.array(windows.start, dtype=np.int64)
+    retracer = Retracer(expansion.stage, entries, lengths, epochs, rows)
+    row = window = 0
+    while True:
+        row, window = retracer.follow(row, window)
+        if row == len(rows):
+            return rows
+        end = row + _cluster_size(joint, row)
+        disks = sorted({int(i) for i in (*a[row:end], *b[row:end]) if i >= 0})
+        for i in disks:
+            retracer.lend(i, expansion.disks[i], window)
+        rows[row:end] = log.rows[row:end]
+        _fill(rows[row:end], list(expansion.numbers(row, end)), expansion.stage)
+        for i in disks:
+            retracer.take_back(i, expansion.disks[i])
+        row = end
+
+
+def _cluster_size(joint: Column, row: int) -> int:
+    """How many rows from `row` on belong to one cluster."""
+    if joint[row] < 0:
+        return 1
+    count = 1
+    while row + count < len(joint) and joint[row + count] == joint[row]:
+        count += 1
+    return count
 
 
 class Entry(NamedTuple):
@@ -63,27 +113,41 @@ class Entry(NamedTuple):
     remainder: float
 
 
+class Disks(dict[int, DiskFlight]):
+    """The flights of the disks that somebody has asked for."""
+
+    def __init__(self, stage: Stage, mass: list[float]) -> None:
+        super().__init__()
+        self._stage = stage
+        self._mass = mass
+
+    def __missing__(self, i: int) -> DiskFlight:
+        flight = self[i] = DiskFlight(self._stage, i, math.isinf(self._mass[i]))
+        return flight
+
+
 class Expansion:
     """The disks of a compact log on their way from row to row."""
 
     def __init__(self, log: EventLog) -> None:
         stage = self.stage = stage_of(log.scene)
         self._log = log
-        self._windows = Windows(stage, log.epoch)
+        self.windows = Windows(stage, log.epoch)
         masses = [stage.common_mass] * stage.n if stage.mass is None else stage.mass.tolist()
         self._mass: list[float] = masses
-        self._disks = [DiskFlight(stage, i, math.isinf(mass)) for i, mass in enumerate(masses)]
-        self._contacts = Contacts(stage, self._disks)
+        self.disks = Disks(stage, masses)
+        self._contacts = Contacts(stage, self.disks)
         self._set = {event: (vx, vy) for event, vx, vy in log.provenance.kicks}
 
-    def numbers(self) -> Iterator[Numbers]:
-        """Yield what each row leaves out, in order."""
-        for joint, group in groupby(self._entries(), key=lambda entry: (entry.joint, entry.event * (entry.joint < 0))):
+    def numbers(self, first: int = 0, end: int | None = None) -> Iterator[Numbers]:
+        """Yield what the rows from `first` on leave out, in order; clusters must be whole."""
+        entries = self._entries(self._log.rows[first:end])
+        for joint, group in groupby(entries, key=lambda entry: (entry.joint, entry.event * (entry.joint < 0))):
             cluster = list(group)
             for entry in cluster:
                 for i in (entry.a, entry.b):
                     if i >= 0:
-                        self._disks[i].fly(self.stage.period, self._windows, entry.window, entry.remainder)
+                        self.disks[i].fly(self.stage.period, self.windows, entry.window, entry.remainder)
             if joint[0] >= 0:
                 impulses = self._resolve_cluster(cluster)
             elif cluster[0].kind in SET_KINDS:
@@ -93,23 +157,22 @@ class Expansion:
             else:
                 impulses = [self._resolve_wall(cluster[0])]
             for entry, impulse in zip(cluster, impulses, strict=True):
-                one = self._disks[entry.a]
+                one = self.disks[entry.a]
                 other = (MISSING, MISSING, MISSING, MISSING)
                 if entry.b >= 0:
-                    disk = self._disks[entry.b]
+                    disk = self.disks[entry.b]
                     other = (disk.x, disk.y, disk.vx, disk.vy)
                 yield (one.x, one.y, one.vx, one.vy, *other, impulse)
 
-    def _entries(self) -> Iterator[Entry]:
-        rows, windows = self._log.rows, self._windows.index_of(self._log.epoch)
+    def _entries(self, rows: Rows) -> Iterator[Entry]:
         for first in range(0, len(rows), BLOCK):
             block = rows[first : first + BLOCK]
             columns: list[Column] = [block[name] for name in ("event", "kind", "a", "b", "wall", "joint")]
-            columns += [windows[first : first + BLOCK], block["remainder"]]
+            columns += [self.windows.index_of(block["epoch"]), block["remainder"]]
             yield from map(Entry, *(column.tolist() for column in columns))
 
     def _set_velocity(self, entry: Entry) -> float:
-        disk, mass = self._disks[entry.a], self._mass[entry.a]
+        disk, mass = self.disks[entry.a], self._mass[entry.a]
         if entry.event not in self._set:
             raise self._unfit(entry, "its velocity is not in the metadata (the log was not closed)")
         before, speed = disk.speed(entry.remainder), self._set[entry.event]
@@ -121,7 +184,7 @@ class Expansion:
     def _resolve_pair(self, entry: Entry) -> float:
         t, a, b = entry.remainder, entry.a, entry.b
         contact = self._only(entry, self._contacts.of_pair(a, b, t))
-        one, other = self._disks[a], self._disks[b]
+        one, other = self.disks[a], self.disks[b]
         place_a, place_b = one.place(t), other.place(t)
         dx, dy = self._contacts.apart(contact, place_a, place_b)
         shares, reduced = self._shares(a, b)
@@ -139,7 +202,7 @@ class Expansion:
     def _resolve_wall(self, entry: Entry) -> float:
         t, a = entry.remainder, entry.a
         contact = self._only(entry, self._contacts.of_wall(a, entry.wall, t))
-        disk = self._disks[a]
+        disk = self.disks[a]
         place, before = disk.place(t), disk.speed(t)
         restitution = self._restitution(self.stage.wall_restitution, t, a, a)
         u, w = before
@@ -168,8 +231,8 @@ class Expansion:
         ]
         disks = sorted({i for contact in found for i in (contact.a, contact.b) if i >= 0})
         number = {disk: k for k, disk in enumerate(disks)}
-        places = {i: self._disks[i].place(t) for i in disks}
-        before = [self._disks[i].speed(t) for i in disks]
+        places = {i: self.disks[i].place(t) for i in disks}
+        before = [self.disks[i].speed(t) for i in disks]
         joint = [self._joint_contact(contact, number, places, t) for contact in found]
         outcome = resolve_together(joint, before, [self._mass[i] for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
@@ -179,7 +242,7 @@ class Expansion:
             for contact in own:
                 if contact.b < 0:
                     places[i] = self._contacts.on_boundary(contact, places[i])
-            disk = self._disks[i]
+            disk = self.disks[i]
             disk.anchor(t, places[i], outcome.velocities[number[i]])
             disk.low = 0.0, 0.0
             disk.met = tuple(self._contacts.met(contact, i) for contact in own)
@@ -212,7 +275,7 @@ class Expansion:
     def _begin(
         self, contact: Contact, i: int, t: float, place: tuple[float, float], speed: tuple[float, float]
     ) -> None:
-        disk = self._disks[i]
+        disk = self.disks[i]
         disk.anchor(t, place, speed)
         disk.met = (self._contacts.met(contact, i),)
         disk.contact_time = t
@@ -224,7 +287,7 @@ class Expansion:
         return mass_fractions(self._mass[a], self._mass[b]), reduced_mass(self._mass[a], self._mass[b])
 
     def _restitution(self, restitution: float, t: float, a: int, b: int) -> float:
-        since = t - self._disks[a].contact_time, t - self._disks[b].contact_time
+        since = t - self.disks[a].contact_time, t - self.disks[b].contact_time
         return float(contact_restitution(restitution, self.stage.contact_duration, *since))
 
     def _only(self, entry: Entry, found: list[Contact]) -> Contact:

@@ -28,7 +28,7 @@ class Windows:
         self._exponent = FIRST_WINDOW
         self.start = [0]
         self.length = [window_length(FIRST_WINDOW, stage.epoch_length)]
-        epoch, counts = np.unique(epochs, return_counts=True)
+        epoch, counts = _runs(epochs)
         self._rows = dict(zip(epoch.tolist(), counts.tolist(), strict=True))
 
     def _extend(self) -> None:
@@ -39,8 +39,8 @@ class Windows:
 
     def index_of(self, epochs: Column) -> Column:
         """Return the window of each row from its epoch."""
-        epoch, place = np.unique(epochs, return_inverse=True)
-        return np.array([self.window_at(value) for value in epoch.tolist()], dtype=np.int64)[place]
+        epoch, counts = _runs(epochs)
+        return np.repeat(np.array([self.window_at(value) for value in epoch.tolist()], dtype=np.int64), counts)
 
     def window_at(self, epoch: int) -> int:
         """Return the window that begins at an epoch; LogError where none does."""
@@ -61,3 +61,9 @@ class Windows:
         if remainder >= self.length[window]:  # rounded up to the end of the window: the clock has turned over
             return window + 1, 0.0
         return window, remainder
+
+
+def _runs(epochs: Column) -> tuple[Column, Column]:
+    """Return (values, counts) of the epochs, which only grow."""
+    first = np.flatnonzero(np.diff(epochs, prepend=-1))
+    return epochs[first], np.diff(first, append=len(epochs))

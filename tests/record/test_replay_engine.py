@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from eventsim.errors import LogError
 from eventsim.record import EventLog, State, load_log
 from eventsim.record.files import SUFFIXES
 from eventsim.record.replay import Replay
@@ -97,6 +99,43 @@ def test_a_compact_log_expands_to_the_full_one(tmp_path: Path, name: str) -> Non
     compact = load_log(tmp_path / "log.jsonl")
     assert compact.expand().rows.tobytes() == log.rows.tobytes()
     assert compact.digest() == log.digest()
+
+
+KERNELS = [pytest.param(name, marks=() if name in ("periodic", "rack on a torus") else pytest.mark.slow) for name in SCENES]
+"""Most scenes need kernels of their own, which take seconds to compile."""
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_kernels_expand_a_compact_log_to_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("numba")
+    scene, until = SCENES[name]
+    log = simulate(scene, until=until, log=True).log
+    assert log is not None
+    monkeypatch.setattr("eventsim.record.expand.MANY_ROWS", 0)
+    compact = EventLog(replace(log.provenance, compact=True), log.rows)
+    assert compact.expand().rows.tobytes() == log.rows.tobytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mass", [1.0, UNEVEN], ids=["equal", "uneven"])
+def test_kernels_expand_a_log_with_kicks(mass: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("numba")
+    log = kicked(mass).log
+    monkeypatch.setattr("eventsim.record.expand.MANY_ROWS", 0)
+    compact = EventLog(replace(log.provenance, compact=True), log.rows)
+    assert compact.expand().rows.tobytes() == log.rows.tobytes()
+
+
+def test_kernels_refuse_rows_that_do_not_follow(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("numba")
+    scene, until = SCENES["periodic"]
+    log = simulate(scene, until=until, log=True).log
+    assert log is not None
+    rows = log.rows.copy()
+    rows["remainder"][7] *= 1.0 + 1e-12
+    monkeypatch.setattr("eventsim.record.expand.MANY_ROWS", 0)
+    with pytest.raises(LogError, match="does not fit its scene at event 7"):
+        EventLog(replace(log.provenance, compact=True), rows).expand()
 
 
 def test_the_racks_are_tests_of_clusters() -> None:

@@ -75,8 +75,8 @@ class FastSession:
         order = along_a_curve(stage.x, stage.y) if stage.n >= MANY_DISKS else np.arange(stage.n)
         self.state = FastState(stage, order, self._counts)
         self._columns = (*COLUMNS, *LOW_COLUMNS) if stage.low_parts else COLUMNS
-        self._rules = _rules(stage)
-        self._features = _features(stage)
+        self._rules = rules_of(stage)
+        self._features = features_of(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._buffer = np.empty(BUFFER if keep_rows else 0, ROW)
         self._counts[layout.ROOM] = BUFFER if keep_rows else 2 * FOREVER
@@ -432,7 +432,8 @@ class FastSession:
             self._predict_afresh()
 
 
-def _rules(stage: Stage) -> Rules:
+def rules_of(stage: Stage) -> Rules:
+    """What the scene says, for kernels."""
     gx, gy = stage.gravity or (None, None)
     wall_x = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 0), None)
     wall_y = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 1), None)
@@ -461,11 +462,11 @@ def kind_of(stage: Stage, keep_rows: bool) -> str:
     """A name for what the scene has: scenes of one kind share their kernels."""
     levels = stage.n >= FEW_DISKS and len(classes_of(stage)) > 1
     asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS, levels]
-    needs = [*_rules(stage), stage.mass, *(True if wanted else None for wanted in asked)]
+    needs = [*rules_of(stage), stage.mass, *(True if wanted else None for wanted in asked)]
     return "".join("0" if need is None else "1" for need in needs)
 
 
-def _features(stage: Stage) -> Floats | None:
+def features_of(stage: Stage) -> Floats | None:
     """The wall shapes as a table of numbers, in one row of memory."""
     if not stage.features:
         return None
