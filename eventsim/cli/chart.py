@@ -25,7 +25,7 @@ TABLE = (
 @click.option("--out", default="chart.png", show_default=True, metavar="FILE", help="The figure: .png, .svg or .pdf.")
 @click.option("--csv", metavar="FILE.csv", help="The numbers; without it, beside the figure.")
 @click.option(
-    "--patience", type=float, default=0.7, show_default=True, metavar="S", help="Seconds for one run at most."
+    "--patience", type=float, default=0.4, show_default=True, metavar="S", help="CPU seconds for one run at most."
 )
 @json_option
 @quiet_option

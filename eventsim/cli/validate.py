@@ -31,7 +31,7 @@ HEAD = (
 )
 @click.option("--until", type=float, metavar="T", help="Simulate until this time instead of the scene's.")
 @click.option(
-    "--patience", type=float, default=3.0, show_default=True, metavar="S", help="Seconds for one run at most."
+    "--patience", type=float, default=1.0, show_default=True, metavar="S", help="CPU seconds for one run at most."
 )
 @click.option("--csv", metavar="FILE.csv", help="Write all numbers, with where they come from.")
 @click.option("--figure", metavar="FILE", help="Draw them: .png, .svg or .pdf.")

@@ -127,10 +127,10 @@ def rates(patience_s: float, tell: Tell = lambda _: None) -> dict[str, list[tupl
     for n in SIZES:
         scene = gallery("gas", n=n)
         stage = stage_of(scene)
-        probe = ENGINES[best_engine()].run(scene, Stop(events=4 * n), Wishes(log=True))
+        probe = ENGINES[best_engine(n)].run(scene, Stop(events=4 * n), Wishes(log=True))
         free = probe.time * n / (2 * probe.counters.pair_contacts + probe.counters.wall_contacts)
         until = RATE_CONTACTS * free
-        truth = follow(ENGINES[best_engine()].open(stage, keep_rows=True), [until])
+        truth = follow(ENGINES[best_engine(n)].open(stage, keep_rows=True), [until])
         contacts = truth.counters.pair_contacts + truth.counters.wall_contacts
         speed = float(np.sqrt(np.mean(stage.vx**2 + stage.vy**2)))
         dt = RATE_STEP * float(stage.radius[0]) / speed

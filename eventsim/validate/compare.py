@@ -141,7 +141,7 @@ def engines_agree(truth: Truth) -> bool:
 
 def truth_to_compare(scene: Scene, until: float | None) -> tuple[Truth, tuple[float, ...], str]:
     """(the event-driven run, the times of the checks, the engine that did it)."""
-    engine = best_engine()
+    engine = best_engine(len(scene.disks))
     events = scene.events if until is None and scene.until is None else None
     stop = Stop(scene.until if until is None else until, events)
     if stop.until is None and stop.events is None:

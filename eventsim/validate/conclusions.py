@@ -35,7 +35,7 @@ def _engine(chart: Chart) -> Answer | None:
     wanted = known[0].wanted
     own = {curves.task.name: own_points(curves)[0].label for curves in chart.tasks if own_points(curves)}
     ahead = [_ahead(scene, [a for a in known if a.scene == scene]) for scene in dict.fromkeys(a.scene for a in known)]
-    name = own[known[0].scene]
+    name = " or ".join(dict.fromkeys(own[a.scene] for a in known))
     question = f"Which engine for an error of {wanted:g}?"
     if any(a.bound == "" and a.time_ratio < 1.0 for a in known):
         return Answer(question, f"Against event-driven ({name}): {'; '.join(ahead)}.")

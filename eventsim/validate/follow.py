@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from time import thread_time
+from time import perf_counter, thread_time
 
 import numpy as np
 
@@ -41,18 +41,21 @@ def follow(session: Session, times: Sequence[float], patience_s: float = float("
     """Let a session run through increasing times; it is given up when it takes longer than `patience_s` CPU seconds."""
     blocks = [blank_rows(0)]
     states = []
-    elapsed, stopped, before = 0.0, None, _compiled(session)
+    elapsed, wall, stopped, before = 0.0, 0.0, None, _compiled(session)
     for time in times:
         reason = None
         while reason is None and elapsed < patience_s:
-            began = thread_time()
+            began, began_wall = thread_time(), perf_counter()
             reason = session.advance(Stop(until=time), STINT)
-            elapsed += thread_time() - began
+            elapsed, wall = elapsed + thread_time() - began, wall + perf_counter() - began_wall
             blocks.append(session.take_rows())
         if reason not in ("until", "quiet"):
             stopped = reason or "patience"
             break
         states.append(state_of(session, Stop(until=time), reason))
+    compiled = _compiled(session) - before  # by a stopwatch
+    if compiled > 0.0:
+        elapsed = max(wall - compiled, 0.0)
     n = session.stage.n
     empty: Floats = np.empty((0, n, 2))
     return Followed(
@@ -62,7 +65,7 @@ def follow(session: Session, times: Sequence[float], patience_s: float = float("
         rows=np.concatenate(blocks),
         counters=session.counters.copy(),
         residuals=residuals_of(session),
-        elapsed_s=max(elapsed - _compiled(session) + before, 0.0),
+        elapsed_s=elapsed,
         stopped=stopped,
     )
 

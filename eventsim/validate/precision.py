@@ -24,6 +24,7 @@ from eventsim.validate.entrants import Entrant, able
 from eventsim.validate.follow import Followed, follow, position_errors
 from eventsim.validate.gauges import kinetic_energy, virial_pressure
 from eventsim.validate.pile import unrest
+from eventsim.validate.plain import PlainSession
 from eventsim.validate.truth import Truth, best_engine, neighbouring, truth_of
 
 STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
@@ -128,10 +129,12 @@ def curves(task: Task, entrants: Sequence[Entrant], patience_s: float, tell: Tel
             runners = _event_driven(stage, lambda run, _: result.floor)
         else:
             best = _proven(stage, task.until, patience_s, result) or truth.run
-            own = float(position_errors(stage, truth.run, best)[-1]) if best is not truth.run else float(truth.uncertainty[-1])
             error = _trajectory_error(stage, best)
-            runners = _event_driven(stage, lambda run, _: own)
-            if best is not truth.run:
+            if best is truth.run:
+                runners = _event_driven(stage, lambda run, _: float(truth.uncertainty[-1]))
+            else:
+                runners = _event_driven(stage, error)
+                runners.append([_plain(stage, error)])
                 runners.append([_balls(stage, bits) for bits in BITS])
     radius = float(np.median(stage.radius)) or 1.0
     for entrant in ready:
@@ -194,16 +197,17 @@ def _repeat(result: Curves, runners: Sequence[_Runner], until: float, duration: 
 
 
 def _event_driven(stage: Stage, error: ErrorOf) -> list[list[_Runner]]:
-    """The event-driven engines, each with its own 53 bits."""
+    """The event-driven engines, each with its own 53 bits: the reference engine, and a better one where there is one."""
     runners = []
-    for name in ("reference", "fast"):
-        try:
-            ENGINES[name].open(stage)
-        except EventsimError:
-            continue
+    for name in dict.fromkeys(("reference", best_engine(stage.n))):
         engine = ENGINES[name]
         runners.append([_Runner(name, "bits", 53.0, lambda engine=engine: engine.open(stage), error)])  # type: ignore[misc]
     return runners
+
+
+def _plain(stage: Stage, error: ErrorOf) -> _Runner:
+    """The reference engine without careful contact times."""
+    return _Runner("plain", "bits", 53.0, lambda: PlainSession(stage), error)
 
 
 def _step_of(stage: Stage, entrant: Entrant, dt: float, error: ErrorOf) -> _Runner:
@@ -214,7 +218,7 @@ def _step_of(stage: Stage, entrant: Entrant, dt: float, error: ErrorOf) -> _Runn
 def _rest(task: Task, duration: float) -> _Runner:
     """An event-driven run of a pile with another contact duration."""
     stage = replace(stage_of(task.scene), contact_duration=duration)
-    name = best_engine()
+    name = best_engine(stage.n)
     engine = ENGINES[name]
     return _Runner(name, "contact_duration", duration, lambda: engine.open(stage), _unrest_error(stage))
 
@@ -263,7 +267,7 @@ def _pressure_error(truth: Truth) -> ErrorOf:
 
 def _chance(truth: Truth, error: ErrorOf) -> float:
     """What the pressures of event-driven runs that start some last bits away differ by: chance; root mean square."""
-    engine = ENGINES[best_engine()]
+    engine = ENGINES[best_engine(truth.stage.n)]
     errors = []
     for bits in range(1, NEIGHBOURS + 1):
         session = engine.open(neighbouring(truth.stage, bits), keep_rows=True)

@@ -27,6 +27,7 @@ PURPLE = "#6A3D9A"
 LOOKS = {
     "fast": Look("#000000", "*", "-"),
     "reference": Look("#6b6b6b", "P", "-"),
+    "plain": Look("#6b6b6b", "X", "-", hollow=True),
     "event-driven": Look("#000000", "*", "-"),
     "certified": Look(PURPLE, "D", ":"),
     "frames": Look(KINDS[5], "s", "-"),
@@ -38,9 +39,10 @@ LOOKS = {
 }
 
 NAMES = {
-    "fast": "event-driven: fast (compiled)",
-    "reference": "event-driven: reference (Python)",
-    "certified": "event-driven: certified, balls of 64 to 1024 bits",
+    "fast": "event-driven: fast, filtered formula",
+    "reference": "event-driven: reference, filtered formula",
+    "plain": "event-driven: reference, plain formula",
+    "certified": "event-driven: certified, 64 to 1024 bits",
     "frames": "frames (memory until apart)",
     "frames-forget": "frames-forget (memory of one frame)",
     "stepped": "stepped (fixed step)",

@@ -34,8 +34,8 @@ ANSWERS_AT = 0.275
 """Where the answers begin, as a share of the width; the questions stand before them."""
 
 TABLE_TITLE = (
-    "By what event-driven is ahead of each engine: times the time at equal error (head) | times the error in equal time\n"
-    "(>: did not come to that error in so much; <: event-driven did not; -: even its coarsest run takes longer)"
+    "How far event-driven is ahead of each engine: its time at equal error (head) | its error in equal time,\n"
+    "as multiples (>: never came to that error; <: event-driven did not; -: even its coarsest run takes longer)"
 )
 
 Draw = Callable[[Axes], None]
