@@ -156,8 +156,8 @@ def _run_list(
         if runner.parameter == "dt" and taken * growth > patience_s:
             return
         tell(f"{result.task.name}: {runner.label}, {runner.parameter} = {runner.value:.3g}")
-        if runner is runners[0] and runner.parameter == "dt":
-            follow(runner.open(), [until], patience_s)  # the first run of a library is slower, and would speak for all
+        if runner is runners[0] and runner.parameter in ("dt", "contact_duration"):
+            follow(runner.open(), [until], patience_s)  # the first run of a library compiles or loads, and would speak for all
         session = runner.open()
         run = follow(session, [until], patience_s)
         taken, before = run.elapsed_s, runner.value

@@ -192,6 +192,14 @@ def test_figures_are_drawn(gas, tmp_path):
     assert {row["panel"] for row in chart_rows(chart)} == {"precision", "losses", "chaos", "rate", "advantage"}
 
 
+def test_a_comparison_without_pairs_is_drawn(tmp_path):
+    from eventsim.show.versus.comparison import write_comparison
+
+    alone = compare(es.gallery("corner"), chosen_entrants(["stepped"]), steps=(0.1, 0.01), until=20.0)
+    write_comparison(alone, tmp_path / "alone.png")
+    assert (tmp_path / "alone.png").stat().st_size > 10_000
+
+
 def test_validate_prints_a_table_a_verdict_and_json(tmp_path):
     arguments = ["validate", "two-disks", "--dt", "0.031", "--dt", "0.0072", "--against", "stepped", "--until", "12"]
     done = CliRunner().invoke(main, [*arguments, "--csv", str(tmp_path / "two.csv")])

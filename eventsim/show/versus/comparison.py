@@ -6,76 +6,59 @@ from collections.abc import Callable
 from os import PathLike
 from textwrap import fill
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import NAMES, look
+from eventsim.show.versus.losses import STEP, draw_energy, draw_missed
+from eventsim.show.versus.notes import ACROSS, note
 from eventsim.show.versus.page import save_page
 from eventsim.validate.compare import FITTED, Comparison, Line
-from eventsim.validate.verdict import PERFECT_ENERGY, verdict
+from eventsim.validate.verdict import verdict
 
-STEP = "radii that a typical disk flies in a step"
-BOTTOM = 1e-17
+EXACT_ANGLE = 1e-3
+"""Degrees: angles that are wrong by less are drawn here."""
 
 
 def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> None:
     """Draw a comparison to `path`: .png, .svg or .pdf.  Raises EventsimError where it cannot be written."""
-    figure = Figure(figsize=(15.0, 9.2), dpi=110, facecolor="white", layout="constrained")
+    figure = Figure(figsize=(15.0, 9.6), dpi=110, facecolor="white", layout="constrained")
     first = verdict(comparison)[0]
-    figure.suptitle(fill(f"{comparison.name}: {first}", 150), fontsize=11, x=0.01, ha="left", color=LIGHT.ink)
+    figure.suptitle(fill(f"{comparison.name}: {first}", 150), fontsize=12, x=0.01, ha="left", color=LIGHT.ink)
     grid = figure.subplots(2, 3)
+    draw_missed(grid[0, 0], comparison)
+    draw_energy(grid[0, 1], comparison)
     check = min(FITTED, len(comparison.checks) - 1)
-    _panel(grid[0, 0], comparison, _found, "found of the contacts ahead", "Contacts found, from exact states")
-    grid[0, 0].set_ylim(-0.03, 1.05)
-    grid[0, 0].axhline(1.0, color=LIGHT.faint, lw=0.8)
-    _panel(grid[0, 1], comparison, _energy, "relative change of energy", "Energy: perfect where contacts go missing", log=True)
-    grid[0, 1].axhspan(BOTTOM, PERFECT_ENERGY, color="#eef3ea", zorder=0)
-    grid[0, 1].annotate("looks perfect", (0.02, PERFECT_ENERGY), xycoords=("axes fraction", "data"), va="top", fontsize=9)
-    _panel(
-        grid[0, 2],
-        comparison,
-        lambda line: line.errors[check],
-        "position error [diameters]",
-        "Trajectories, after two contacts a disk",
-        log=True,
-    )
-    _panel(grid[1, 0], comparison, lambda line: line.census.angle, "mean error [degrees]", "Deflection angles", log=True)
-    _panel(grid[1, 1], comparison, lambda line: line.pressure, "relative to event-driven", "Bias of the pressure (virial)")
-    grid[1, 1].axhline(0.0, color=LIGHT.faint, lw=0.8)
-    _panel(
-        grid[1, 2], comparison, lambda line: line.elapsed, "seconds per time unit", "Time; dashed: event-driven run", log=True
-    )
-    grid[1, 2].axhline(comparison.exact.elapsed, color="#000000", lw=1.2, ls="--")
+    title = "Positions after two contacts a disk"
+    _panel(grid[0, 2], comparison, lambda line: line.errors[check], "position error [diameters]", title, log=True)
+    angles, pressure, times = grid[1]
+    _panel(angles, comparison, _angle, "mean error [degrees]", "Deflection angles of found contacts", log=True)
+    if any(_angle(line) == EXACT_ANGLE for line in comparison.lines):
+        note(angles, f"{EXACT_ANGLE:g} or less", (0.0, EXACT_ANGLE), ACROSS, (4, 6))
+    _panel(pressure, comparison, lambda line: 100.0 * line.pressure, "against event-driven [%]", "Bias of the pressure (virial)")
+    pressure.axhline(0.0, color=LIGHT.ink, lw=0.9)
+    _panel(times, comparison, lambda line: line.elapsed, "CPU seconds per time unit of the scene", "Computing time", log=True)
+    times.axhline(comparison.exact.elapsed, color=LIGHT.ink, lw=1.2, ls="--")
+    note(times, "event-driven", (0.0, comparison.exact.elapsed), ACROSS, (4, 4))
     handles = grid[0, 0].get_legend_handles_labels()
-    figure.legend(*handles, loc="outside lower center", ncols=min(len(handles[0]), 6) or 1, frameon=False, fontsize=9.5)
+    figure.legend(*handles, loc="outside lower center", ncols=3, frameon=False, fontsize=10.5)
     save_page(figure, path)
 
 
-def _found(line: Line) -> float:
-    return line.census.share(line.census.found)
-
-
-def _energy(line: Line) -> float:
-    return float("nan") if line.energy is None else max(abs(line.energy), BOTTOM)
+def _angle(line: Line) -> float:
+    return max(line.census.angle, EXACT_ANGLE)
 
 
 def _panel(
     axes: Axes, comparison: Comparison, value: Callable[[Line], float], y: str, title: str, log: bool = False
 ) -> None:
-    """One measured number against the step, a curve for each engine."""
+    """One measured number against the step, a curve for each engine; a panel without a number above 0 is not logarithmic."""
     for name in dict.fromkeys(line.label for line in comparison.lines):
         lines = [line for line in comparison.lines if line.label == name]
-        values = np.array([value(line) for line in lines])
-        if log:
-            values = np.where(values > 0.0, values, np.nan)
-        style = look(name)
-        axes.plot(
-            [line.step for line in lines], values, style.line, marker=style.marker, color=style.colour, ms=5, label=NAMES[name]
-        )
+        axes.plot([line.step for line in lines], [value(line) for line in lines], label=NAMES[name], **look(name).drawn(5.5))
     axes.set_xscale("log")
-    if log:
-        axes.set_yscale("log")
+    if log and any(value(line) > 0.0 for line in comparison.lines):
+        axes.set_yscale("log", nonpositive="mask")
     label(axes, STEP, y, title)

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
 from matplotlib.axes import Axes
 
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
-from eventsim.show.versus.colours import look
+from eventsim.show.versus.colours import NAMES, look
 from eventsim.show.versus.notes import ACROSS, note
 from eventsim.validate.compare import Comparison, Line
 from eventsim.validate.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
@@ -20,7 +19,7 @@ STEP = "step: radii that a typical disk flies in it"
 
 def draw_missed(axes: Axes, comparison: Comparison) -> None:
     """Contacts missed, per cent of those ahead of exact states; runs that miss none lie on the lower edge."""
-    least = 50.0 / max((line.census.exact for line in comparison.lines), default=1)
+    least = 50.0 / max([1, *(line.census.exact for line in comparison.lines)])  # half a contact
     _draw(axes, comparison, lambda line: max(100.0 * line.census.share(line.census.missed), least))
     bound = 100.0 * (1.0 - ALL)
     axes.axhline(bound, color=LIGHT.ink, lw=0.9, ls=(0, (4, 3)))
@@ -50,7 +49,7 @@ def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) ->
     """A curve for each engine."""
     for name in dict.fromkeys(line.label for line in comparison.lines):
         lines = [line for line in comparison.lines if line.label == name]
-        axes.plot([line.step for line in lines], np.array([value(line) for line in lines]), lw=1.3, **look(name).drawn(5.5))
+        style = look(name).drawn(5.5)
+        axes.plot([line.step for line in lines], [value(line) for line in lines], lw=1.3, label=NAMES[name], **style)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xticks([0.01, 0.1, 1.0], ["0.01", "0.1", "1"])

@@ -27,6 +27,9 @@ COLUMNS, PANEL = 3, (4.4, 3.9)
 LETTERS, LINE = 108, 0.215
 """Letters in a line of the answers; inches of its height."""
 
+TITLE, LEGEND_LINE = 0.42, 0.24
+"""Inches of the title and of a line of the legend."""
+
 HEAD_WIDTH = COLUMNS * PANEL[0]
 """Inches that the answers need."""
 
@@ -51,7 +54,7 @@ def write_chart(chart: Chart, path: str | PathLike[str]) -> None:
     free = -len(panels) % across
     beside = free >= 2
     last = -(-len(panels) // across)
-    head_height = LINE * (len(lines) + 4) + 0.5
+    head_height = TITLE + LINE * (len(lines) + 1) + LEGEND_LINE * -(-len(present(chart)) // COLUMNS)
     table_height = [] if beside or not rows else [0.34 * (len(rows) + 3)]
     heights = [head_height, *[PANEL[1]] * last, *table_height]
     figure = Figure(figsize=(max(across * PANEL[0], HEAD_WIDTH), sum(heights)), dpi=120, facecolor="white", layout="constrained")
@@ -86,19 +89,23 @@ def answer_lines(chart: Chart) -> list[tuple[str, str]]:
     return lines
 
 
+def present(chart: Chart) -> list[str]:
+    """The engines that took part, in the order of the legend."""
+    return [name for name in NAMES if any(name in curves.labels for curves in chart.tasks)]
+
+
 def draw_head(axes: Axes, chart: Chart, lines: list[tuple[str, str]], height: float) -> None:
     """The title, the answers, and the legend of all panels; height: of the axes, inches."""
     axes.set_axis_off()
     above: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "color": LIGHT.ink}
     axes.text(0.0, 1.0, "Speed against accuracy, and where each engine is the right one", fontsize=16, weight="bold", **above)
     for place, (question, text) in enumerate(lines):
-        y = 1.0 - (0.42 + LINE * place) / height
+        y = 1.0 - (TITLE + LINE * place) / height
         axes.text(0.0, y, question, fontsize=11, weight="bold", **above)
         axes.text(ANSWERS_AT, y, text, fontsize=11, **above)
-    present = [name for name in NAMES if any(name in curves.labels for curves in chart.tasks)]
-    for name in present:
+    for name in present(chart):
         axes.plot([], [], label=NAMES[name], **look(name).drawn(8))
-    axes.legend(loc="lower left", ncols=3, frameon=False, fontsize=10.5, borderaxespad=0.0, columnspacing=2.0)
+    axes.legend(loc="lower left", ncols=COLUMNS, frameon=False, fontsize=10.5, borderaxespad=0.0, columnspacing=2.0)
 
 
 def draw_rates(axes: Axes, chart: Chart) -> None:

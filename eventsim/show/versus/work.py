@@ -56,7 +56,7 @@ def draw_work(axes: Axes, curves: Curves) -> None:
     else:
         _draw_advantages(axes, curves)
     title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
-    label(axes, "seconds of computing per time unit of the scene", ERRORS[curves.task.measure], title)
+    label(axes, "CPU seconds per time unit of the scene", ERRORS[curves.task.measure], title)
     axes.title.set_fontsize(10.5)
 
 
