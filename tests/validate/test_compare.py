@@ -116,6 +116,17 @@ def test_without_flint_its_curve_is_left_out_with_one_sentence(monkeypatch):
     assert len([text for text in found.left_out if "certify" in text]) == 1
 
 
+def test_without_pymunk_its_curve_is_left_out_with_one_sentence(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "pymunk", None)
+    found = curves(Task("two", es.gallery("two-disks"), "trajectory", 6.0), [ENTRANTS["pymunk"]], patience_s=0.01)
+    assert "reference" in found.labels
+    assert "pymunk" not in found.labels
+    assert [text for text in found.left_out if "pymunk" in text] == [
+        "pymunk is left out: the engine pymunk needs the Chipmunk engine, which is not installed: "
+        "pip install 'eventsim-disks[pymunk]'"
+    ]
+
+
 def a_chart():
     """A chart by hand: the event-driven engine wins on the gas by 10 and loses on the pile by 5."""
 
