@@ -104,8 +104,9 @@ def verdict(looks: list[Look]) -> tuple[str, bool]:
     rate = (last.events - warm.events) / max(last.cpu_s - warm.cpu_s, 1e-9)
     return (
         f"{last.events:,} contacts to t = {last.clock:.6g}: energy drift {drift:.1e}, momentum {last.momentum:.1e}, "
-        f"deepest overlap {last.overlap:.1e} of the reach, resident {warm.resident:.1f} -> {last.resident:.1f} MB ({growth:+.2%}), queue "
-        f"{warm.queue:,} -> {last.queue:,}; {rate:,.0f} contacts per CPU second: {'sound' if sound else 'NOT SOUND'}"
+        f"deepest overlap {last.overlap:.1e} of the reach, "
+        f"resident {warm.resident:.1f} -> {last.resident:.1f} MB ({growth:+.2%}), queue {warm.queue:,} -> {last.queue:,}; "
+        f"{rate:,.0f} contacts per CPU second: {'sound' if sound else 'NOT SOUND'}"
     ), sound
 
 
