@@ -74,6 +74,24 @@ def test_the_blocks_of_a_stream_do_not_show_in_the_file(tmp_path: Path, suffix: 
     assert (tmp_path / f"one{suffix}").read_bytes() == (tmp_path / f"many{suffix}").read_bytes()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there the second run fails by itself")
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_second_run_that_writes_the_same_log_is_refused(tmp_path: Path, suffix: str) -> None:
+    log = random_log(20)
+    path = tmp_path / f"log{suffix}"
+    first = open_sink(path, provenance())
+    first.write(log.rows)
+    with pytest.raises(LogError, match=f"log{suffix}.part: another run is writing this log"):
+        open_sink(path, provenance())
+    first.close()
+    assert load_log(path).rows.tobytes() == log.rows.tobytes()
+    left = open_sink(path, provenance())
+    left.write(log.rows)
+    left.leave()  # what a run leaves is nobody's
+    log.save(path)
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_file_appears_only_when_it_is_whole(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"log{suffix}"

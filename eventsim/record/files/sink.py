@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from eventsim.errors import LogError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Rows
+from eventsim.record.files.claim import Claim
 from eventsim.record.provenance import Ending, Kick, Provenance, kicks_of
 
 PART = ".part"
@@ -49,11 +50,13 @@ class FileSink(ABC):
             raise LogError(f"{path}: is a directory, so no log can be written there")
         if not path.parent.is_dir():
             raise LogError(f"{path}: the directory {path.parent} does not exist")
+        self._claim = Claim(self.part)
         try:
             if mark is None:
                 self._open()
             else:
                 self._reopen(mark.rows)
+            self._claim.take()
         except (LogError, OSError) as error:
             self.leave()
             raise self._unwritable(error) if isinstance(error, OSError) else error from None
@@ -87,6 +90,7 @@ class FileSink(ABC):
             os.replace(whole, self.path)
             if whole != self.part:
                 self._discard()
+            self._claim.release()
         except OSError as error:
             raise self._unwritable(error) from None
 
@@ -94,6 +98,7 @@ class FileSink(ABC):
         """Let go of the part: what has been written stays there and can be read."""
         with suppress(OSError):  # what could not be written before cannot be now
             self._release()
+        self._claim.release()
 
     def abandon(self) -> None:
         """Remove what has been written; no file appears."""
