@@ -63,7 +63,7 @@ def _steps(chart: Chart) -> Answer | None:
     found, never = whole_from(chart.losses)
     parts = [f"{line.label} {line.step:.2g}" for line in found]
     text = f"More than {1.0 - ALL:.0%} are missed where a disk flies more than so many radii a step: {', '.join(parts)}."
-    lost = [f"{line.label} (even at {line.step:.2g}, {line.census.share(line.census.missed):.0%})" for line in never]
+    lost = [f"{line.label} (at {line.step:.2g} still {100.0 * line.census.share(line.census.missed):.2g}%)" for line in never]
     text = (text if parts else "") + (f" With every step tried: {', '.join(lost)}." if lost else "")
     return Answer("At which step are contacts lost?", text.strip())
 
