@@ -98,7 +98,7 @@ class AutoSession:
         if left < WARM:
             return
         from eventsim.engines.fast.compiled import is_warm  # loads the compiler: worth it from here on
-        from eventsim.engines.fast.session import kind_of
+        from eventsim.engines.fast.rules import kind_of
 
         if left > (WARM if is_warm(kind_of(self.stage, self._keep_rows)) else COLD):
             self._hand_over()

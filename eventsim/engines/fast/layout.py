@@ -73,8 +73,8 @@ class Rules(NamedTuple):
     """What the scene says; None: it does not have that.
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
-    disks or tracers.  features: number of wall shapes; first_feature: the place of the first.  instant, at_once_limit:
-    see `instant_of`.
+    disks or tracers.  features: number of wall shapes; faces, posts, containers, arcs: whether there are such; first_feature: the
+    place of the first.  instant, at_once_limit: see `instant_of`.
     """
 
     gx: object
@@ -91,6 +91,10 @@ class Rules(NamedTuple):
     classes: object
     common_mass: float
     features: object
+    faces: object
+    posts: object
+    containers: object
+    arcs: object
     first_feature: int
     instant: float
     at_once_limit: int
@@ -100,9 +104,9 @@ class Grid(NamedTuple):
     """Disks, cells and the calendar.
 
     n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell; deep: None where it is the usual
-    one.  low: the corner of the grid.  days: buckets, a power of two.  lanes: eight pairs at a time, or None.  look_ahead: days
-    at which memory is prefetched, or None.  levels: how many grids there are, None for one; first: the first slot of this one,
-    None for 0.
+    one.  low: the corner of the grid; on the open plane its outer cells reach to infinity.  days: buckets, a power of two.
+    lanes: eight pairs at a time, or None.  look_ahead: days at which memory is prefetched, or None.  levels: how many grids
+    there are, None for one; first: the first slot of this one, None for 0.
     """
 
     n: int
@@ -126,8 +130,8 @@ class Grid(NamedTuple):
 STATUS_BUDGET, STATUS_LIMIT, STATUS_EVENTS, STATUS_ROWS = 0, 1, 2, 3
 """Why a kernel returned: its steps are done; no event before the limit; enough events; the row buffer is full."""
 
-STATUS_TIE, STATUS_FULL, STATUS_STUCK, STATUS_IDLE, STATUS_BEYOND = 4, 5, 6, 7, 8
-"""Contacts of equal time; a full cell; an instant does not end; a long time without events; a disk has left the grid."""
+STATUS_TIE, STATUS_FULL, STATUS_STUCK, STATUS_IDLE = 4, 5, 6, 7
+"""Contacts of equal time; a full cell; an instant does not end; a long time without events."""
 
 DAY, EVENTS, PAIRS, WALLS, WRAPS, CROSSINGS, STALE, WINDOW_ROWS, ROW_COUNT, ROOM, DISK, STEPS, EPOCH = range(13)
 """Places in `counts`.  ROW_COUNT: rows in the buffer; ROOM: how many fit; DISK: the one that a

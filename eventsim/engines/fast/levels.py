@@ -117,24 +117,25 @@ def _along_rim(m, grid, rules, cells, radius, i, x, y, skip, count):
     stray_x, stray_y = real(m.levels, SIDE_X), real(m.levels, SIDE_Y)
     outer = (own + radius) * (1.0 + MARGIN) + MARGIN * cells.side_x
     inner = own * (1.0 - MARGIN)
-    first = math.floor((y - outer - stray_y - cells.low_y) / cells.side_y)
-    last = math.floor((y + outer + stray_y - cells.low_y) / cells.side_y)
-    if rules.length_y is None:
-        first, last = max(first, 0), min(last, cells.rows - 1)
+    first, last = _span(y, outer + stray_y, cells.low_y, cells.side_y, cells.rows, rules.length_y)
     for row in range(first, last + 1):
         below, above = cells.low_y + row * cells.side_y - y, cells.low_y + (row + 1) * cells.side_y - y
+        if rules.length_y is None:  # outer cells reach to infinity
+            below = -NEVER if row == 0 else below
+            above = NEVER if row == cells.rows - 1 else above
         least = max(max(below, -above) - stray_y, 0.0)
         most = max(-below, above) + stray_y
         if least > outer:
             continue
         half = sqrt(outer * outer - least * least) + stray_x
-        begin = math.floor((x - half - cells.low_x) / cells.side_x)
-        end = math.floor((x + half - cells.low_x) / cells.side_x)
+        begin, end = _span(x, half, cells.low_x, cells.side_x, cells.columns, rules.length_x)
         hole_begin, hole_end = end + 1, end  # the columns of cells well inside the disk
         if most < inner:
             half = sqrt(inner * inner - most * most) - stray_x
             hole_begin = math.ceil((x - half - cells.low_x) / cells.side_x)
             hole_end = math.floor((x + half - cells.low_x) / cells.side_x) - 1
+            if rules.length_x is None:
+                hole_begin, hole_end = max(hole_begin, 1), min(hole_end, cells.columns - 2)
         if hole_begin > hole_end:
             count = _along_row(m, grid, rules, cells, row, begin, end, i, skip, count)
         else:
@@ -143,13 +144,25 @@ def _along_rim(m, grid, rules, cells, radius, i, x, y, skip, count):
     return count
 
 
+@inline
+def _span(middle, half, low, side, count, length):
+    """The first and the last of the columns or rows that hold middle - half and middle + half, counted from 0.
+
+    Along a period these are in line, not folded, and no more than there are; else what is beyond the grid belongs to the outer
+    ones.
+    """
+    first, last = math.floor((middle - half - low) / side), math.floor((middle + half - low) / side)
+    if length is None:
+        return min(max(first, 0), count - 1), min(max(last, 0), count - 1)
+    return first, min(last, first + count - 1)
+
+
 @part
 def _along_row(m, grid, rules, cells, row, begin, end, i, skip, count):
     """List the disks of the cells begin, ..., end of a row, counted from 0; beyond a period they are those at the other side."""
     if rules.length_y is not None:
         row = row % cells.rows
     if rules.length_x is None:
-        begin, end = max(begin, 0), min(end, cells.columns - 1)
         return _list(m, cells, slot_of(cells, begin + 1, row + 1), end - begin + 1, i, skip, count, grid.lanes)
     while begin <= end:
         column = begin % cells.columns

@@ -33,7 +33,6 @@ from eventsim.engines.fast.layout import (
     ROW,
     ROW_COUNT,
     STALE,
-    STATUS_BEYOND,
     STATUS_BUDGET,
     STATUS_EVENTS,
     STATUS_FULL,
@@ -78,9 +77,9 @@ def pointers(a):
 
 @inline
 def move(m, grid, rules, i, code, slots):
-    """Move disk i, which is at the edge of its cell, into the next one; 0, or the status that says why it cannot be there."""
+    """Move disk i, which is at the edge of its cell, into the next one; False if that is full."""
     if slots is None or _only_looks(code, grid.levels):
-        return 0
+        return True
     home = home_of(m, grid, i)
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     leave(m, home, rules, i)
@@ -100,9 +99,7 @@ def move(m, grid, rules, i, code, slots):
         row = 1
     else:
         row = home.rows
-    if column < 1 or row < 1 or column > home.columns or row > home.rows:
-        return STATUS_BEYOND
-    return 0 if enter(m, home, rules, i, column, row) else STATUS_FULL
+    return enter(m, home, rules, i, column, row)
 
 
 @inline
@@ -170,10 +167,9 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             if code <= WRAP_RIGHT:
                 wraps += 1
                 wrap(m, rules, i, code, now)
-            failure = move(m, grid, rules, i, code, m.slots)
-            if failure:
+            if not move(m, grid, rules, i, code, m.slots):
                 counts[DISK] = i
-                status = failure
+                status = STATUS_FULL
                 break
         predict(m, grid, rules, i, now, now)
         push(m, grid, i, day)

@@ -64,8 +64,8 @@ def cell_sizes(
 ) -> tuple[Sizes, ...] | None:
     """The cells for disks at (x, y), finest level first; depths: slots of a cell on levels where they are told.
 
-    classes: the largest radius on each level.  None where a period is too short for cells: everyone looks at everyone.  In an
-    open domain the grids cover twice the extent of the disks and are made anew when one leaves them.
+    classes: the largest radius on each level.  None where a period is too short for cells: everyone looks at everyone.  On the
+    open plane the grids cover three times the extent of the disks, and their outer cells all the rest.
     """
     if stage.size is None:
         low, size = _around(x, y)

@@ -151,13 +151,9 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
     time, code, shared = NEVER, NOTHING, 0
-    goes_on_x = (
-        m.slots is not None and rules.length_x is None and rules.wall_x is None
-    )  # an open plane, covered by cells
-    goes_on_y = m.slots is not None and rules.length_y is None and rules.wall_y is None
     k = word(m.disks, i * WORDS + COLUMN)
     low = grid.low_x + (k - 1) * grid.side_x
-    if k > 1 or goes_on_x:
+    if k > 1:
         new = now + crossing_delay(x, u, ax, low - slack(grid.side_x, rules.gx), 1.0)
         time, code, shared = _earlier(time, code, shared, new, LEFT)
     else:
@@ -166,7 +162,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
-    if k < grid.columns or goes_on_x:
+    if k < grid.columns:
         new = now + crossing_delay(x, u, ax, low + grid.side_x + slack(grid.side_x, rules.gx), -1.0)
         time, code, shared = _earlier(time, code, shared, new, RIGHT)
     else:
@@ -187,7 +183,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
             time, code, shared = _earlier(time, code, shared, new, what)
     k = word(m.disks, i * WORDS + ROW)
     low = grid.low_y + (k - 1) * grid.side_y
-    if k > 1 or goes_on_y:
+    if k > 1:
         new = now + crossing_delay(y, w, ay, low - slack(grid.side_y, rules.gx), 1.0)
         time, code, shared = _earlier(time, code, shared, new, DOWN)
     else:
@@ -196,7 +192,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
-    if k < grid.rows or goes_on_y:
+    if k < grid.rows:
         new = now + crossing_delay(y, w, ay, low + grid.side_y + slack(grid.side_y, rules.gx), -1.0)
         time, code, shared = _earlier(time, code, shared, new, UP)
     else:
@@ -248,6 +244,7 @@ def shape_time(m, rules, i, k):
     gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
     delay, side = shape_delay(
         m,
+        rules,
         i,
         k,
         rules.first_feature + k,
@@ -302,13 +299,13 @@ def pair_time(m, rules, i, j, kx, ky):
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
-    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by)
+    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, rules.classes)
 
 
 @inline
-def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by):
+def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, classes):
     ri, rj = real(m.disks, i * REALS + RADIUS), real(m.disks, j * REALS + RADIUS)
-    if ax is not None and (ax != bx or ay != by):
+    if ax is not None and classes is not None and (ax != bx or ay != by):
         return circle_delays(dx, dy, du, dw, ax - bx, ay - by, ri + rj, 1.0)[0]
     delay = screened_pair_delay(dx, dy, du, dw, ri + rj)
     if delay == delay:

@@ -37,7 +37,7 @@ from eventsim.engines.fast.order import along_a_curve
 from eventsim.engines.fast.plan import MANY_DISKS
 from eventsim.engines.fast.predict import image, pair_is_due, shape_time
 from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
-from eventsim.engines.fast.session import features_of, rules_of
+from eventsim.engines.fast.rules import features_of, rules_of
 from eventsim.engines.fast.shapes import WIDTH
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.crossing import crossing_delay

@@ -10,18 +10,18 @@ import numpy as np
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.fast import layout
 from eventsim.engines.fast.compiled import link, mark_warm, timed_compiling
-from eventsim.engines.fast.grids import FEW_DISKS, Grids
+from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.instant import contacts_at, due_at
 from eventsim.engines.fast.lanes import lanes_work
-from eventsim.engines.fast.layout import Arrays, Grid, Rules
+from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.order import along_a_curve
-from eventsim.engines.fast.plan import MANY_DISKS, Sizes, classes_of, day_length, shortest_day
-from eventsim.engines.fast.shapes import KINDS, WIDTH
+from eventsim.engines.fast.plan import MANY_DISKS, Sizes, day_length, shortest_day
+from eventsim.engines.fast.rules import features_of, kind_of, rules_of
 from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.loop import components, endless, row_order, squeezed
-from eventsim.engines.reference.resolve import Resolver, instant_of
+from eventsim.engines.reference.resolve import Resolver
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, next_window, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.simultaneous import SqueezedError
@@ -84,6 +84,7 @@ class FastSession:
         self.compile_s = 0.0
         self._marked = False
         self._days = self._steps = 0
+        self._remade = 0, 0.0
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
         self._grid: Grid
@@ -131,18 +132,20 @@ class FastSession:
             elif status == layout.STATUS_STUCK:
                 return self._give_up(int(state.labels[counts[layout.DISK]]))
             elif status == layout.STATUS_FULL:
-                self._grids.deepen(int(state.words[counts[layout.DISK], layout.FLAGS]) // layout.FIRST_LEVEL)
-                self._predict_afresh()
-            elif status == layout.STATUS_BEYOND:
-                self._predict_afresh()
+                self._make_room(int(counts[layout.DISK]))
             elif status in (layout.STATUS_LIMIT, layout.STATUS_IDLE):
                 empty = bool(np.isinf(self._due[0]) and np.all(np.isinf(self._due)))
                 if status == layout.STATUS_IDLE and not empty:
                     self._schedule()
                 elif turns and not (empty and stop.until is None):
-                    if stop.until is None and state.window_rows == 0 and self._drifts():
-                        return "quiet"
-                    if state.epoch >= MOST_EPOCHS:  # on the open plane disks that part cross cells for ever
+                    if stop.until is None and state.window_rows == 0:
+                        if self._drifts():
+                            return "quiet"
+                        if self._only_looks():
+                            self._grids = Grids(self.stage, None)
+                            self._predict_afresh()
+                            continue
+                    if state.epoch >= MOST_EPOCHS:
                         return "quiet"
                     self._turn_over()
                 else:
@@ -290,9 +293,16 @@ class FastSession:
         self.state.now = now
         self._sums[layout.NOW] = now
 
+    def _make_room(self, place: int) -> None:
+        """Make cells anew, for the disks where they are, or deeper ones if that has just been done: a cell was full."""
+        if self._remade == (self.state.epoch, self.state.now):
+            self._grids.deepen(int(self.state.words[place, layout.FLAGS]) // layout.FIRST_LEVEL)
+        self._predict_afresh()
+
     def _predict_afresh(self) -> None:
         """Make cells and calendar anew, with more slots as long as a cell is full."""
         state, stage, now = self.state, self.stage, self.state.now
+        self._remade = state.epoch, now
         while True:
             self._grids.choose(self.motion())
             self._grid = self._grids.grid(self._lanes)
@@ -330,6 +340,11 @@ class FastSession:
         """Make the calendar anew, with days of a fitting length."""
         self._choose_days()
         schedule(self._arrays, self._grid, self._counts, self.state.now)
+
+    def _only_looks(self) -> bool:
+        """Whether nothing is ahead but looking for smaller disks, which on the open plane has no end."""
+        partners = self.state.words[: self.state.n, layout.PARTNER]
+        return self._grid.levels is not None and bool(np.isin(partners, (layout.LOOK, layout.NOTHING)).all())
 
     def _drifts(self) -> bool:
         """Whether all disks have one velocity and nothing to meet: they would wrap for ever."""
@@ -430,48 +445,3 @@ class FastSession:
         s.words[:, layout.MET] = layout.NOBODY
         with timed_compiling(self._note_compiling):
             self._predict_afresh()
-
-
-def rules_of(stage: Stage) -> Rules:
-    """What the scene says, for kernels."""
-    gx, gy = stage.gravity or (None, None)
-    wall_x = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 0), None)
-    wall_y = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 1), None)
-    classes = stage.mass is not None and bool(np.any(np.isinf(stage.mass) | (stage.mass == 0.0)))
-    width, height = stage.size or (math.inf, math.inf)
-    return Rules(
-        gx,
-        gy,
-        *stage.period,
-        wall_x,
-        wall_y,
-        width,
-        height,
-        stage.pair_restitution,
-        stage.wall_restitution,
-        stage.contact_duration,
-        1 if classes else None,
-        stage.common_mass,
-        len(stage.features) or None,
-        len(stage.boundaries),
-        *instant_of(stage),
-    )
-
-
-def kind_of(stage: Stage, keep_rows: bool) -> str:
-    """A name for what the scene has: scenes of one kind share their kernels."""
-    levels = stage.n >= FEW_DISKS and len(classes_of(stage)) > 1
-    asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS, levels]
-    needs = [*rules_of(stage), stage.mass, *(True if wanted else None for wanted in asked)]
-    return "".join("0" if need is None else "1" for need in needs)
-
-
-def features_of(stage: Stage) -> Floats | None:
-    """The wall shapes as a table of numbers, in one row of memory."""
-    if not stage.features:
-        return None
-    table = np.zeros((len(stage.features), WIDTH))
-    for row, (shape, wall) in zip(table, stage.features, strict=True):
-        row[0], row[1] = KINDS.index(type(shape)), wall
-        row[2 : 2 + len(shape)] = shape
-    return table.reshape(-1)

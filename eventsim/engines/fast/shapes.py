@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.compiled import part
+from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.memory import real
 from eventsim.engines.fast.met import side_met
+from eventsim.formulas.real import NEVER
 from eventsim.formulas.walls.face import Face, face_delay, face_normal
 from eventsim.formulas.walls.round import Arc, Container, Post, arc_delay, container_delay, post_delay, round_normal
 
@@ -18,14 +19,20 @@ FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
 
 
 @part
-def shape_delay(m, i, k, place, x, y, vx, vy, gx, gy, radius):
+def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
+    faces, posts, containers, arcs = rules.faces, rules.posts, rules.containers, rules.arcs
+    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs)
+
+
+@inline
+def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs):
     met = side_met(m, i, place)
     row = m.features
     s = WIDTH * k
     kind = real(row, s)
     a, b = real(row, s + 2), real(row, s + 3)
-    if kind == FACE:
+    if faces is not None and kind == FACE:
         face = Face(
             a,
             b,
@@ -38,14 +45,15 @@ def shape_delay(m, i, k, place, x, y, vx, vy, gx, gy, radius):
             real(row, s + 10),
         )
         return face_delay(face, x, y, vx, vy, gx, gy, radius, met)
-    if kind == POST:
+    if posts is not None and kind == POST:
         return post_delay(Post(a, b), x, y, vx, vy, gx, gy, radius, met)
-    if kind == CONTAINER:
+    if containers is not None and kind == CONTAINER:
         return container_delay(Container(a, b, real(row, s + 4)), x, y, vx, vy, gx, gy, radius, met)
-    arc = Arc(
-        a, b, real(row, s + 4), real(row, s + 5), real(row, s + 6), real(row, s + 7), real(row, s + 8), real(row, s + 9)
-    )
-    return arc_delay(arc, x, y, vx, vy, gx, gy, radius, met)
+    if arcs is not None:
+        b4, b5, b6, b7 = real(row, s + 4), real(row, s + 5), real(row, s + 6), real(row, s + 7)
+        arc = Arc(a, b, b4, b5, b6, b7, real(row, s + 8), real(row, s + 9))
+        return arc_delay(arc, x, y, vx, vy, gx, gy, radius, met)
+    return NEVER, 0
 
 
 @part

@@ -9,6 +9,7 @@ import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.fast import FastSession
 from eventsim.engines.fast.plan import Sizes, classes_of, levels_of
+from eventsim.engines.reference import ReferenceSession
 from eventsim.record.digest import digest_of
 from eventsim.scene.stage import Stage, stage_of
 from tests.engines.fast.test_same_log import assert_same, rows_of
@@ -70,3 +71,15 @@ def test_each_class_ends_with_a_radius_that_exists() -> None:
     level = levels_of(stage, classes)
     assert level.tolist() == [next(k for k, bound in enumerate(classes) if r <= bound) for r in stage.radius]
     assert level[2002] == len(classes) - 1
+
+
+@pytest.mark.parametrize("wide", [False, pytest.param(True, marks=slow)])
+def test_disks_that_fly_apart_on_the_open_plane_come_to_an_end(wide: bool) -> None:
+    scene = wide_mixture(60, 1, es.Open) if wide else lattice_gas(64, 0.3, es.Open, seed=3)
+    stage = stage_of(scene)
+    logs = []
+    for session in (ReferenceSession(stage), FastSession(stage)):
+        rows, stopped = rows_of(session, Stop())
+        assert stopped == "quiet"
+        logs.append(digest_of(rows))
+    assert logs[0] == logs[1]

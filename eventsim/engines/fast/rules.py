@@ -1,0 +1,66 @@
+"""What a scene has, as kernels take it: None is what it lacks, and is compiled away."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventsim.engines.fast.grids import FEW_DISKS
+from eventsim.engines.fast.layout import Rules
+from eventsim.engines.fast.plan import MANY_DISKS, classes_of
+from eventsim.engines.fast.shapes import KINDS, WIDTH
+from eventsim.engines.reference.resolve import instant_of
+from eventsim.record.events import Floats
+from eventsim.scene.stage import Stage
+
+
+def rules_of(stage: Stage) -> Rules:
+    """What kernels need to know of a scene besides its disks."""
+    gx, gy = stage.gravity or (None, None)
+    wall_x = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 0), None)
+    wall_y = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 1), None)
+    classes = stage.mass is not None and bool(np.any(np.isinf(stage.mass) | (stage.mass == 0.0)))
+    present = {type(feature.shape) for feature in stage.features}
+    faces, posts, containers, arcs = (1 if kind in present else None for kind in KINDS)
+    width, height = stage.size or (math.inf, math.inf)
+    return Rules(
+        gx,
+        gy,
+        *stage.period,
+        wall_x,
+        wall_y,
+        width,
+        height,
+        stage.pair_restitution,
+        stage.wall_restitution,
+        stage.contact_duration,
+        1 if classes else None,
+        stage.common_mass,
+        len(stage.features) or None,
+        faces,
+        posts,
+        containers,
+        arcs,
+        len(stage.boundaries),
+        *instant_of(stage),
+    )
+
+
+def kind_of(stage: Stage, keep_rows: bool) -> str:
+    """A name for what the scene has: scenes of one kind share their kernels."""
+    levels = stage.n >= FEW_DISKS and len(classes_of(stage)) > 1
+    asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS, levels]
+    needs = [*rules_of(stage), stage.mass, *(True if wanted else None for wanted in asked)]
+    return "".join("0" if need is None else "1" for need in needs)
+
+
+def features_of(stage: Stage) -> Floats | None:
+    """The wall shapes as a table of numbers, in one row of memory."""
+    if not stage.features:
+        return None
+    table = np.zeros((len(stage.features), WIDTH))
+    for row, (shape, wall) in zip(table, stage.features, strict=True):
+        row[0], row[1] = KINDS.index(type(shape)), wall
+        row[2 : 2 + len(shape)] = shape
+    return table.reshape(-1)
