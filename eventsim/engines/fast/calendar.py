@@ -20,10 +20,14 @@ from eventsim.engines.fast.layout import (
     PARTNER_COUNT,
     REALS,
     ROW,
+    WAITING,
     WORDS,
 )
 from eventsim.engines.fast.levels import home_of
 from eventsim.engines.fast.memory import prefetch, real, store, word
+
+NO_DAY = 1 << 62
+"""A deadline that does not come."""
 
 
 @inline
@@ -67,10 +71,58 @@ def take(m, i):
 
 
 @inline
-def first(m, grid, day, limit):
-    """(disk, day, others): the earliest event, which stays in the calendar, and how many others have its time.
+def _waiting(grid, k):
+    """The place of the k-th word of the waiting room, behind the buckets."""
+    return (grid.n + 1) * WORDS + grid.days + (k & (WAITING - 1))
 
-    disk -1: nothing is due up to `limit`; -2: many days without any event.
+
+@inline
+def push_later(m, grid, i, day, room, deadline, look_ahead):
+    """Put disk i into the calendar; (room, deadline) afterwards.
+
+    Where memory is far, a disk first spends some events in a waiting room, while the memory of its bucket comes: else the
+    processor would stand still until it is there, for most of the time of a run.  It is on a list there as in a bucket, so
+    `take` need not know.  room: how many have waited; deadline: the day by which all must be in the calendar.
+    """
+    if look_ahead is None:
+        push(m, grid, i, day)
+        return room, deadline
+    due = day_of(grid, real(m.disks, i * REALS + DUE), day)
+    if due < day + 2 * look_ahead:  # near at hand, in every sense
+        push(m, grid, i, day)
+        return room, deadline
+    place = _waiting(grid, room)
+    _end_waiting(m, grid, place, day)
+    store(m.disks, place, i)
+    store(m.disks, i * WORDS + LINK, place)
+    store(m.disks, i * WORDS + NEXT, grid.n)
+    prefetch(m.disks, bucket(grid, due) // 2)
+    return room + 1, due if due < deadline else deadline
+
+
+@inline
+def _end_waiting(m, grid, place, day):
+    """Put the disk that waits at a place, if there is one, into its bucket."""
+    i = word(m.disks, place)
+    if i != grid.n:
+        push(m, grid, i, day)
+
+
+@inline
+def empty_room(m, grid, day, look_ahead):
+    """Put all disks that wait into the calendar."""
+    if look_ahead is None:
+        return
+    for k in range(WAITING):
+        _end_waiting(m, grid, _waiting(grid, k), day)
+        store(m.disks, _waiting(grid, k), grid.n)
+
+
+@inline
+def first(m, grid, day, limit, deadline):
+    """(disk, day, others, deadline): the earliest event, which stays in the calendar, and how many others have its time.
+
+    disk -1: nothing is due up to `limit`; -2: many days without any event.  deadline: see `push_later`.
     """
     quiet = 0
     while True:
@@ -85,12 +137,12 @@ def first(m, grid, day, limit):
             time = due if sooner else time
             i = word(m.disks, i * WORDS + NEXT)
         if earliest >= 0:
-            return earliest, day, others
+            return earliest, day, others, deadline
         if float(day - 1) * grid.day_length > limit:  # a day less: the day of a time is rounded
-            return -1, day, 0
+            return -1, day, 0, deadline
         quiet += 1
         if quiet > 4 * grid.days:
-            return -2, day, 0
+            return -2, day, 0, deadline
         store(m.disks, bucket(grid, day), grid.n)
         day += 1
         fetch_coming(m, grid, day, grid.look_ahead)
@@ -99,6 +151,9 @@ def first(m, grid, day, limit):
             follower = word(m.disks, i * WORDS + NEXT)
             push(m, grid, i, day)
             i = follower
+        if day >= deadline:
+            empty_room(m, grid, day, grid.look_ahead)
+            deadline = NO_DAY
 
 
 @inline

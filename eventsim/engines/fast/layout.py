@@ -46,6 +46,9 @@ side is -1)."""
 COUNTS = 1 << 30
 """Invalidation counts stay below; the bit itself in PARTNER_COUNT says that two events share the time of this one."""
 
+WAITING = 16
+"""Places in the waiting room of the calendar."""
+
 MOST_DISKS = 1 << 25
 """So many records and buckets still have int32 places."""
 
@@ -53,7 +56,7 @@ MOST_DISKS = 1 << 25
 class Arrays(NamedTuple):
     """The memory of a kernel: arrays where Python makes it, pointers inside; None is what the scene does not need.
 
-    disks: the records, and behind them the calendar's buckets.
+    disks: the records, and behind them the calendar's buckets and its waiting room.
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
     parts of velocities, (vx, vy) each.  levels: the table of `levels`.  rows: the log's buffer, bytes.
     """

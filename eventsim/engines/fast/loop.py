@@ -3,7 +3,18 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import anchor, place, speed, wrap
-from eventsim.engines.fast.calendar import bucket, first, is_mutual, is_stale, push, take, unsettled
+from eventsim.engines.fast.calendar import (
+    NO_DAY,
+    bucket,
+    empty_room,
+    first,
+    is_mutual,
+    is_stale,
+    push,
+    push_later,
+    take,
+    unsettled,
+)
 from eventsim.engines.fast.cells import enter, leave
 from eventsim.engines.fast.compiled import inline, kernel
 from eventsim.engines.fast.layout import (
@@ -43,6 +54,7 @@ from eventsim.engines.fast.layout import (
     STATUS_TIE,
     STEPS,
     UP,
+    WAITING,
     WALL,
     WALLS,
     WINDOW_ROWS,
@@ -118,12 +130,13 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
     first_slot = counts[ROW_COUNT] - begun
     bound = min(target, counts[ROOM] - first_slot)
     status = STATUS_BUDGET
-    steps = 0
+    steps = room = 0
+    deadline = NO_DAY
     while steps < budget:
         if events >= bound:
             status = STATUS_EVENTS if events >= target else STATUS_ROWS
             break
-        i, day, others = first(m, grid, day, limit)
+        i, day, others, deadline = first(m, grid, day, limit, deadline)
         if i < 0:
             status = STATUS_LIMIT if i == -1 else STATUS_IDLE
             break
@@ -153,7 +166,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 deepest = overlap if overlap > deepest else deepest
                 events += 1
                 predict(m, grid, rules, code, now, now)
-                push(m, grid, code, day)
+                room, deadline = push_later(m, grid, code, day, room, deadline, grid.look_ahead)
         elif code <= WALL:
             if word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS:
                 status = STATUS_TIE
@@ -172,11 +185,12 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 status = STATUS_FULL
                 break
         predict(m, grid, rules, i, now, now)
-        push(m, grid, i, day)
+        room, deadline = push_later(m, grid, i, day, room, deadline, grid.look_ahead)
         if word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
             counts[DISK] = i
             status = STATUS_STUCK
             break
+    empty_room(m, grid, day, grid.look_ahead)
     counts[DAY], sums[NOW], sums[DEEPEST] = day, now, deepest
     counts[EVENTS] = events
     counts[PAIRS] += events - begun - walls
@@ -226,8 +240,8 @@ def schedule(arrays, grid, counts, now):
 
 @inline
 def _first_day(m, grid, now):
-    for day in range(grid.days):
-        store(m.disks, bucket(grid, day), grid.n)
+    for bucket_place in range(bucket(grid, 0), bucket(grid, 0) + grid.days + WAITING):
+        store(m.disks, bucket_place, grid.n)
     return int(now * grid.days_per_time)
 
 

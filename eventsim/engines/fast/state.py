@@ -27,6 +27,7 @@ from eventsim.engines.fast.layout import (
     TRACER,
     VX,
     VY,
+    WAITING,
     WINDOW_ROWS,
     WORDS,
     WRAPS_X,
@@ -176,7 +177,7 @@ class FastState(EngineState):
             raise EventsimError(f"{n} disks: the fast engine has room for {MOST_DISKS}")
         self.n = n
         self._counts = counts
-        self.memory: Floats = aligned((n + 1) * REALS + days_of(n) // 2, np.float64)
+        self.memory: Floats = aligned((n + 1) * REALS + (days_of(n) + WAITING) // 2, np.float64)
         self.disks: Floats = self.memory[: (n + 1) * REALS].reshape(n + 1, REALS)
         self.words: Integers = self.disks.view(np.int32).reshape(n + 1, WORDS)
         self.place_of: Integers = np.empty(n, np.int32)
