@@ -38,9 +38,7 @@ class Grids:
     def choose(self, motion: Motion) -> None:
         """Choose the cells for the disks where they are."""
         if self._given is not None:
-            self.sizes = tuple(
-                size._replace(depth=max(size.depth, self._depths.get(k, 0))) for k, size in enumerate(self._given)
-            )
+            self.sizes = self._given
         elif self._chooses:
             self.sizes = cell_sizes(self._stage, motion.x, motion.y, self._classes, self._depths)
             if self.sizes is None and len(self._classes) > 1:
@@ -48,9 +46,12 @@ class Grids:
                 self.sizes = cell_sizes(self._stage, motion.x, motion.y, self._classes, self._depths)
 
     def deepen(self, level: int) -> None:
-        """Ask for twice as many slots in the cells of a level, next time."""
+        """Give the cells of a level twice as many slots, now and whenever they are chosen anew."""
         assert self.sizes is not None
-        self._depths[level] = 2 * self.sizes[level].depth
+        sizes = list(self.sizes)
+        self._depths[level] = 2 * sizes[level].depth
+        sizes[level] = sizes[level]._replace(depth=self._depths[level])
+        self.sizes = tuple(sizes)
 
     @property
     def level(self) -> Integers:

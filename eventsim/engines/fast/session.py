@@ -84,7 +84,7 @@ class FastSession:
         self.compile_s = 0.0
         self._marked = False
         self._days = self._steps = 0
-        self._remade = 0, 0.0
+        self._remade = 0, 0, 0.0
         self._found = np.empty((64, 4), np.int64)
         self._resolver: Resolver | None = None
         self._grid: Grid
@@ -132,7 +132,7 @@ class FastSession:
             elif status == layout.STATUS_STUCK:
                 return self._give_up(int(state.labels[counts[layout.DISK]]))
             elif status == layout.STATUS_FULL:
-                self._make_room(int(counts[layout.DISK]))
+                self._make_room(int(counts[layout.DISK]), stop)
             elif status in (layout.STATUS_LIMIT, layout.STATUS_IDLE):
                 empty = bool(np.isinf(self._due[0]) and np.all(np.isinf(self._due)))
                 if status == layout.STATUS_IDLE and not empty:
@@ -293,18 +293,25 @@ class FastSession:
         self.state.now = now
         self._sums[layout.NOW] = now
 
-    def _make_room(self, place: int) -> None:
-        """Make cells anew, for the disks where they are, or deeper ones if that has just been done: a cell was full."""
-        if self._remade == (self.state.epoch, self.state.now):
+    def _make_room(self, place: int, stop: Stop) -> None:
+        """Make cells anew for the disks where they are, or deeper ones, because a cell was full that a disk was to enter.
+
+        On the open plane new cells follow disks that part or fall.  If no stop time makes an end of that, they stay where they
+        are once nothing else happens, so that all disks come to rest in outer cells.
+        """
+        events, epoch, now = self._remade
+        same_time = (epoch, now) == (self.state.epoch, self.state.now)
+        if same_time or (stop.until is None and events == self._counts[layout.EVENTS]):
             self._grids.deepen(int(self.state.words[place, layout.FLAGS]) // layout.FIRST_LEVEL)
+        else:
+            self._grids.choose(self.motion())
         self._predict_afresh()
 
     def _predict_afresh(self) -> None:
-        """Make cells and calendar anew, with more slots as long as a cell is full."""
+        """Fill cells and calendar anew, with more slots as long as a cell is full."""
         state, stage, now = self.state, self.stage, self.state.now
-        self._remade = state.epoch, now
+        self._remade = int(self._counts[layout.EVENTS]), state.epoch, now
         while True:
-            self._grids.choose(self.motion())
             self._grid = self._grids.grid(self._lanes)
             state.set_levels(self._grids.level)
             self._arrays = Arrays(
@@ -430,6 +437,7 @@ class FastSession:
             if met:
                 s.met[i] = met
         with timed_compiling(self._note_compiling):
+            self._grids.choose(self.motion())
             self._predict_afresh()
 
     def _begin(self) -> None:
@@ -444,4 +452,5 @@ class FastSession:
         s.contact_time.set_all(-math.inf)
         s.words[:, layout.MET] = layout.NOBODY
         with timed_compiling(self._note_compiling):
+            self._grids.choose(self.motion())
             self._predict_afresh()

@@ -73,9 +73,14 @@ def test_each_class_ends_with_a_radius_that_exists() -> None:
     assert level[2002] == len(classes) - 1
 
 
+@pytest.mark.parametrize("gravity", [None, pytest.param((0.5, -1.0), marks=slow)])
 @pytest.mark.parametrize("wide", [False, pytest.param(True, marks=slow)])
-def test_disks_that_fly_apart_on_the_open_plane_come_to_an_end(wide: bool) -> None:
-    scene = wide_mixture(60, 1, es.Open) if wide else lattice_gas(64, 0.3, es.Open, seed=3)
+def test_disks_that_fly_apart_on_the_open_plane_come_to_an_end(wide: bool, gravity: tuple[float, float] | None) -> None:
+    scene = (
+        wide_mixture(60, 1, es.Open, gravity=gravity)
+        if wide
+        else lattice_gas(64, 0.3, es.Open, seed=3, gravity=gravity)
+    )
     stage = stage_of(scene)
     logs = []
     for session in (ReferenceSession(stage), FastSession(stage)):
