@@ -17,28 +17,28 @@ PAIRS, PAIR_IMPULSE, WALLS, WALL_IMPULSE = range(4)
 
 
 class BatchSums:
-    """Takes the batches of a run: their ends, and (batches, 4) numbers and summed impulses of pairs and of walls."""
+    """Takes the batches of runs, one after the other: (batches, 4) numbers and summed impulses of pairs and of walls."""
 
     def __init__(self):
-        self.ends, self.sums = [0.0], []
+        self.time, self.durations, self.sums = 0.0, [], []
 
     def __call__(self, rows):
         pair = rows["b"] >= 0
         impulse = np.where(pair, rows["impulse"], 0.0).sum()
         pairs = int(np.count_nonzero(pair))
-        self.ends.append(float(rows["time"][-1]))
+        before, self.time = self.time, float(rows["time"][-1])
+        self.durations.append(self.time - before)
         self.sums.append((pairs, impulse, len(rows) - pairs, rows["impulse"].sum() - impulse))
 
+    def take(self, scene, events):
+        """Simulate a scene."""
+        pytest.importorskip("numba")
+        self.time = 0.0
+        run = es.simulate(scene, events=events, engine="fast", on_event=self)
+        assert run.stopped == "events"
+
     def per_time(self, channel):
-        return ratio_average(np.array(self.sums)[:, channel], np.diff(self.ends))
-
-
-def batches(scene, events):
-    pytest.importorskip("numba")
-    sums = BatchSums()
-    run = es.simulate(scene, events=events, engine="fast", on_event=sums)
-    assert run.stopped == "events"
-    return sums
+        return ratio_average(np.array(self.sums)[:, channel], np.array(self.durations))
 
 
 def holds(bar, expected):
@@ -55,17 +55,25 @@ def test_two_disks_on_a_torus():
     free = side * side - math.pi
     place = [[0.5, 0.5], [0.5 + 0.5 * side, 0.5 + 0.48 * side]]
     velocity = [[0.8, 0.6], [-0.8, -0.6]]  # kT = E / (N - 1) = 1, |v_rel| = 2
-    sums = batches(es.Scene(es.Disks(place, velocity, 0.5), es.Periodic((side, side))), 400_000_000)
+    sums = BatchSums()
+    sums.take(es.Scene(es.Disks(place, velocity, 0.5), es.Periodic((side, side))), 400_000_000)
     assert holds(sums.per_time(PAIRS), 4.0 / free)
     virial = sums.per_time(PAIR_IMPULSE)  # d |dp| / (2 N kT) per contact
     assert holds(virial._replace(mean=1.0 + virial.mean / 4.0, error=virial.error / 4.0), 1.0 + math.pi / (2.0 * free))
 
 
+def hard_box(seed):
+    """Two disks in the unit box, kT = sum m v^2 / (2 N) = 1."""
+    velocity = np.random.default_rng(seed).normal(size=(2, 2))
+    velocity *= 2.0 / math.sqrt(float((velocity**2).sum()))
+    return es.Scene(es.Disks([[0.25, 0.3], [0.7, 0.72]], velocity, 0.2), es.Box((1.0, 1.0)))
+
+
 def test_two_disks_in_a_hard_box():
     """Unit box, r = .2: pair rate 4.15547414, hits on the four walls 9.57666101, force on each wall 5.64111898."""
-    velocity = np.array([[0.5, -1.1], [-0.7, 0.3]])
-    velocity *= 2.0 / math.sqrt(float((velocity**2).sum()))  # kT = sum m v^2 / (2 N) = 1
-    sums = batches(es.Scene(es.Disks([[0.25, 0.3], [0.7, 0.72]], velocity, 0.2), es.Box((1.0, 1.0))), 600_000_000)
+    sums = BatchSums()
+    for seed in range(4):
+        sums.take(hard_box(seed), 150_000_000)
     assert holds(sums.per_time(PAIRS), 4.15547414)
     assert holds(sums.per_time(WALLS), 9.57666101)
     assert holds(sums.per_time(WALL_IMPULSE), 4.0 * 5.64111898)

@@ -1,0 +1,89 @@
+"""What choosing costs: `auto` against the better of the two engines, over job lengths; a process of its own for every run.
+
+    python -m tests.benchmarks.auto [--scene gas] [--events 1e2 1e3 ...] [--repeats 3] [--csv FILE]
+
+Compiled kernels are on disk (a first run sees to that) and loading them counts; so does importing the compiler.  Seconds are CPU
+time of the process within `simulate`, which other work on the machine disturbs less than elapsed time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+COLUMNS = ("scene", "events", "reference_s", "fast_s", "auto_s", "ended_with", "auto_ratio")
+ONCE = """
+import sys
+from time import process_time
+import eventsim as es
+scene, engine, events = es.gallery(sys.argv[1]), sys.argv[2], int(sys.argv[3])
+begun = process_time()
+run = es.simulate(scene, events=events, engine=engine)
+print(process_time() - begun, run.engine)
+"""
+PATIENCE = 60.0
+"""Seconds that the reference engine may take; beyond, its time is that of the next shorter job, scaled."""
+
+
+def seconds(scene: str, engine: str, events: int) -> tuple[float, str]:
+    """(CPU seconds, the engine at the end) of one run."""
+    command = [sys.executable, "-c", ONCE, scene, engine, str(events)]
+    taken, ended_with = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    return float(taken), ended_with
+
+
+def measure(scene: str, lengths: list[int], repeats: int) -> list[dict[str, object]]:
+    """The rows of the table for one scene."""
+    seconds(scene, "fast", 1000)
+    rows: list[dict[str, object]] = []
+    reference, before = 0.0, 1
+    for events in lengths:
+        scaled = reference * events / before
+        engines = ["fast", "auto"] if scaled > PATIENCE else ["reference", "fast", "auto"]
+        found: dict[str, list[float]] = {engine: [] for engine in engines}
+        ended_with = ""
+        for _ in range(repeats):
+            for engine in engines:
+                taken, ended_with = seconds(scene, engine, events)
+                found[engine].append(taken)
+        middle = {engine: statistics.median(values) for engine, values in found.items()}
+        reference, before = middle.get("reference", scaled), events
+        best = min(reference, middle["fast"])
+        rows.append(
+            {
+                "scene": scene,
+                "events": events,
+                "reference_s": round(reference, 3),
+                "fast_s": round(middle["fast"], 3),
+                "auto_s": round(middle["auto"], 3),
+                "ended_with": ended_with,
+                "auto_ratio": round(middle["auto"] / best, 2),
+            }
+        )
+        print(" ".join(f"{rows[-1][name]!s:>14}" for name in COLUMNS), flush=True)
+    return rows
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", nargs="+", default=["gas", "periodic-fluid"])
+    parser.add_argument("--events", type=lambda text: int(float(text)), nargs="+", default=[10**k for k in range(2, 8)])
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--csv", type=Path, help="write the table here as well")
+    chosen = parser.parse_args()
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    print(" ".join(f"{name:>14}" for name in COLUMNS))
+    table = [row | {"commit": commit} for scene in chosen.scene for row in measure(scene, chosen.events, chosen.repeats)]
+    if chosen.csv is not None:
+        with chosen.csv.open("w", newline="") as stream:
+            writer = csv.DictWriter(stream, [*COLUMNS, "commit"])
+            writer.writeheader()
+            writer.writerows(table)
+
+
+if __name__ == "__main__":
+    main()
