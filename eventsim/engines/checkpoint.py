@@ -25,6 +25,7 @@ from eventsim.engines.packing import Arrays, packed, unpacked
 from eventsim.errors import CheckpointError, LogError
 from eventsim.record.events import ROW, Rows
 from eventsim.record.files import Mark
+from eventsim.record.files.table import DAMAGE
 from eventsim.record.provenance import Provenance, provenance_from_text
 from eventsim.scene.stage import stage_of
 
@@ -154,19 +155,7 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
         raise CheckpointError(f"{file}: cannot be read ({error.strerror or error})") from None
     except LogError as error:
         raise CheckpointError(str(error)) from None
-    except (
-        ArithmeticError,
-        AttributeError,
-        EOFError,
-        LookupError,
-        MemoryError,
-        NotImplementedError,
-        RecursionError,
-        SyntaxError,
-        TypeError,
-        ValueError,
-        zipfile.BadZipFile,
-    ) as error:
+    except (*DAMAGE, zipfile.BadZipFile) as error:
         raise CheckpointError(f"{file}: not a whole checkpoint ({type(error).__name__}: {error})") from None
 
 

@@ -12,6 +12,9 @@ from eventsim.formulas.clock import FIRST_WINDOW, next_window, remainder_since, 
 from eventsim.record.events import Column
 from eventsim.scene.stage import Stage
 
+MOST_WINDOWS = 10_000_000
+"""Windows that are counted at once, in some seconds."""
+
 
 class Windows:
     """The schedule of turnovers: window w begins at epoch `start[w]` and is `length[w]` long (time).
@@ -37,6 +40,14 @@ class Windows:
         self.start.append(epoch + (1 << exponent))
         self.length.append(window_length(self._exponent, self._stage.epoch_length))
 
+    def _demand_near(self, epochs: int | Fraction) -> None:
+        """Refuse what would take for ever; a run turns its clock over, and so counts every window."""
+        ahead = (epochs - self.start[-1]) / (1 << self._stage.window_cap)
+        if ahead > MOST_WINDOWS:
+            raise LogError(
+                f"the log does not reach so far: that is more than {MOST_WINDOWS} turns of the clock behind its rows"
+            )
+
     def index_of(self, epochs: Column) -> Column:
         """Return the window of each row from its epoch."""
         epoch, counts = _runs(epochs)
@@ -44,6 +55,7 @@ class Windows:
 
     def window_at(self, epoch: int) -> int:
         """Return the window that begins at an epoch; LogError where none does."""
+        self._demand_near(epoch)
         while self.start[-1] < epoch:
             self._extend()
         window = bisect.bisect_left(self.start, epoch)
@@ -54,6 +66,7 @@ class Windows:
     def place(self, time: float) -> tuple[int, float]:
         """Return (window, remainder) of a time on the scene's clock; the remainder is rounded once."""
         epochs = (Fraction(time) - Fraction(self._stage.start_time)) / Fraction(self._stage.epoch_length)
+        self._demand_near(epochs)
         while self.start[-1] <= epochs:
             self._extend()
         window = max(bisect.bisect_right(self.start, epochs) - 1, 0)

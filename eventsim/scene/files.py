@@ -127,6 +127,8 @@ def _read(path: Path) -> dict[str, Any]:
         raise SceneError(f"{path}: is not valid JSON: {error.msg} {place}") from None
     except RecursionError:
         raise SceneError(f"{path}: is nested too deeply for a scene file") from None
+    except ValueError:  # Python reads no whole number of thousands of digits
+        raise SceneError(f"{path}: holds a number with too many digits") from None
     if not isinstance(data, dict):
         raise SceneError(f"{path}: must be a JSON object with the keys of a scene")
     return data

@@ -43,7 +43,7 @@ def _value(written: str) -> Any:
     """The value that TOML sees, or the text itself."""
     try:
         table = tomllib.loads(f"value = {written}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # not TOML, or a number of thousands of digits
         return written
     return table["value"] if len(table) == 1 else written
 

@@ -46,6 +46,7 @@ def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
         return [*problems, NO_DISKS]
     sound = np.ones(len(scene.disks), dtype=np.bool_)
     problems += _number_problems(scene.disks, names, sound)
+    problems += [] if problems else _scale_problems(scene)
     # In a domain that is none, among walls that are none, a place would mean nothing.
     if not shapes:
         if sound.all():
@@ -78,8 +79,10 @@ def touching_by_rounding(scene: Scene) -> list[str]:
 
 def _scalar_problems(scene: Scene) -> Iterator[str]:
     """Rules for the single numbers of a scene."""
-    if scene.gravity is not None and not all(map(math.isfinite, scene.gravity)):
-        yield f"gravity = {list(scene.gravity)}: must be two finite numbers"
+    if scene.gravity is not None and not is_place(scene.gravity):
+        yield f"gravity = {list(scene.gravity)}: must be two finite numbers, at most {LONGEST}"
+    elif scene.gravity is not None and 0.0 < max(map(abs, scene.gravity)) < SHORTEST:
+        yield f"gravity = {list(scene.gravity)}: must be 0, or at least {SHORTEST} along an axis"
     if scene.restitution is not None:
         pair, wall = scene.restitution.pair, scene.restitution.wall
         both = {"restitution": pair} if pair == wall else {"restitution.pair": pair, "restitution.wall": wall}
@@ -116,12 +119,18 @@ def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -
                 (np.abs(disks.position) <= LONGEST).all(axis=1),
                 f"must be two finite numbers, at most {LONGEST}",
             ),
-            "velocity": (np.isfinite(disks.velocity).all(axis=1), "must be two finite numbers"),
+            "velocity": (
+                (np.abs(disks.velocity) <= LONGEST).all(axis=1),
+                f"must be two finite numbers, at most {LONGEST}",
+            ),
             "radius": (
                 (disks.radius == 0.0) | ((disks.radius >= SHORTEST) & (disks.radius <= LONGEST)),
                 RADII,
             ),
-            "mass": (disks.mass >= 0.0, "must be at least 0 (inf: cannot be deflected)"),
+            "mass": (
+                (disks.mass == 0.0) | ((disks.mass >= SHORTEST) & (disks.mass <= LONGEST)) | (disks.mass == np.inf),
+                f"must be at least 0 (inf: cannot be deflected), else from {SHORTEST} to {LONGEST}",
+            ),
         }
     problems: list[str] = []
     for key, (kept, rule) in rules.items():
@@ -130,6 +139,24 @@ def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -
         value = getattr(disks, key)
         problems += [f"{names.key(int(i), key)} = {value[i].tolist()}: {rule}" for i in broken[:WRITTEN_OUT]]
         problems += _rest(len(broken), f"disks whose {key} {rule}")
+    return problems
+
+
+def _scale_problems(scene: Scene) -> list[str]:
+    """Rules for numbers together: contacts and energies are made of their products, which must be numbers too."""
+    disks = scene.disks
+    lengths = np.concatenate([disks.position.ravel(), disks.radius, scene.domain.size or (), scene.domain.origin])
+    extent, fastest = float(np.abs(lengths).max()), float(np.abs(disks.velocity).max())
+    finite = disks.mass[np.isfinite(disks.mass)]
+    heaviest = float(finite.max()) if len(finite) else 0.0
+    pull = 0.0 if scene.gravity is None else max(map(abs, scene.gravity))
+    problems = []
+    if fastest * extent > LONGEST:
+        problems.append(f"velocity: {fastest:g} times the largest length, {extent:g}, must be at most {LONGEST}")
+    if pull * extent > LONGEST:
+        problems.append(f"gravity: {pull:g} times the largest length, {extent:g}, must be at most {LONGEST}")
+    if not heaviest * max(fastest, 1.0) * max(fastest, pull * extent) <= LONGEST:
+        problems.append(f"mass: the energy of a disk of mass {heaviest:g} must be at most {LONGEST}")
     return problems
 
 

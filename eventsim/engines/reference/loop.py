@@ -14,7 +14,7 @@ from eventsim.engines.reference.invariants import check_invariants
 from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.state import EngineState
-from eventsim.formulas.clock import remainder_since
+from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
@@ -68,6 +68,8 @@ class ReferenceSession:
             event = calendar.first()
             due = float("inf") if event is None else event.time
             if due >= state.window_end <= until and not (event is None and self._quiet(stop)):
+                if state.epoch >= MOST_EPOCHS:  # nothing more can be logged; only disks that part for ever come here
+                    return "quiet"
                 self._turn_over()
                 until = self._remainder(stop.until)
                 continue

@@ -20,7 +20,7 @@ from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows
 from eventsim.record.files.archive import Entry, write_archive
 from eventsim.record.files.journal import METADATA, WHOLE, JournalSink
-from eventsim.record.files.table import checked_log, columns_kept, labels_of, rows_from_columns
+from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
 
@@ -76,7 +76,7 @@ def read_npz(path: Path) -> EventLog:
             rows = rows_from_columns(columns, provenance)
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, TypeError, KeyError, EOFError, OverflowError, zipfile.BadZipFile, zlib.error) as error:
+    except (*DAMAGE, zipfile.BadZipFile, zlib.error) as error:
         raise LogError(f"{path}: not a whole .npz event log ({error})") from None
     return checked_log(provenance, rows, path)
 

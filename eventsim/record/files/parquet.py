@@ -10,7 +10,7 @@ import numpy as np
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows, blank_rows
 from eventsim.record.files.journal import GROUP, METADATA, WHOLE, JournalSink
-from eventsim.record.files.table import checked_log, columns_kept, labels_of, rows_from_columns
+from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
 
@@ -88,7 +88,7 @@ def read_parquet(path: Path) -> EventLog:
                 table = file.read_row_group(group, columns=list(names))
                 columns = {name: _column(table.column(name)) for name in names}
                 blocks.append(rows_from_columns(columns, provenance))
-    except (OSError, pa.ArrowException, ValueError, TypeError, KeyError, OverflowError) as error:
+    except (*DAMAGE, OSError, pa.ArrowException) as error:
         raise LogError(f"{path}: not a whole parquet event log ({error})") from None
     return checked_log(provenance, np.concatenate(blocks), path)
 

@@ -13,6 +13,20 @@ from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, LABELS, ROW, Column
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance
 
+DAMAGE = (
+    ArithmeticError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    MemoryError,
+    NotImplementedError,
+    RecursionError,
+    SyntaxError,
+    TypeError,
+    ValueError,
+)
+"""What libraries raise over damaged binary files, whose every byte may be any: all but what the machine or the user does."""
+
 
 def columns_kept(provenance: Provenance) -> tuple[str, ...]:
     """Return the names of the columns in a file, in order."""

@@ -217,7 +217,7 @@ def _parse_block(
     parse: Callable[[list[str], Provenance], Rows], block: list[str], provenance: Provenance, path: str, number: int
 ) -> Rows:
     """Parse a block; where that fails, parse line by line to name the first bad one."""
-    wrong = (ValueError, TypeError, OverflowError, KeyError)
+    wrong = (ValueError, TypeError, OverflowError, KeyError, RecursionError)
     try:
         return parse(block, provenance)
     except wrong as error:
