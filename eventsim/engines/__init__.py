@@ -22,7 +22,10 @@ class Engine:
     open: Callable[..., Session]
 
     def run(self, scene: Scene, stop: Stop | float, wishes: Wishes | None = None, **options: Any) -> Run:
-        """Simulate a scene to its stop, a Stop or a time on its clock; options are the engine's own."""
+        """Run a scene to its stop, a Stop or a time on its clock; options are the engine's own.
+
+        Raises EventsimError for options and wishes that the engine cannot fulfil.
+        """
         wishes = Wishes() if wishes is None else wishes
         if not isinstance(stop, Stop):
             stop = Stop(until=float(stop))

@@ -194,7 +194,7 @@ class Run:
 
     @property
     def start_time(self) -> float:
-        """Where it began."""
+        """Where the scene's clock began."""
         return self.scene.start_time
 
     @property

@@ -78,7 +78,7 @@ class Disks:
         return len(self.position)
 
     def select(self, index: NDArray[np.int64]) -> Disks:
-        """The disks with these indices (M,), in this order."""
+        """The disks with these numbers, in this order; index: (M,) whole numbers."""
         position, velocity, radius, mass = (array[index] for array in self._arrays())
         return Disks(position, velocity, radius, mass)
 

@@ -242,6 +242,16 @@ def test_a_damaged_file_is_refused(saved):
             load_checkpoint(saved)
 
 
+def test_an_encrypted_file_is_refused(saved):
+    whole = bytearray(saved.read_bytes())
+    entry = whole.index(b"PK\x01\x02")
+    whole[entry + 8] |= 1  # the flag in the directory, and in the entry itself
+    whole[6] |= 1
+    saved.write_bytes(whole)
+    with pytest.raises(es.CheckpointError, match="encrypted"):
+        load_checkpoint(saved)
+
+
 def test_a_checkpoint_holds_no_code(saved):
     with zipfile.ZipFile(saved) as archive:
         assert all(name.endswith(".npy") for name in archive.namelist())

@@ -19,8 +19,7 @@ DAMAGE = (
     EOFError,
     LookupError,
     MemoryError,
-    NotImplementedError,
-    RecursionError,
+    RuntimeError,  # an entry is encrypted, or packed in a way of its own
     SyntaxError,
     TypeError,
     ValueError,
