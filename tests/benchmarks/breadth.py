@@ -40,7 +40,7 @@ def polydisperse(n: int, eta: float) -> es.Scene:
     """Radii from 1/6 to 1/2, equally spread, places exchanged at random."""
     share = np.random.default_rng(2).uniform(1.0 / 3.0, 1.0, n)
     scene = lattice_gas(n, eta / float(np.mean(share**2)))
-    return es.Scene(es.Disks(scene.disks.position, scene.disks.velocity, 0.5 * share[: len(scene.disks)]), scene.domain)
+    return es.Scene(es.Disks(scene.disks.position, scene.disks.velocity, 0.5 * np.resize(share, len(scene.disks))), scene.domain)
 
 
 def with_large(scene: es.Scene, radii: np.ndarray, seed: int = 3) -> es.Scene:

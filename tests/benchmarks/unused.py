@@ -1,0 +1,194 @@
+"""What is not used costs nothing: the kernel of a plain gas beside kernels from which a feature's code was cut out.
+
+    python -m tests.benchmarks.unused [--n 1000] [--eta 0.5] [--contacts 2e6] [--repeats 9] [--csv FILE]
+
+Every row is a process of its own, and all take turns.  The first one does what a user's run does (the driver that looks after
+logs, measures, progress and interrupts included); in each of the others functions of the engine are replaced, before anything is
+compiled, by ones that know nothing of the feature, and the kernels are called without the driver.  `ratio`: the median, over the
+turns, of the rate of the whole package to that of the row, per second of processor time; 1 means that the feature costs nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from time import process_time
+
+COLUMNS = ("without", "ratio", "lowest", "highest", "rate_median")
+WHOLE, BARE = "nothing", "the driver: log, measures, progress"
+
+
+def cut_walls() -> None:
+    """No wall shapes, and no contacts with hard walls."""
+    from eventsim.engines.fast import loop, predict
+    from eventsim.engines.fast.compiled import inline
+
+    predict._shapes = inline(lambda m, rules, i, floor, time, code, shared, features: (time, code, shared))
+    loop.resolve_wall = inline(lambda m, rules, sums, i, code, t, number, slot, clock: None)
+
+
+def cut_gravity() -> None:
+    """Straight flights, and nobody's own acceleration."""
+    from eventsim.engines.fast import advance, predict, resolve
+    from eventsim.engines.fast.compiled import inline
+
+    pull = inline(lambda m, i, g, classes: None)
+    position, velocity = inline(lambda x, v, t, g: x + v * t), inline(lambda v, t, g: v)
+    for module in (advance, predict, resolve):
+        for name, function in (("pull", pull), ("position", position), ("velocity", velocity)):
+            if hasattr(module, name):
+                setattr(module, name, function)
+
+
+def cut_restitution() -> None:
+    """Every contact is elastic: a constant."""
+    from eventsim.engines.fast import resolve
+    from eventsim.engines.fast.compiled import inline
+
+    resolve._restitution = inline(lambda m, a, b, t, restitution, duration: 1.0)
+
+
+def cut_masses() -> None:
+    """All masses are one and finite."""
+    from eventsim.engines.fast import resolve
+    from eventsim.engines.fast.compiled import inline
+
+    resolve._shares = inline(lambda a, b, mass: (0.5, 0.5))
+    resolve._reduced = inline(lambda a, b, mass, common: 0.5)
+    resolve._is_finite = inline(lambda i, mass: True)
+    resolve._book_pair = inline(lambda sums, a, b, jx, jy, mass: None)
+
+
+def cut_radii() -> None:
+    """One grid, four slots in a cell."""
+    from eventsim.engines.fast import calendar, cells, loop, predict
+    from eventsim.engines.fast.compiled import inline
+
+    home = inline(lambda m, grid, i: grid)
+    for module in (calendar, loop, predict):
+        module.home_of = home
+    predict._look = inline(lambda m, grid, rules, i, now, u, w, time, code, shared, levels: (time, code, shared))
+    cells._behind = inline(lambda first, slot: slot)
+
+
+def cut_log() -> None:
+    """No rows."""
+    from eventsim.engines.fast import resolve
+    from eventsim.engines.fast.compiled import inline
+
+    resolve.write_row = inline(lambda m, number, slot, a, b, wall, impulse, t, clock, rows: None)
+
+
+CUTS: dict[str, Callable[[], None]] = {
+    "walls": cut_walls,
+    "gravity": cut_gravity,
+    "restitution": cut_restitution,
+    "masses": cut_masses,
+    "unequal radii": cut_radii,
+    "log": cut_log,
+    BARE: lambda: None,
+}
+
+
+def serve(without: str, n: int, eta: float, contacts: int) -> None:
+    """Simulate so many contacts for each line of the input; say at which rate."""
+    if without in CUTS:
+        CUTS[without]()
+    from eventsim.engines.base import Stop
+    from eventsim.engines.drive import Wishes, drive
+    from eventsim.engines.fast import FastSession
+    from eventsim.scene.stage import stage_of
+    from tests.benchmarks.rates import lattice_gas
+
+    scene = lattice_gas(n, eta)
+    session = FastSession(stage_of(scene), keep_rows=False)
+
+    def advance() -> None:
+        stop = Stop(events=session.counters.events + contacts)
+        if without == WHOLE:
+            drive(session, "fast", scene, stop, Wishes())
+        else:
+            session.advance(stop, 1 << 40)
+
+    advance()
+    print("ready", flush=True)
+    for _ in sys.stdin:
+        began = process_time()
+        advance()
+        print(contacts / (process_time() - began), flush=True)
+
+
+def measure(n: int, eta: float, contacts: int, repeats: int) -> list[dict[str, object]]:
+    """The rows of the table."""
+    rates: dict[str, list[float]] = {name: [] for name in (WHOLE, *CUTS)}
+    with tempfile.TemporaryDirectory() as folder:
+        workers = {}
+        for name in rates:  # a cache of its own for each: what was cut out does not show in the sources
+            place = Path(folder) / str(len(workers))
+            command = [sys.executable, "-m", "tests.benchmarks.unused", "--serve", name]
+            command += ["--n", str(n), "--eta", str(eta), "--contacts", str(contacts)]
+            workers[name] = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+                env={**os.environ, "EVENTSIM_CACHE_DIR": str(place)},
+            )
+        for name, worker in workers.items():
+            if ask(worker, None) != "ready":
+                raise RuntimeError(f"the kernel without {name} did not compile")
+        for _ in range(repeats):
+            for name, worker in workers.items():
+                rates[name].append(float(ask(worker, "go")))
+        for worker in workers.values():
+            worker.communicate()
+    rows = []
+    for name, found in rates.items():
+        ratios = [whole / other for whole, other in zip(rates[WHOLE], found, strict=True)]
+        values = statistics.median(ratios), min(ratios), max(ratios), statistics.median(found)
+        rows.append(dict(zip(COLUMNS, (name, *(round(value, 3) for value in values[:3]), round(values[3])), strict=True)))
+    return rows
+
+
+def ask(worker: subprocess.Popen[str], line: str | None) -> str:
+    """What a worker answers."""
+    assert worker.stdin is not None
+    assert worker.stdout is not None
+    if line is not None:
+        print(line, file=worker.stdin, flush=True)
+    return worker.stdout.readline().strip()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--n", type=lambda text: int(float(text)), default=1000)
+    parser.add_argument("--eta", type=float, default=0.5)
+    parser.add_argument("--contacts", type=lambda text: int(float(text)), default=2_000_000)
+    parser.add_argument("--repeats", type=int, default=9)
+    parser.add_argument("--csv", type=Path, help="write the table here as well")
+    parser.add_argument("--serve", help=argparse.SUPPRESS)
+    chosen = parser.parse_args()
+    if chosen.serve is not None:
+        serve(chosen.serve, chosen.n, chosen.eta, chosen.contacts)
+        return
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    rows = measure(chosen.n, chosen.eta, chosen.contacts, chosen.repeats)
+    for row in rows:
+        print(f"{row['without']!s:40} {row['ratio']:7} ({row['lowest']} to {row['highest']})  {row['rate_median']:>10}/s")
+    if chosen.csv is not None:
+        with chosen.csv.open("w", newline="") as stream:
+            writer = csv.DictWriter(stream, [*COLUMNS, "n", "eta", "contacts", "commit"])
+            writer.writeheader()
+            extra = {"n": chosen.n, "eta": chosen.eta, "contacts": chosen.contacts, "commit": commit}
+            writer.writerows({**row, **extra} for row in rows)
+
+
+if __name__ == "__main__":
+    main()
