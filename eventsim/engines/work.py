@@ -22,8 +22,11 @@ from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, blank_rows
 from eventsim.record.provenance import Ending
 
-FIRST_BUDGET, LONGEST_STINT = 64, 0.2
-"""Steps of the first stint; seconds that a stint may take before progress and interrupts are looked at."""
+FIRST_BUDGET, LARGEST_BUDGET, LONGEST_STINT = 64, 1 << 20, 0.2
+"""Steps of the first stint, and of any; seconds that a stint may take before progress and interrupts are looked at.
+
+A stint may end early, where rows are to be passed on: that says nothing about how long its steps would have taken.
+"""
 
 
 class Sink(Protocol):
@@ -81,7 +84,7 @@ class Work:
                 stint = perf_counter() - began
                 self.elapsed += stint
                 if stint < 0.5 * LONGEST_STINT:
-                    budget *= 2
+                    budget = min(2 * budget, LARGEST_BUDGET)
                 elif stint > LONGEST_STINT:
                     budget = max(budget // 2, 1)
                 self._pass_on(session.take_rows())
