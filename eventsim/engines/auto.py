@@ -75,6 +75,11 @@ class AutoSession:
         return self._session.reason
 
     @property
+    def refused(self) -> bool:
+        """Whether it stopped at what it knows that it cannot resolve."""
+        return bool(getattr(self._session, "refused", False))
+
+    @property
     def clock(self) -> tuple[int, float]:
         """Where the clock stands: (epoch, remainder)."""
         return self._session.clock

@@ -68,12 +68,14 @@ class Snapshot:
 class Counters:
     """How often what happened; wraps, crossings, stale predictions and turnovers are the engine's own work, not rows.
 
-    steps, pair_tests: the work of a stepped engine.
+    steps, pair_tests: the work of a stepped engine.  outer_momentum: what came from outside the disks of finite mass;
+    support_force: what walls now give to the disks that rest on them, booked as if it had been so from the beginning.
     """
 
     events: int = 0
     pair_contacts: int = 0
     wall_contacts: int = 0
+    rests: int = 0
     kicks: int = 0
     clusters: int = 0
     wraps: int = 0
@@ -84,16 +86,18 @@ class Counters:
     pair_tests: int = 0
     deepest_overlap: float = 0.0
     outer_momentum: list[float] = field(default_factory=lambda: [0.0, 0.0])
+    support_force: list[float] = field(default_factory=lambda: [0.0, 0.0])
 
     def copy(self) -> Counters:
         """Counters that go on on their own."""
-        return replace(self, outer_momentum=list(self.outer_momentum))
+        return replace(self, outer_momentum=list(self.outer_momentum), support_force=list(self.support_force))
 
     def copy_from(self, other: Counters) -> None:
         """Become equal to others."""
         for item in fields(self):
             setattr(self, item.name, getattr(other, item.name))
         self.outer_momentum = list(other.outer_momentum)
+        self.support_force = list(other.support_force)
 
 
 @dataclass(frozen=True, slots=True)

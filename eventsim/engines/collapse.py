@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.engines.reference.resolve import AT_ONCE
+from eventsim.formulas.rest import AT_ONCE
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene.stage import Stage
 

@@ -62,11 +62,15 @@ def _momentum_left(session: Session, start: Motion, end: Motion) -> float:
     epoch, remainder = session.clock
     duration = epoch * stage.epoch_length + remainder
     gravity = stage.gravity or (0.0, 0.0)
+    counters = session.counters
+    outer = [
+        given + force * duration for given, force in zip(counters.outer_momentum, counters.support_force, strict=True)
+    ]
     left, booked = [], []
     for axis, (before, after) in enumerate(((start.vx, end.vx), (start.vy, end.vy))):
         change = math.fsum([*(mass * after).tolist(), *(-mass * before).tolist()])
         pull = math.fsum(mass.tolist()) * gravity[axis] * duration
-        left.append(change - session.counters.outer_momentum[axis] - pull)
-        booked.append(max(abs(session.counters.outer_momentum[axis]), abs(pull)))
+        left.append(change - outer[axis] - pull)
+        booked.append(max(abs(outer[axis]), abs(pull)))
     scale = max(*(math.fsum((mass * np.hypot(m.vx, m.vy)).tolist()) for m in (start, end)), *booked)
     return math.hypot(*left) / scale if scale > 0.0 else math.hypot(*left)

@@ -12,14 +12,12 @@ from itertools import product
 from typing import NamedTuple
 
 from eventsim.formulas.contact import screened_pair_delay
-from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.rest import STRUCK, border_contact, shape_contact
 from eventsim.formulas.walls.delays import DELAYS
 from eventsim.formulas.walls.face import Face, face_normal
-from eventsim.formulas.walls.round import (
-    round_normal,
-)
+from eventsim.formulas.walls.round import round_normal
 from eventsim.record.disk_flight import DiskFlight
 from eventsim.scene.stage import Stage
 
@@ -27,7 +25,8 @@ from eventsim.scene.stage import Stage
 class Contact(NamedTuple):
     """A contact of disk a, in the order in which the engine resolves those of one time.
 
-    b: the other disk, or -1 - place of the wall shape. image: of b as seen from a, (kx, ky); of a wall (side, 0).
+    b: the other disk, or -1 - place of the wall shape. image: of b as seen from a, (kx, ky); of a wall the side, and
+    STRUCK, SUPPORTED or LEFT.
     """
 
     a: int
@@ -57,9 +56,9 @@ class Contacts:
         """Return the contacts of a disk with the shapes of a wall at remainder t."""
         found = []
         for place in self._places.get(wall, ()):
-            time, side = self._wall_time(a, place)
+            time, side, how = self._wall_time(a, place)
             if time == t:
-                found.append(Contact(a, -1 - place, (side, 0)))
+                found.append(Contact(a, -1 - place, (side, how)))
         return found
 
     def apart(
@@ -100,7 +99,7 @@ class Contacts:
     def met(self, contact: Contact, i: int) -> tuple[int, int, int]:
         """Return what disk i of a contact remembers of it."""
         if contact.b < 0:
-            return contact.b, contact.image[0], 0
+            return contact.b, *contact.image
         kx, ky = self._unwrapped(contact.a, contact.b, contact.image)
         return (contact.b, kx, ky) if i == contact.a else (contact.a, -kx, -ky)
 
@@ -136,15 +135,26 @@ class Contacts:
                 )
         return float(t + delay)
 
-    def _wall_time(self, a: int, place: int) -> tuple[float, int]:
-        """Return (remainder, side) of the next contact of a disk with a shape."""
+    def _wall_time(self, a: int, place: int) -> tuple[float, int, int]:
+        """Return (remainder, side, how) of the next contact of a disk with a shape."""
         disk, stage = self._disks[a], self._stage
         if place < self._boundaries:
             axis, where, side, _ = stage.boundaries[place]
             x, v, g = (disk.x, disk.vx, disk.gx) if axis == 0 else (disk.y, disk.vy, disk.gy)
-            return disk.t + crossing_delay(x, v, g, where + side * disk.radius, side), int(side)
+            target = where + side * disk.radius
+            size = abs(disk.x) + abs(disk.y) + abs(target)
+            delay, how = border_contact(
+                stage.supports, disk.held, place, side, target, x, v, g, size, stage.wall_restitution, disk.t
+            )
+            return disk.t + delay, int(side), how
         shape = stage.features[place - self._boundaries].shape
         met = next((last[1] for last in disk.met if last[0] == -1 - place), 0)
         flight = (disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy)
-        delay, side = DELAYS[type(shape)](shape, *flight, disk.radius, met)
-        return disk.t + delay, side
+        delay_to = DELAYS[type(shape)]
+        if stage.supports is None:
+            return disk.t + (found := delay_to(shape, *flight, disk.radius, met))[0], found[1], STRUCK
+        e = stage.wall_restitution
+        delay, side, how = shape_contact(
+            stage.supports, disk.held, place, shape, delay_to, flight, disk.radius, met, e, disk.t
+        )
+        return disk.t + delay, side, how

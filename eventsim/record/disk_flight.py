@@ -9,22 +9,26 @@ from eventsim.errors import LogError
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import NEVER, Acceleration
+from eventsim.formulas.rest import SUPPORTED, Held, held_by
 from eventsim.record.windows import Windows
 from eventsim.scene.stage import Stage
 
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
-"""Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, 0)."""
+"""Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, STRUCK, SUPPORTED or LEFT)."""
 
 
 class DiskFlight:
     """A free flight, and what the next contact of its disk depends on besides.
 
     window, t: where the clock stood at the anchor x, y, vx, vy. low: the low parts of the velocity. wraps: passages of
-    periodic boundaries along x and y. met: whom it met last. contact_time: when that was, a remainder in the present
-    window; -inf: never.
+    periodic boundaries along x and y. met: whom it met last; held: the wall that it rests on or left at its end.
+    contact_time: when that was, a remainder in the present window; -inf: never.
     """
 
-    __slots__ = ("contact_time", "gx", "gy", "low", "met", "radius", "t", "vx", "vy", "window", "wraps", "x", "y")
+    __slots__ = (
+        "_free", "_supports", "contact_time", "gx", "gy", "held", "low", "met", "radius", "t", "vx", "vy", "window", "wraps",
+        "x", "y",
+    )  # fmt: skip
 
     def __init__(self, stage: Stage, number: int, immovable: bool) -> None:
         self.window, self.t = 0, 0.0
@@ -37,7 +41,9 @@ class DiskFlight:
         if stage.gravity is not None:
             self.gx, self.gy = (0.0, 0.0) if immovable else stage.gravity
         self.wraps = [0, 0]
+        self._free, self._supports = (self.gx, self.gy), stage.supports
         self.met: Met = ()
+        self.held: Held | None = None
         self.contact_time = -math.inf
 
     def place(self, t: float) -> tuple[float, float]:
@@ -59,6 +65,15 @@ class DiskFlight:
         self.t = t
         self.x, self.y = place
         self.vx, self.vy = speed
+
+    def meet(self, met: Met) -> None:
+        """Remember whom it met; what it rests on takes a part of its gravity, and anything else frees it."""
+        self.met = met
+        if self._supports is not None:
+            self.held = held_by(met)
+            rests = self.held is not None and self.held.how == SUPPORTED
+            support = self._supports[self.held.place] if self.held is not None and rests else None
+            self.gx, self.gy = self._free if support is None else (support.ax, support.ay)
 
     def fly(self, period: tuple[float | None, float | None], windows: Windows, window: int, remainder: float) -> None:
         """Follow the flight to (window, remainder): the last wrap or turnover before it becomes the anchor.
@@ -102,4 +117,5 @@ class DiskFlight:
         place[axis] = 0.0 if step > 0 else length
         self.anchor(t, (place[0], place[1]), self.speed(t))
         self.wraps[axis] += step
-        self.met = tuple(met for met in self.met if met[0] >= 0)  # that wall can now be met again
+        if self.held is None or self.held.how != SUPPORTED:
+            self.meet(tuple(met for met in self.met if met[0] >= 0))  # that wall can now be met again

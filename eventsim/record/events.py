@@ -54,9 +54,6 @@ COLUMNS: tuple[str, ...] = tuple(ROW.names or ())
 COMPACT_COLUMNS: tuple[str, ...] = ("event", "kind", "a", "b", "wall", "joint", "epoch", "remainder")
 """What a compact log keeps; replay computes the others."""
 
-SET_KINDS = (Kind.REST, Kind.KICK)
-"""Rows whose velocity was set and therefore cannot be computed from the flights before it."""
-
 Rows: TypeAlias = NDArray[np.void]
 Floats: TypeAlias = NDArray[np.float64]
 Column: TypeAlias = NDArray[Any]

@@ -20,10 +20,11 @@ from eventsim.formulas.impulse import (
     reduced_mass,
     wall_update,
 )
+from eventsim.formulas.rest import STRUCK, SUPPORTED, resting_place, slope
 from eventsim.formulas.simultaneous import JointContact, resolve_together
 from eventsim.record.contacts import Contact, Contacts
 from eventsim.record.disk_flight import DiskFlight
-from eventsim.record.events import ROW, SET_KINDS, Column, Rows
+from eventsim.record.events import ROW, Column, Kind, Rows
 from eventsim.record.log import EventLog
 from eventsim.record.times import clock_times
 from eventsim.record.windows import Windows
@@ -150,7 +151,7 @@ class Expansion:
                         self.disks[i].fly(self.stage.period, self.windows, entry.window, entry.remainder)
             if joint[0] >= 0:
                 impulses = self._resolve_cluster(cluster)
-            elif cluster[0].kind in SET_KINDS:
+            elif cluster[0].kind == Kind.KICK:
                 impulses = [self._set_velocity(cluster[0])]
             elif cluster[0].b >= 0:
                 impulses = [self._resolve_pair(cluster[0])]
@@ -178,7 +179,7 @@ class Expansion:
         before, speed = disk.speed(entry.remainder), self._set[entry.event]
         disk.anchor(entry.remainder, disk.place(entry.remainder), speed)
         disk.low = 0.0, 0.0
-        disk.met = ()
+        disk.meet(())
         return mass * math.hypot(speed[0] - before[0], speed[1] - before[1]) if math.isfinite(mass) else MISSING
 
     def _resolve_pair(self, entry: Entry) -> float:
@@ -201,9 +202,13 @@ class Expansion:
 
     def _resolve_wall(self, entry: Entry) -> float:
         t, a = entry.remainder, entry.a
-        contact = self._only(entry, self._contacts.of_wall(a, entry.wall, t))
+        found = self._contacts.of_wall(a, entry.wall, t)
+        of_kind = [one for one in found if (one.image[1] == SUPPORTED) == (entry.kind == Kind.REST)]
+        contact = self._only(entry, of_kind[:1])  # several that came to nothing together are met one by one
         disk = self.disks[a]
         place, before = disk.place(t), disk.speed(t)
+        if contact.image[1] != STRUCK:
+            return self._rest_or_leave(contact, t, place, before)
         restitution = self._restitution(self.stage.wall_restitution, t, a, a)
         u, w = before
         axis = self._contacts.boundary_axis(contact)
@@ -220,6 +225,20 @@ class Expansion:
         self._begin(contact, a, t, self._contacts.on_boundary(contact, place), (u, w))
         return self._wall_impulse(self._mass[a], u - before[0], w - before[1])
 
+    def _rest_or_leave(
+        self, contact: Contact, t: float, place: tuple[float, float], before: tuple[float, float]
+    ) -> float:
+        """Let a disk come to rest on a wall, or slide over its end."""
+        supports, speed = self.stage.supports, before
+        assert supports is not None
+        if contact.image[1] == SUPPORTED:
+            support = supports[-1 - contact.b]
+            assert support is not None
+            place = resting_place(support.face, contact.image[0], *place, self.disks[contact.a].radius)
+            speed = slope(support.face, *before)
+        self._begin(contact, contact.a, t, place, speed)
+        return self._wall_impulse(self._mass[contact.a], speed[0] - before[0], speed[1] - before[1])
+
     def _resolve_cluster(self, cluster: list[Entry]) -> list[float]:
         """Resolve all contacts that the disks of the rows have at their time; rows stand for those with an impulse."""
         t = cluster[0].remainder
@@ -228,6 +247,7 @@ class Expansion:
             contact
             for a, b, wall in partners
             for contact in (self._contacts.of_pair(a, b, t) if b >= 0 else self._contacts.of_wall(a, wall, t))
+            if b >= 0 or contact.image[1] == STRUCK
         ]
         disks = sorted({i for contact in found for i in (contact.a, contact.b) if i >= 0})
         number = {disk: k for k, disk in enumerate(disks)}
@@ -245,7 +265,7 @@ class Expansion:
             disk = self.disks[i]
             disk.anchor(t, places[i], outcome.velocities[number[i]])
             disk.low = 0.0, 0.0
-            disk.met = tuple(self._contacts.met(contact, i) for contact in own)
+            disk.meet(tuple(self._contacts.met(contact, i) for contact in own))
             disk.contact_time = t
         impulse = {found[k]: outcome.impulses[k] for k in active}
         return [impulse[contact] for contact in rows]
@@ -277,7 +297,7 @@ class Expansion:
     ) -> None:
         disk = self.disks[i]
         disk.anchor(t, place, speed)
-        disk.met = (self._contacts.met(contact, i),)
+        disk.meet((self._contacts.met(contact, i),))
         disk.contact_time = t
 
     def _shares(self, a: int, b: int) -> tuple[tuple[float, float], float]:

@@ -22,7 +22,8 @@ from eventsim.scene.stage import Stage
 class Flights:
     """Free flights of disks, arrays (n,): window of the clock, remainder t in it, place and velocity at t.
 
-    gx, gy: each disk's own acceleration, 0 where it is immovable; None in a scene without gravity.
+    gx, gy: each disk's own acceleration, 0 where it is immovable, that along its wall where it rests on one; None in a scene
+    without gravity.
     """
 
     window: NDArray[np.int64]

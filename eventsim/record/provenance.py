@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from eventsim.errors import LogError, SceneError
-from eventsim.record.events import SET_KINDS, Rows
+from eventsim.record.events import Kind, Rows
 from eventsim.scene import Scene
 from eventsim.scene.files import scene_from_dict, scene_to_dict
 
@@ -39,7 +39,7 @@ class Provenance:
     """What a log carries besides its rows.
 
     scene: the realised scene, every disk listed. epoch_length: a power of two, time. wall_names: what the column
-    `wall` counts. command: the command line or call that ran it, where known. kicks: velocities that were set,
+    `wall` counts. command: the command line or call that ran it, where known. kicks: velocities that were set from outside,
     which a compact log cannot compute. ending: None while the run goes on. rows: their number, None while it grows.
     """
 
@@ -61,7 +61,7 @@ class Provenance:
 
 def kicks_of(rows: Rows) -> list[Kick]:
     """Return the velocities that rows of full logs set, in order."""
-    chosen = rows[(rows["kind"] == SET_KINDS[0]) | (rows["kind"] == SET_KINDS[1])]
+    chosen = rows[rows["kind"] == Kind.KICK]
     return list(zip(chosen["event"].tolist(), chosen["vxa"].tolist(), chosen["vya"].tolist(), strict=True))
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eventsim.errors import LogError
 from eventsim.formulas.clock import clock_time
-from eventsim.record.events import Column, Rows, State
+from eventsim.record.events import Column, Floats, Kind, Rows, State
 from eventsim.record.flight import Flights, fly, start_flights
 from eventsim.record.log import EventLog
 from eventsim.record.places import on_scene_axes
@@ -42,19 +42,33 @@ class Replay:
         O(log rows) per disk. Raises LogError for a time that the log does not cover.
         """
         time = float(time)
+        return self._state(*self._place_of(time), time)
+
+    def acceleration_at(self, time: float) -> Floats:
+        """Return what gravity does to each disk (n, 2) after a time on the scene's clock: less where it rests on a wall.
+
+        Zeros without gravity. Raises LogError as `state_at`.
+        """
+        flights = self._anchors(*self._place_of(time))
+        if flights.gx is None or flights.gy is None:
+            return np.zeros((self.stage.n, 2))
+        return np.column_stack([flights.gx, flights.gy])
+
+    def _place_of(self, time: float) -> tuple[int, float]:
+        """Return (window, remainder) of a time on the scene's clock."""
         if not math.isfinite(time):
             raise LogError(f"there is no state at time {time}: the time must be a finite number")
         if time < self.stage.start_time:
             raise LogError(f"there is no state at time {time!r}: the run begins at {self.stage.start_time!r}")
         row = int(np.searchsorted(self.log.time, time, side="right")) - 1
         if row >= 0 and self.log.time[row] == time:
-            return self._state(int(self._window[row]), float(self.log.remainder[row]), time)
+            return int(self._window[row]), float(self.log.remainder[row])
         ending = self.log.provenance.ending
         if ending is None or ending.reason not in ENDLESS:
             last = self._end()
             if time > self._clock(*last) and self.windows.place(time) > last:
                 raise LogError(f"there is no state at time {time!r}: the log ends at {self._clock(*last)!r}")
-        return self._state(*self.windows.place(time), time)
+        return self.windows.place(time)
 
     @property
     def span(self) -> tuple[float, float]:
@@ -103,6 +117,9 @@ class Replay:
         is_a = rows["a"] == disks
         flights.window[disks] = self._window[chosen]
         flights.t[disks] = rows["remainder"]
+        if self.stage.supports is not None and flights.gx is not None and flights.gy is not None:
+            rests = rows["kind"] == Kind.REST
+            flights.gx[disks[rests]], flights.gy[disks[rests]] = self.stage.slopes[rows["wall"][rests]].T
         for target, name in ((flights.x, "x"), (flights.y, "y"), (flights.vx, "vx"), (flights.vy, "vy")):
             target[disks] = np.where(is_a, rows[name + "a"], rows[name + "b"])
         return flights

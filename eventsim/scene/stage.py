@@ -13,11 +13,13 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.face import Face, face
 from eventsim.formulas.walls.round import Arc, Container, Post, arc
 from eventsim.scene import walls
 from eventsim.scene.domain import BOUNDARY_NAMES, Channel, Open, Periodic
 from eventsim.scene.scene import Scene
+from eventsim.scene.supports import any_lies, supports_of
 
 Floats: TypeAlias = NDArray[np.float64]
 Shape: TypeAlias = Face | Post | Container | Arc
@@ -47,10 +49,11 @@ class Boundary(NamedTuple):
 
 
 class Feature(NamedTuple):
-    """A primitive shape, and the number of the wall that it belongs to."""
+    """A primitive shape, the number of the wall that it belongs to, and whether disks also meet an image of it."""
 
     shape: Shape
     wall: int
+    imaged: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +75,7 @@ class Stage:
         size: (width, height) of the domain, or None.
         boundaries: hard walls of the domain.
         features: shapes of the walls inside it; in a periodic domain with the images that disks can meet.
+        supports: what boundaries and features, in this order, support disks with; None where no disk comes to rest.
         wall_names: the names that the walls have in an event log.
         corner: what to add to a position to have it on the scene's axes.
         start_time: what the scene's clock shows at remainder 0 of epoch 0.
@@ -97,6 +101,7 @@ class Stage:
     size: Point | None
     boundaries: tuple[Boundary, ...]
     features: tuple[Feature, ...]
+    supports: tuple[Support | None, ...] | None
     wall_names: tuple[str, ...]
     corner: Point
     start_time: float
@@ -107,6 +112,21 @@ class Stage:
     def periodic(self) -> bool:
         """Whether any axis is periodic."""
         return self.period != (None, None)
+
+    @property
+    def slopes(self) -> Floats:
+        """(walls, 2) the acceleration that a disk has which rests on a wall; 0 for walls on which none does."""
+        slopes = np.zeros((len(self.wall_names), 2))
+        walls = [*(one.wall for one in self.boundaries), *(one.wall for one in self.features)]
+        for wall, support in zip(walls, self.supports or (), strict=False):
+            if support is not None:
+                slopes[wall] = support.ax, support.ay
+        return slopes
+
+    @property
+    def settles(self) -> bool:
+        """Whether disks end up lying on something: gravity, contacts that take energy, and no contact duration."""
+        return self.gravity is not None and self.loses_energy and self.contact_duration is None
 
     @property
     def loses_energy(self) -> bool:
@@ -124,7 +144,9 @@ def stage_of(scene: Scene) -> Stage:
     along_x = size[0] if size is not None and isinstance(domain, Periodic | Channel) else None
     along_y = size[1] if size is not None and isinstance(domain, Periodic) else None
     boundaries, names = _boundaries(scene)
+    features = _features(scene, corner, (along_x, along_y), len(names))
     restitution = scene.restitution
+    wall_restitution = 1.0 if restitution is None else restitution.wall
     periodic = along_x is not None
     moves = bool(np.any(disks.velocity != 0.0))
     lightest, heaviest = _extreme_masses(disks.mass)
@@ -148,12 +170,13 @@ def stage_of(scene: Scene) -> Stage:
         ),
         gravity=scene.gravity,
         pair_restitution=1.0 if restitution is None else restitution.pair,
-        wall_restitution=1.0 if restitution is None else restitution.wall,
+        wall_restitution=wall_restitution,
         contact_duration=None if restitution is None else scene.contact_duration,
         period=(along_x, along_y),
         size=size,
         boundaries=boundaries,
-        features=_features(scene, corner, (along_x, along_y), len(names)),
+        features=features,
+        supports=_supports(scene, boundaries, features, wall_restitution == 1.0, x, y),
         wall_names=(*names, *walls.feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,
@@ -202,10 +225,33 @@ def _features(
     reach = float(scene.disks.radius.max())
     wall = first_wall
     for item in scene.walls:
-        for shift in _shifts(item, corner, reach, period):
-            features.extend(Feature(shape, wall + offset) for shape, offset in _shapes(item, corner, shift))
+        shifts = _shifts(item, corner, reach, period)
+        for shift in shifts:
+            shapes = _shapes(item, corner, shift)
+            features.extend(Feature(shape, wall + offset, len(shifts) > 1) for shape, offset in shapes)
         wall += len(item.edges()) if isinstance(item, walls.Polygon | walls.Polyline) else 1
     return tuple(features)
+
+
+def _supports(
+    scene: Scene, boundaries: tuple[Boundary, ...], features: tuple[Feature, ...], elastic: bool, x: Floats, y: Floats
+) -> tuple[Support | None, ...] | None:
+    """The supports of a scene in which disks can come to rest: walls take energy, or a disk lies on one at the start.
+
+    Not in the TC model, in which contacts that are close to each other take none.  A wall inside the domain that disks also
+    meet in an image supports nobody: so a disk on it does not reach the border, and a wrap ends no rest.
+    """
+    gravity, disks = scene.gravity, scene.disks
+    if gravity is None or (scene.restitution is not None and scene.contact_duration is not None):
+        return None
+    faces = [item.shape if isinstance(item.shape, Face) and not item.imaged else None for item in features]
+    supports = supports_of([(one.axis, one.position) for one in boundaries], faces, gravity)
+    if elastic:
+        falls = np.isfinite(disks.mass)
+        flights = x[falls], y[falls], disks.velocity[falls, 0], disks.velocity[falls, 1]
+        if not any(one is not None and any_lies(one, flights, disks.radius[falls], gravity) for one in supports):
+            return None
+    return supports if any(supports) else None
 
 
 def _shapes(item: walls.Wall, corner: Point, shift: Point) -> list[tuple[Shape, int]]:

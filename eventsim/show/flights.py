@@ -81,6 +81,8 @@ def flights_between(replay: Replay, start: State, rows: Rows, end: float) -> Fli
     disk = np.concatenate([np.arange(n), rows["a"], rows["b"][pair]]).astype(np.int64)
     order = np.lexsort((np.concatenate([np.full(n, -1), row]), disk))
     disk = disk[order]
+    kind = np.concatenate([np.full(n, -1), rows["kind"][row]])[order]
+    wall = np.concatenate([np.full(n, -1), rows["wall"][row]])[order]
 
     def both(one: str, other: str) -> Floats:
         """Return a column of the rows for disk a of all, then for disk b of the pairs."""
@@ -97,6 +99,10 @@ def flights_between(replay: Replay, start: State, rows: Rows, end: float) -> Fli
     pull = np.zeros((len(disk), 2))
     if stage.gravity is not None:
         pull[np.isfinite(replay.log.scene.disks.mass)[disk]] = stage.gravity
+        if stage.supports is not None:
+            rests = (order >= n) & (kind == Kind.REST)
+            pull[rests] = stage.slopes[wall[rests]]
+            pull[order < n] = replay.acceleration_at(start.time)
     return FlightTable(
         disk=disk,
         time=time,
@@ -104,6 +110,6 @@ def flights_between(replay: Replay, start: State, rows: Rows, end: float) -> Fli
         place=np.concatenate([start.position, place])[order],
         velocity=np.concatenate([start.velocity, velocity])[order],
         pull=pull,
-        pair=np.concatenate([np.zeros(n, dtype=np.bool_), rows["kind"][row] == Kind.PAIR])[order],
+        pair=kind == Kind.PAIR,
         first=first,
     )

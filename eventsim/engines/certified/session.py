@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,8 @@ class CertifiedSession:
         self, stage: Stage, keep_rows: bool = True, bits: int = FIRST_BITS, most_bits: int = MOST_BITS
     ) -> None:
         _refuse_parabolas(stage)
-        self.stage = stage
+        # A disk at rest and one that falls would meet at a root of a quartic; without rest, a run ends with the bounces.
+        self.stage = stage if stage.n == 1 else replace(stage, supports=None)
         self.reason: str | None = None
         self.attempts: list[Attempt] = []
         self._keep_rows = keep_rows

@@ -8,7 +8,12 @@ from eventsim.engines.fast.layout import (
     COUNTS,
     FLAGS,
     IMMOVABLE,
+    MET,
     REALS,
+    RESTING,
+    SUPPORT,
+    SUPPORT_X,
+    SUPPORT_Y,
     VX,
     VY,
     WORDS,
@@ -27,13 +32,31 @@ from eventsim.formulas.motion import position, velocity
 
 
 @inline
-def pull(m, i, g, classes):
-    """A component of the acceleration of disk i; None without gravity."""
+def pulls(m, rules, i):
+    """The acceleration of disk i, (x, y); None without gravity."""
+    return (
+        _pull(m, i, rules.gx, rules.classes, SUPPORT_X, m.supports),
+        _pull(m, i, rules.gy, rules.classes, SUPPORT_Y, m.supports),
+    )
+
+
+@inline
+def _pull(m, i, g, classes, at, supports):
     if g is None:
         return None
+    if supports is not None:
+        return _pull_or_slope(m, i, g, at)
     if classes is None:
         return g
     return 0.0 if word(m.disks, i * WORDS + FLAGS) & IMMOVABLE else g
+
+
+@inline
+def _pull_or_slope(m, i, g, at):
+    flags = word(m.disks, i * WORDS + FLAGS)
+    if flags & RESTING:
+        return real(m.supports, SUPPORT * (-2 - word(m.disks, i * WORDS + MET)) + at)
+    return 0.0 if flags & IMMOVABLE else g
 
 
 @inline
@@ -41,7 +64,7 @@ def place(m, rules, i, t):
     """The centre of disk i at time t of its present flight."""
     f = i * REALS
     lag = t - real(m.disks, f + T)
-    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    gx, gy = pulls(m, rules, i)
     x = position(real(m.disks, f + X), real(m.disks, f + VX), lag, gx)
     y = position(real(m.disks, f + Y), real(m.disks, f + VY), lag, gy)
     return x, y
@@ -52,7 +75,7 @@ def speed(m, rules, i, t):
     """The velocity of disk i at time t of its present flight."""
     f = i * REALS
     lag = t - real(m.disks, f + T)
-    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    gx, gy = pulls(m, rules, i)
     return velocity(real(m.disks, f + VX), lag, gx), velocity(real(m.disks, f + VY), lag, gy)
 
 
@@ -82,4 +105,4 @@ def wrap(m, rules, i, code, t):
         y = 0.0 if step > 0 else rules.height
         store(m.disks, i * WORDS + WRAPS_Y, word(m.disks, i * WORDS + WRAPS_Y) + step)
     anchor(m, i, t, x, y, vx, vy)
-    forget_walls(m, i)
+    forget_walls(m, i, m.supports)

@@ -19,7 +19,18 @@ from numba import cfunc, config, njit, types
 from numba.core import event
 from numba.extending import overload, register_jitable
 
-from eventsim.formulas import careful_impulse, contact, crossing, digits, expansion, impulse, motion, parabola, real
+from eventsim.formulas import (
+    careful_impulse,
+    contact,
+    crossing,
+    digits,
+    expansion,
+    impulse,
+    motion,
+    parabola,
+    real,
+    rest,
+)
 from eventsim.formulas.walls import face, round
 
 SOURCES = Path(__file__).parent, Path(motion.__file__).parent
@@ -158,5 +169,5 @@ def _register(module: ModuleType, **options: Any) -> None:
 
 for _module in (motion, contact, impulse):
     _register(_module, forceinline=True, error_model="numpy")
-for _module in (careful_impulse, crossing, digits, expansion, parabola, face, round):
+for _module in (careful_impulse, crossing, digits, expansion, parabola, face, round, rest):
     _register(_module, error_model="numpy")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.advance import place, pull
+from eventsim.engines.fast.advance import place, pulls
 from eventsim.engines.fast.calendar import bucket
 from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline, kernel
@@ -25,7 +25,9 @@ from eventsim.engines.fast.levels import gather_near, home_of
 from eventsim.engines.fast.loop import pointers
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.predict import corner_slot, images, pair_is_due, shape_time
+from eventsim.engines.fast.rest import border_contact
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.rest import STRUCK
 
 
 @kernel
@@ -110,9 +112,9 @@ def _shapes_at(m, rules, i, now, found, count, features):
     if features is None:
         return count
     for k in range(features):
-        time, side = shape_time(m, rules, i, k)
+        time, side, how = shape_time(m, rules, i, k, m.supports)
         if time == now:
-            count = _add(found, count, i, -1 - (rules.first_feature + k), side, 0)
+            count = _add(found, count, i, -1 - (rules.first_feature + k), side, how)
     return count
 
 
@@ -120,20 +122,32 @@ def _shapes_at(m, rules, i, now, found, count, features):
 def _walls_at(m, grid, rules, i, now, found, count):
     f = i * REALS
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
-    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    gx, gy = pulls(m, rules, i)
     x, u, y, w = real(m.disks, f + X), real(m.disks, f + VX), real(m.disks, f + Y), real(m.disks, f + VY)
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     home = home_of(m, grid, i)
-    count = _walls_across(x, u, t, r, gx, rules.width, column, home.columns, now, rules.wall_x, i, found, count)
-    return _walls_across(y, w, t, r, gy, rules.height, row, home.rows, now, rules.wall_y, i, found, count)
+    across = m, rules, i, now, found
+    count = _walls_across(*across, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count, m.supports)
+    return _walls_across(*across, y, w, t, r, gy, rules.height, row, home.rows, rules.wall_y, count, m.supports)
 
 
 @inline
-def _walls_across(x, v, t, r, g, length, k, last, now, wall, i, found, count):
+def _walls_across(m, rules, i, now, found, x, v, t, r, g, length, k, last, wall, count, supports):
     if wall is None:
         return count
-    if k == 1 and t + crossing_delay(x, v, g, r, 1.0) == now:
-        count = _add(found, count, i, -1 - wall, 1, 0)
-    if k == last and t + crossing_delay(x, v, g, length - r, -1.0) == now:
-        count = _add(found, count, i, -2 - wall, -1, 0)
+    if k == 1:
+        time, how = _wall_time(m, rules, i, wall, 1.0, r, x, v, t, g, supports)
+        if time == now:
+            count = _add(found, count, i, -1 - wall, 1, how)
+    if k == last:
+        time, how = _wall_time(m, rules, i, wall + 1, -1.0, length - r, x, v, t, g, supports)
+        if time == now:
+            count = _add(found, count, i, -2 - wall, -1, how)
     return count
+
+
+@inline
+def _wall_time(m, rules, i, place, side, target, x, v, t, g, supports):
+    if supports is None:
+        return t + crossing_delay(x, v, g, target, side), STRUCK
+    return border_contact(m, rules, i, place, side, target, x, v, g)

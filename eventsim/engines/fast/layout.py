@@ -22,13 +22,15 @@ PARTNER, PARTNER_COUNT, LINK, NEXT, COLUMN, ROW = 20, 21, 22, 23, 25, 26
 holds this disk's number, a bucket or a NEXT; the disk that follows on the same day); the cell, counted from 1."""
 
 AT_ONCE, WRAPS_X, WRAPS_Y, MET_KX, MET_KY = 27, 28, 29, 30, 31
-"""In line 1: contacts at the time of the last one; wraps; the image in which it was met (of a wall: the side)."""
+"""In line 1: contacts at the time of the last one; wraps; the image in which it was met (of a wall: the side, and STRUCK,
+SUPPORTED or LEFT)."""
 
 USUAL_DEPTH = 4
 """Slots in a cell that is too narrow for a fifth disk."""
 
-EDGE, IMMOVABLE, TRACER, FIRST_LEVEL = 1, 2, 4, 8
-"""Flags: in a cell at the border of the grid; infinite mass; no mass.  From FIRST_LEVEL on the number of the disk's level."""
+EDGE, IMMOVABLE, TRACER, RESTING, FIRST_LEVEL = 1, 2, 4, 8, 16
+"""Flags: in a cell at the border of the grid; infinite mass; no mass; on a wall that supports it.  From FIRST_LEVEL on the number
+of the disk's level."""
 
 CLASSES = IMMOVABLE | TRACER
 
@@ -53,6 +55,13 @@ MOST_DISKS = 1 << 25
 """So many records and buckets still have int32 places."""
 
 
+SUPPORT = 13
+"""Numbers in the table of supports for every wall: the acceleration along it, how far it goes, its face."""
+
+SUPPORT_X, SUPPORT_Y, SUPPORT_LOW, SUPPORT_HIGH, SUPPORT_FACE = 0, 1, 2, 3, 4
+"""Their places; a wall that supports nobody goes from 0 to 0."""
+
+
 class Arrays(NamedTuple):
     """The memory of a kernel: arrays where Python makes it, pointers inside; None is what the scene does not need.
 
@@ -69,6 +78,7 @@ class Arrays(NamedTuple):
     low: object
     features: object
     levels: object
+    supports: object
     rows: object
 
 
@@ -77,7 +87,7 @@ class Rules(NamedTuple):
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
     disks or tracers.  features: number of wall shapes; faces, posts, containers, arcs: whether there are such; first_feature: the
-    place of the first.  instant, at_once_limit: see `instant_of`.
+    place of the first.  instant, at_once_limit: see `instant_of`.  settles: flights can be as good as none.
     """
 
     gx: object
@@ -101,6 +111,7 @@ class Rules(NamedTuple):
     first_feature: int
     instant: float
     at_once_limit: int
+    settles: object
 
 
 class Grid(NamedTuple):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.advance import pull
+from eventsim.engines.fast.advance import pulls
 from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.lanes import gather_disks
@@ -84,7 +84,7 @@ def look_delay(m, grid, rules, i, u, w):
     if level_of(m, i) == 0:
         return NEVER
     side = real(m.levels, SIDE_X), real(m.levels, SIDE_Y)
-    ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    ax, ay = pulls(m, rules, i)
     delay = crossing_delay(0.0, u, ax, side[0], -1.0)
     delay = min(delay, crossing_delay(0.0, u, ax, -side[0], 1.0))
     delay = min(delay, crossing_delay(0.0, w, ay, side[1], -1.0))

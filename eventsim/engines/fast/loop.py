@@ -83,6 +83,7 @@ def pointers(a):
         pointer(a.low),
         pointer(a.features),
         pointer(a.levels),
+        pointer(a.supports),
         pointer(a.rows),
     )
 

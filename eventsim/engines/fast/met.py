@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.compiled import inline, part
-from eventsim.engines.fast.layout import MET, MET_KX, MET_KY, NOBODY, SEVERAL, WORDS, WRAPS_X, WRAPS_Y
+from eventsim.engines.fast.layout import FLAGS, MET, MET_KX, MET_KY, NOBODY, RESTING, SEVERAL, WORDS, WRAPS_X, WRAPS_Y
 from eventsim.engines.fast.memory import store, word
 
 
@@ -16,8 +16,13 @@ def remember(m, i, partner, kx, ky):
 
 
 @inline
-def forget_walls(m, i):
-    """Let disk i forget the walls that it met last: on the other side of the domain it can meet them again."""
+def forget_walls(m, i, supports):
+    """Let disk i forget the walls that it met last: on the other side of the domain it can meet them again.
+
+    A wall that it rests on goes on there.
+    """
+    if supports is not None and word(m.disks, i * WORDS + FLAGS) & RESTING:
+        return
     met = word(m.disks, i * WORDS + MET)
     if met == SEVERAL:
         _forget_among_several(m, i)

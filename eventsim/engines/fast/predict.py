@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.advance import place, pull, speed
+from eventsim.engines.fast.advance import place, pulls, speed
 from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.lanes import contact_of_eight, gather_disks
@@ -45,6 +45,7 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.levels import gather_near, home_of, look_delay
 from eventsim.engines.fast.memory import either, real, store, word
 from eventsim.engines.fast.met import just_met, partner_just_met
+from eventsim.engines.fast.rest import border_contact, is_for_rules, shape_rest
 from eventsim.engines.fast.shapes import shape_delay
 from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.crossing import crossing_delay
@@ -52,6 +53,7 @@ from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
+from eventsim.formulas.rest import STRUCK
 
 SLACK = 2.0**-22
 
@@ -71,10 +73,19 @@ def predict(m, grid, rules, i, now, floor):
     time, code, shared = _shapes(m, rules, i, floor, time, code, shared, rules.features)
     contacts = either(m.slots, _contacts_in_cells, _contacts_of_everyone)
     time, code, shared = contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    shared = _or_for_rules(m, rules, i, code, time, shared, m.supports)
     count = word(m.disks, (code if code >= 0 else grid.n) * WORDS + COUNT)  # of the sentinel: 0
     store(m.disks, i * REALS + DUE, time)
     store(m.disks, i * WORDS + PARTNER, code)
     store(m.disks, i * WORDS + PARTNER_COUNT, count + COUNTS * shared)
+
+
+@inline
+def _or_for_rules(m, rules, i, code, time, shared, supports):
+    """Whether an event is to be left to the reference engine's rules: because of rest, as if another one shared its time."""
+    if supports is None:
+        return shared
+    return 1 if is_for_rules(m, rules, i, code, time) else shared
 
 
 @inline
@@ -132,7 +143,7 @@ def _crossing(m, grid, rules, i, now, x, y, u, w, gx):
 @part
 def _falling_crossing(m, grid, rules, i, now, x, y, u, w, low_x, low_y):
     """The same along a parabola."""
-    ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    ax, ay = pulls(m, rules, i)
     slack_x, slack_y = slack(grid.side_x, rules.gx), slack(grid.side_y, rules.gx)
     delay, code = crossing_delay(x, u, ax, low_x + grid.side_x + slack_x, -1.0), RIGHT
     other = crossing_delay(x, u, ax, low_x - slack_x, 1.0)
@@ -149,7 +160,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
     """(time, code, shared) of what disk i, in a cell at the border of the grid, can do alone: cross, wrap, meet a wall."""
     f = i * REALS
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
-    ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    ax, ay = pulls(m, rules, i)
     time, code, shared = NEVER, NOTHING, 0
     k = word(m.disks, i * WORDS + COLUMN)
     low = grid.low_x + (k - 1) * grid.side_x
@@ -158,7 +169,21 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         time, code, shared = _earlier(time, code, shared, new, LEFT)
     else:
         new, what = _border_event(
-            real(m.disks, f + X), real(m.disks, f + VX), t, r, ax, 0.0, 1.0, rules.length_x, rules.wall_x, WRAP_LEFT, 0
+            m,
+            rules,
+            i,
+            real(m.disks, f + X),
+            real(m.disks, f + VX),
+            t,
+            r,
+            ax,
+            0.0,
+            1.0,
+            rules.length_x,
+            rules.wall_x,
+            WRAP_LEFT,
+            0,
+            m.supports,
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
@@ -167,6 +192,9 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         time, code, shared = _earlier(time, code, shared, new, RIGHT)
     else:
         new, what = _border_event(
+            m,
+            rules,
+            i,
             real(m.disks, f + X),
             real(m.disks, f + VX),
             t,
@@ -178,6 +206,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
             rules.wall_x,
             WRAP_RIGHT,
             1,
+            m.supports,
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
@@ -188,7 +217,21 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         time, code, shared = _earlier(time, code, shared, new, DOWN)
     else:
         new, what = _border_event(
-            real(m.disks, f + Y), real(m.disks, f + VY), t, r, ay, 0.0, 1.0, rules.length_y, rules.wall_y, WRAP_DOWN, 0
+            m,
+            rules,
+            i,
+            real(m.disks, f + Y),
+            real(m.disks, f + VY),
+            t,
+            r,
+            ay,
+            0.0,
+            1.0,
+            rules.length_y,
+            rules.wall_y,
+            WRAP_DOWN,
+            0,
+            m.supports,
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
@@ -197,6 +240,9 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
         time, code, shared = _earlier(time, code, shared, new, UP)
     else:
         new, what = _border_event(
+            m,
+            rules,
+            i,
             real(m.disks, f + Y),
             real(m.disks, f + VY),
             t,
@@ -208,6 +254,7 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
             rules.wall_y,
             WRAP_UP,
             1,
+            m.supports,
         )
         if not new < floor:
             time, code, shared = _earlier(time, code, shared, new, what)
@@ -215,11 +262,14 @@ def _border_events(m, grid, rules, i, now, floor, x, y, u, w):
 
 
 @inline
-def _border_event(x, v, t, r, g, border, side, length, wall, wrap_code, second):
+def _border_event(m, rules, i, x, v, t, r, g, border, side, length, wall, wrap_code, second, supports):
     """(time, code) of the wrap through a border of the domain, or of the contact with the hard wall there."""
     if length is None:
         if wall is None:
             return NEVER, NOTHING
+        if supports is not None:
+            time, _ = border_contact(m, rules, i, wall + second, side, border + side * r, x, v, g)
+            return time, WALL - 2 * (wall + second) - second
         return t + crossing_delay(x, v, g, border + side * r, side), WALL - 2 * (wall + second) - second
     return t + crossing_delay(x, v, g, border, side), wrap_code
 
@@ -230,7 +280,7 @@ def _shapes(m, rules, i, floor, time, code, shared, features):
     if features is None:
         return time, code, shared
     for k in range(features):
-        new, side = shape_time(m, rules, i, k)
+        new, side, _ = shape_time(m, rules, i, k, m.supports)
         if new >= floor:
             wall = WALL - 2 * (rules.first_feature + k) - (1 if side < 0 else 0)
             time, code, shared = _earlier(time, code, shared, new, wall)
@@ -238,10 +288,14 @@ def _shapes(m, rules, i, floor, time, code, shared, features):
 
 
 @part
-def shape_time(m, rules, i, k):
-    """(time, side) of the next contact of disk i with the k-th wall shape."""
+def shape_time(m, rules, i, k, supports):
+    """(time, side, how) of the next event of disk i at the k-th wall shape."""
     f = i * REALS
-    gx, gy = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
+    if supports is not None:
+        delay, side, how = shape_rest(m, rules, i, k)
+        if how != STRUCK:
+            return real(m.disks, f + T) + delay, side, how
+    gx, gy = pulls(m, rules, i)
     delay, side = shape_delay(
         m,
         rules,
@@ -256,7 +310,7 @@ def shape_time(m, rules, i, k):
         gy,
         real(m.disks, f + RADIUS),
     )
-    return real(m.disks, f + T) + delay, side
+    return real(m.disks, f + T) + delay, side, STRUCK
 
 
 @inline
@@ -290,8 +344,8 @@ def pair_time(m, rules, i, j, kx, ky):
     f, g = i * REALS, j * REALS
     ti, tj = real(m.disks, f + T), real(m.disks, g + T)
     begin = ti if ti > tj else tj
-    ax, ay = pull(m, i, rules.gx, rules.classes), pull(m, i, rules.gy, rules.classes)
-    bx, by = pull(m, j, rules.gx, rules.classes), pull(m, j, rules.gy, rules.classes)
+    ax, ay = pulls(m, rules, i)
+    bx, by = pulls(m, rules, j)
     lag, other_lag = begin - ti, begin - tj
     ui, wi, uj, wj = real(m.disks, f + VX), real(m.disks, f + VY), real(m.disks, g + VX), real(m.disks, g + VY)
     dx = position(real(m.disks, f + X), ui, lag, ax) - position(real(m.disks, g + X), uj, other_lag, bx)
@@ -346,10 +400,14 @@ def can_meet(m, i, j, classes):
 
 
 @inline
-def flies_alike(m, rules, i, j, gx, classes):
+def flies_alike(m, rules, i, j, gx, classes, supports):
     """Whether the relative flight of two disks is straight."""
-    if gx is None or classes is None:
+    if gx is None or (classes is None and supports is None):
         return True
+    if supports is not None:
+        ax, ay = pulls(m, rules, i)
+        bx, by = pulls(m, rules, j)
+        return not (ax != bx or ay != by)
     return (word(m.disks, i * WORDS + FLAGS) ^ word(m.disks, j * WORDS + FLAGS)) & IMMOVABLE == 0
 
 
@@ -359,7 +417,7 @@ def pair_is_due(m, rules, i, j, kx, ky):
     if not can_meet(m, i, j, rules.classes):
         return NEVER
     time = pair_time(m, rules, i, j, kx, ky)
-    if time < NEVER and flies_alike(m, rules, i, j, rules.gx, rules.classes) and just_met(m, i, j, kx, ky):
+    if time < NEVER and flies_alike(m, rules, i, j, rules.gx, rules.classes, m.supports) and just_met(m, i, j, kx, ky):
         return NEVER
     return time
 

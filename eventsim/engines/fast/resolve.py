@@ -10,14 +10,19 @@ from eventsim.engines.fast.layout import (
     AT_ONCE,
     CONTACT_TIME,
     LABEL,
+    MET,
     OUTER_X,
     OUTER_Y,
     RADIUS,
     REALS,
+    SUPPORT,
+    SUPPORT_HIGH,
+    SUPPORT_LOW,
     VX,
     VY,
     WALL,
     WORDS,
+    T,
 )
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
@@ -34,6 +39,7 @@ from eventsim.formulas.impulse import (
     wall_update,
 )
 from eventsim.formulas.real import sqrt
+from eventsim.formulas.rest import is_still
 
 
 @inline
@@ -65,10 +71,31 @@ def _restitution(m, a, b, t, restitution, duration):
 
 
 @inline
-def _note_time(m, rules, i, t, idle):
+def _is_still(m, rules, i, t, settles):
+    """Whether disk i has not come further, since its flight began, than the last bits of its place."""
+    if settles is None:
+        return False
+    f = i * REALS
+    x, y = place(m, rules, i, t)
+    u, w = speed(m, rules, i, t)
+    return is_still(x, y, real(m.disks, f + VX), real(m.disks, f + VY), u, w, t - real(m.disks, f + T))
+
+
+@inline
+def _is_series(m, i, place_, supports):
+    """Whether disk i met that straight wall already last."""
+    if supports is None:
+        return False
+    at = SUPPORT * place_
+    straight = real(supports, at + SUPPORT_LOW) < real(supports, at + SUPPORT_HIGH)
+    return straight and word(m.disks, i * WORDS + MET) == -2 - place_
+
+
+@inline
+def _note_time(m, rules, i, t, idle, still):
     """Note a contact of disk i, to see that an instant does not end; idle ones, which change nothing, weigh more."""
     weight = rules.at_once_limit // 3 + 1 if idle else 1
-    if t - real(m.disks, i * REALS + CONTACT_TIME) <= rules.instant * t:
+    if still or t - real(m.disks, i * REALS + CONTACT_TIME) <= rules.instant * t:
         weight += word(m.disks, i * WORDS + AT_ONCE)
     store(m.disks, i * WORDS + AT_ONCE, weight)
     store(m.disks, i * REALS + CONTACT_TIME, t)
@@ -134,14 +161,15 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     dx, dy = xa - xb, ya - yb
     kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
+    still = _is_still(m, rules, a, t, rules.settles) and _is_still(m, rules, b, t, rules.settles)
     ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)
     anchor(m, a, t, xa, ya, ua, wa)
     anchor(m, b, t, xb, yb, ub, wb)
     ux, uy = unwrapped_x(m, a, b, kx), unwrapped_y(m, a, b, ky)
     remember(m, a, b, ux, uy)
     remember(m, b, a, -ux, -uy)
-    _note_time(m, rules, a, t, q == 0.0)
-    _note_time(m, rules, b, t, q == 0.0)
+    _note_time(m, rules, a, t, q == 0.0, still)
+    _note_time(m, rules, b, t, q == 0.0, still)
     reduced = _reduced(a, b, m.mass, rules.common_mass)
     distance = sqrt(dx * dx + dy * dy)
     reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
@@ -185,6 +213,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     x, y = place(m, rules, i, t)
     u, w = speed(m, rules, i, t)
     u0, w0 = u, w
+    still = _is_still(m, rules, i, t, rules.settles) and not _is_series(m, i, place_, m.supports)
     e = _restitution(m, i, i, t, rules.wall_restitution, rules.duration)
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
@@ -201,7 +230,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         u, w, wall = _against_shape(m, i, place_ - rules.first_feature, side, x, y, u, w, e, m.features, m.low)
     anchor(m, i, t, x, y, u, w)
     remember(m, i, -2 - place_, side, 0)
-    _note_time(m, rules, i, t, u == u0 and w == w0)
+    _note_time(m, rules, i, t, u == u0 and w == w0, still)
     mass = mass_of(i, m.mass, rules.common_mass)
     impulse = math.nan
     if not math.isinf(mass):

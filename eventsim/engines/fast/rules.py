@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from eventsim.engines.fast.grids import FEW_DISKS
-from eventsim.engines.fast.layout import Rules
+from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
 from eventsim.engines.fast.plan import MANY_DISKS, classes_of
 from eventsim.engines.fast.shapes import KINDS, WIDTH
 from eventsim.engines.reference.resolve import instant_of
@@ -44,6 +44,7 @@ def rules_of(stage: Stage) -> Rules:
         arcs,
         len(stage.boundaries),
         *instant_of(stage),
+        1 if stage.settles else None,
     )
 
 
@@ -51,7 +52,7 @@ def kind_of(stage: Stage, keep_rows: bool) -> str:
     """A name for what the scene has: scenes of one kind share their kernels."""
     levels = stage.n >= FEW_DISKS and len(classes_of(stage)) > 1
     asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS, levels]
-    needs = [*rules_of(stage), stage.mass, *(True if wanted else None for wanted in asked)]
+    needs = [*rules_of(stage), stage.mass, stage.supports, *(True if wanted else None for wanted in asked)]
     return "".join("0" if need is None else "1" for need in needs)
 
 
@@ -60,7 +61,19 @@ def features_of(stage: Stage) -> Floats | None:
     if not stage.features:
         return None
     table = np.zeros((len(stage.features), WIDTH))
-    for row, (shape, wall) in zip(table, stage.features, strict=True):
+    for row, (shape, wall, _) in zip(table, stage.features, strict=True):
         row[0], row[1] = KINDS.index(type(shape)), wall
         row[2 : 2 + len(shape)] = shape
+    return table.reshape(-1)
+
+
+def supports_of(stage: Stage) -> Floats | None:
+    """What walls support disks with as a table of numbers, in one row of memory."""
+    if stage.supports is None:
+        return None
+    table = np.zeros((len(stage.supports), SUPPORT))
+    for row, support in zip(table, stage.supports, strict=True):
+        if support is not None:
+            row[:SUPPORT_FACE] = support.ax, support.ay, support.low, support.high
+            row[SUPPORT_FACE:] = support.face
     return table.reshape(-1)

@@ -17,11 +17,11 @@ from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.order import along_a_curve
 from eventsim.engines.fast.plan import MANY_DISKS, Sizes, day_length, shortest_day
-from eventsim.engines.fast.rules import features_of, kind_of, rules_of
+from eventsim.engines.fast.rules import features_of, kind_of, rules_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.calendar import CONTACT, Event
-from eventsim.engines.reference.loop import components, endless, row_order, squeezed
-from eventsim.engines.reference.resolve import Resolver
+from eventsim.engines.reference.loop import components, endless, refused, row_order
+from eventsim.engines.reference.resolve import Resolver, TwoSupportsError
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, next_window, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.simultaneous import SqueezedError
@@ -37,6 +37,8 @@ COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_
 
 LOW_COLUMNS = ("low_vx", "low_vy")
 """The same, where velocities have low parts."""
+ROUNDS = 2.0
+"""Times around the domain without an event after which disks that move along an axis are known to meet nothing."""
 
 FOREVER, LARGEST_BUDGET = 1 << 60, 1 << 40
 FEW_STEPS = 256
@@ -64,6 +66,7 @@ class FastSession:
         self.stage = stage
         self.counters = Counters()
         self.reason: str | None = None
+        self.refused = False
         self._keep_rows = keep_rows
         self._counts = np.zeros(13, np.int64)
         self._sums = np.zeros(6)
@@ -77,6 +80,7 @@ class FastSession:
         self._columns = (*COLUMNS, *LOW_COLUMNS) if stage.low_parts else COLUMNS
         self._rules = rules_of(stage)
         self._features = features_of(stage)
+        self._supports = supports_of(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._buffer = np.empty(BUFFER if keep_rows else 0, ROW)
         self._counts[layout.ROOM] = BUFFER if keep_rows else 2 * FOREVER
@@ -190,9 +194,10 @@ class FastSession:
         for component in components(generation):
             try:
                 changed += resolver.resolve(component)
-            except SqueezedError:
+            except (SqueezedError, TwoSupportsError) as refusal:
                 self._keep(resolver)
-                stopped, self.reason = squeezed(component)
+                self.refused = True
+                stopped, self.reason = refused(refusal, component)
                 return stopped
         self._keep(resolver)
         self._arrays = self._arrays._replace(several=state.several.reshape(-1))
@@ -200,8 +205,8 @@ class FastSession:
         for i in places:
             self._predict(i, i + 1, now)
         for i in waiting:
-            if i not in places:  # its contact came to nothing: it flies on
-                self._predict(i, i + 1, math.nextafter(now, math.inf))
+            if i not in places:  # its contact came to nothing: it flies on, unless gravity closes the gap
+                self._predict(i, i + 1, now if self.stage.gravity is not None else math.nextafter(now, math.inf))
         stuck = next((i for i in changed if state.at_once[i] >= resolver.at_once_limit), None)
         return None if stuck is None else self._give_up(stuck)
 
@@ -323,6 +328,7 @@ class FastSession:
                 state.low.reshape(-1) if state.low_parts else None,
                 self._features,
                 self._grids.table(),
+                self._supports,
                 self._buffer.view(np.uint8) if self._keep_rows else None,
             )
             full = fill(self._arrays, self._grid, self._rules, now)
@@ -354,11 +360,19 @@ class FastSession:
         return self._grid.levels is not None and bool(np.isin(partners, (layout.LOOK, layout.NOTHING)).all())
 
     def _drifts(self) -> bool:
-        """Whether all disks have one velocity and nothing to meet: they would wrap for ever."""
+        """Whether all disks have one velocity, for good, and nothing to meet: they would wrap for ever.
+
+        Along an axis they come by the same places again, where they have met nothing if this window was long enough.
+        """
         stage, state = self.stage, self.state
-        if stage.gravity is not None or stage.boundaries or stage.features:
+        vx, vy = state.vx.every(), state.vy.every()
+        if np.ptp(vx) != 0.0 or np.ptp(vy) != 0.0 or np.any(state.gravity_x.every()) or np.any(state.gravity_y.every()):
             return False
-        return bool(np.ptp(state.vx.every()) == 0.0 and np.ptp(state.vy.every()) == 0.0)
+        if not (stage.boundaries or stage.features):
+            return True
+        around = max((length for length in stage.period if length is not None), default=math.inf)
+        rounds = state.window_end * max(abs(vx[0]), abs(vy[0])) / around
+        return bool(vx[0] * vy[0] == 0.0 and rounds > ROUNDS)
 
     def _pass_to(self, until: float) -> None:
         if self.state.now < until < math.inf:
@@ -431,8 +445,7 @@ class FastSession:
         self._set_now(saved.now)
         for name in self._columns:
             getattr(s, name).set_all(getattr(saved, name))
-        s.words[:, layout.MET] = layout.NOBODY
-        s.several_used = 0
+        s.forget_all()
         for i, met in enumerate(saved.met):
             if met:
                 s.met[i] = met
@@ -450,7 +463,7 @@ class FastSession:
         for name in ("x", "y", "vx", "vy"):
             getattr(s, name).set_all(getattr(stage, name))
         s.contact_time.set_all(-math.inf)
-        s.words[:, layout.MET] = layout.NOBODY
+        s.forget_all()
         with timed_compiling(self._note_compiling):
             self._grids.choose(self.motion())
             self._predict_afresh()

@@ -23,6 +23,7 @@ from eventsim.engines.fast.layout import (
     NOBODY,
     RADIUS,
     REALS,
+    RESTING,
     SEVERAL,
     TRACER,
     VX,
@@ -39,6 +40,7 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.plan import days_of
 from eventsim.engines.reference.state import EngineState, Met
 from eventsim.errors import EventsimError
+from eventsim.formulas.rest import SUPPORTED, held_by
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -84,22 +86,31 @@ class CountColumn(Column):
 
 
 class AccelerationColumn:
-    """A component of every disk's gravity: None without, 0 for immovable disks."""
+    """A component of every disk's gravity: None without, 0 for immovable disks, that along its wall for one at rest."""
 
-    def __init__(self, g: float | None, mass: Floats | None) -> None:
-        self._g = g
-        self._mass = mass
+    def __init__(self, state: FastState, axis: int, stage: Stage) -> None:
+        self._state = state
+        self._axis = axis
+        self._g = None if stage.gravity is None else stage.gravity[axis]
+        self._mass = stage.mass
 
     def __getitem__(self, i: int) -> float | None:
-        if self._g is None or self._mass is None:
-            return self._g
-        return 0.0 if np.isinf(self._mass[i]) else self._g
+        if self._g is None:
+            return None
+        if (support := self._state.support_of(i)) is not None:
+            return support.ax if self._axis == 0 else support.ay
+        return 0.0 if self._mass is not None and np.isinf(self._mass[i]) else self._g
 
     def every(self) -> Any:
         """The components of all disks: one number, or an array (n,)."""
-        if self._g is None or self._mass is None:
+        if self._g is None or (self._mass is None and self._state.supports is None):
             return self._g
-        return np.where(np.isinf(self._mass), 0.0, self._g)
+        pulls = np.full(self._state.n, self._g)
+        if self._mass is not None:
+            pulls[np.isinf(self._mass)] = 0.0
+        for i in self._state.resting():
+            pulls[i] = self[i]
+        return pulls
 
 
 class MetColumn:
@@ -126,6 +137,10 @@ class MetColumn:
     def __setitem__(self, i: int, met: Met) -> None:
         state = self._state
         record = state.words[state.place_of[i]]
+        if state.supports is not None:
+            held = held_by(met)
+            resting = held is not None and held.how == SUPPORTED
+            record[FLAGS] = (record[FLAGS] & ~RESTING) | (RESTING if resting else 0)
         if not met:
             record[MET] = NOBODY
         elif len(met) == 1:
@@ -202,9 +217,8 @@ class FastState(EngineState):
         self.low_parts = stage.low_parts
         self.low: Floats = np.zeros((n if stage.low_parts else 0, 2))
         self.low_vx, self.low_vy = Column(self.low[:, 0], self.place_of), Column(self.low[:, 1], self.place_of)
-        gx, gy = stage.gravity or (None, None)
-        self.gravity_x = AccelerationColumn(gx, stage.mass)
-        self.gravity_y = AccelerationColumn(gy, stage.mass)
+        self.supports = stage.supports
+        self.gravity_x, self.gravity_y = AccelerationColumn(self, 0, stage), AccelerationColumn(self, 1, stage)
         self.epoch_length = stage.epoch_length
         self.window_cap = stage.window_cap
 
@@ -221,6 +235,21 @@ class FastState(EngineState):
     @window_rows.setter
     def window_rows(self, rows: int) -> None:
         self._counts[WINDOW_ROWS] = rows
+
+    def meet(self, i: int, met: Met) -> None:
+        """Let disk i remember whom it met; its record says as well whether it rests."""
+        self.met[i] = met
+
+    def forget_all(self) -> None:
+        """Let all disks forget whom they met."""
+        self.words[:, MET] = NOBODY
+        self.words[: self.n, FLAGS] &= ~RESTING
+        self.several_used = 0
+
+    def resting(self) -> list[int]:
+        """The disks that rest on walls."""
+        found: list[int] = self.labels[(self.words[: self.n, FLAGS] & RESTING) != 0].tolist()
+        return found
 
     def _reals(self, place: int) -> Column:
         return Column(self.disks[: self.n, place], self.place_of)

@@ -12,7 +12,7 @@ from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calenda
 from eventsim.engines.reference.cells import Cells, Grid, plan
 from eventsim.engines.reference.invariants import check_invariants
 from eventsim.engines.reference.predict import Predictor
-from eventsim.engines.reference.resolve import Resolver
+from eventsim.engines.reference.resolve import Resolver, TwoSupportsError
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
 from eventsim.formulas.simultaneous import SqueezedError
@@ -49,6 +49,7 @@ class ReferenceSession:
         chosen = plan(stage) if isinstance(grid, str) else grid
         self.cells = None if chosen is None else Cells(stage, chosen)
         self.reason: str | None = None
+        self.refused = False
         self._check = check
         self._wraps_in_vain = 0
         self._predictor = self.predictor(stage, self.state, self.calendar, self.cells)
@@ -115,10 +116,15 @@ class ReferenceSession:
         for component in components(generation):
             try:
                 changed += self._resolver.resolve(component)
-            except SqueezedError:
-                stopped, self.reason = squeezed(component)
+            except (SqueezedError, TwoSupportsError) as refusal:
+                self.refused = True
+                stopped, self.reason = refused(refusal, component)
                 return stopped
         now = self.state.now
+        if self.stage.gravity is not None:  # what came to nothing is still due: gravity closes the gap
+            for event in generation:
+                if not self.is_stale(event):
+                    self.calendar.push(event)
         for i in changed:
             self._predictor.predict(i, now)
         for i in changed:
@@ -164,10 +170,15 @@ class ReferenceSession:
         return stop.until is None
 
     def _drifts(self) -> bool:
-        """Whether all disks have one velocity and nothing to meet: they would wrap for ever."""
+        """Whether all disks have one velocity, for good, and nothing to meet: they would wrap for ever.
+
+        Along an axis they come by the same places again, where they have met nothing.
+        """
         state, stage = self.state, self.stage
         alike = len(set(zip(state.vx, state.vy, strict=True))) == 1
-        return alike and stage.gravity is None and not stage.boundaries and not stage.features
+        straight = all(g is None or g == 0.0 for g in (*state.gravity_x, *state.gravity_y))
+        again = state.vx[0] == 0.0 or state.vy[0] == 0.0
+        return alike and straight and (again or not (stage.boundaries or stage.features))
 
     def _pass_to(self, until: float) -> None:
         """Let time pass to `until`, a remainder; without a stop time it stays where it is."""
@@ -231,8 +242,10 @@ def endless(stage: Stage, i: int, place: tuple[float, float]) -> tuple[str, str]
     return what, f"disk {i} at ({x + stage.corner[0]:g}, {y + stage.corner[1]:g}): {cause}"
 
 
-def squeezed(component: list[Event]) -> tuple[str, str]:
-    """A cluster that no impulses part: why a run stops there, and a sentence on its disks."""
+def refused(error: SqueezedError | TwoSupportsError, component: list[Event]) -> tuple[str, str]:
+    """A cluster that no impulses part, or a disk on two walls: why a run stops there, and a sentence on the disks."""
+    if isinstance(error, TwoSupportsError):
+        return "collapse", str(error)
     disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
     names = ", ".join(map(str, disks))
     return "collapse", f"of disks {names} one is squeezed between others, or walls, that it cannot deflect"

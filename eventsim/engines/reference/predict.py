@@ -14,6 +14,7 @@ from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER, Real
+from eventsim.formulas.rest import STRUCK, border_contact, held_by, shape_contact
 from eventsim.formulas.walls.delays import DELAYS
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.round import Arc, Container, Post
@@ -46,6 +47,7 @@ class Predictor:
         )
         self._period = stage.period
         self._falls = stage.gravity is not None
+        self._wall_restitution = stage.wall_restitution
         self._unmoved = _classes(stage)
         everyone = list(range(stage.n))
         self._everyone: list[Group] = [(everyone, image) for image in images_of(stage)]
@@ -165,9 +167,17 @@ class Predictor:
         rank, place, position_, inset = border
         state = self._state
         x, v, g = (state.x, state.vx, state.gravity_x) if axis == 0 else (state.y, state.vy, state.gravity_y)
-        delay = crossing_delay(x[i], v[i], g[i], position_ - step * (inset * self._radius[i]), -step)
+        target = position_ - step * (inset * self._radius[i])
+        if state.supports is None or rank == WRAP:
+            delay, how = crossing_delay(x[i], v[i], g[i], target, -step), STRUCK
+        else:
+            size = abs(state.x[i]) + abs(state.y[i]) + abs(target)
+            held, e = held_by(state.met[i]), self._wall_restitution
+            delay, how = border_contact(
+                state.supports, held, place, -step, target, x[i], v[i], g[i], size, e, state.t[i]
+            )
         if delay < NEVER:
-            b, image = (axis, (step, 0)) if rank == WRAP else (-1 - place, (-step, 0))
+            b, image = (axis, (step, 0)) if rank == WRAP else (-1 - place, (-step, how))
             self._push(Event(state.t[i] + delay, rank, i, b, image, state.count[i], 0))
 
     def _wall(
@@ -176,19 +186,17 @@ class Predictor:
         """Push the contact of disk i with a shape inside the domain."""
         state = self._state
         met = next((last[1] for last in state.met[i] if last[0] == -1 - place), 0)
-        delay, side = delay_to(
-            shape,
-            state.x[i],
-            state.y[i],
-            state.vx[i],
-            state.vy[i],
-            state.gravity_x[i],
-            state.gravity_y[i],
-            self._radius[i],
-            met,
-        )
+        flight = state.x[i], state.y[i], state.vx[i], state.vy[i], state.gravity_x[i], state.gravity_y[i]
+        if state.supports is None:
+            delay, side = delay_to(shape, *flight, self._radius[i], met)
+            how = STRUCK
+        else:
+            held, e = held_by(state.met[i]), self._wall_restitution
+            delay, side, how = shape_contact(
+                state.supports, held, place, shape, delay_to, flight, self._radius[i], met, e, state.t[i]
+            )
         if delay < NEVER:
-            self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, 0), state.count[i], 0))
+            self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, how), state.count[i], 0))
 
     def _crossing(self, i: int, now: Real) -> None:
         """Push the next passage of disk i into another cell, reckoned from where it is now."""

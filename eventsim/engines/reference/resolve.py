@@ -20,6 +20,7 @@ from eventsim.formulas.impulse import (
     wall_update,
 )
 from eventsim.formulas.real import Real, sqrt
+from eventsim.formulas.rest import AT_ONCE, LEFT, SUPPORTED, held_by, is_still, resting_place, slope
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
 from eventsim.formulas.walls.face import Face, face_normal
 from eventsim.formulas.walls.round import round_normal
@@ -28,9 +29,6 @@ from eventsim.scene.stage import Stage
 
 Row: TypeAlias = tuple[Any, ...]
 MISSING = math.nan
-
-AT_ONCE = 2.0**-48
-"""Contacts of a disk are at one instant where the time between them is below this part of the clock: a few of its last bits."""
 
 AT_ONCE_ELASTIC, AT_ONCE_INELASTIC = 100_000, 100
 """Contacts of one disk at one instant that are too many.  Elastic sequences end, if late; inelastic ones of this length are a
@@ -58,6 +56,16 @@ def instant_of(stage: Stage) -> tuple[float, int]:
     return AT_ONCE, most
 
 
+class TwoSupportsError(Exception):
+    """A disk comes to rest on two walls: how they share its weight is no question of impulses."""
+
+    def __init__(self, disk: int, walls: list[str]) -> None:
+        super().__init__(
+            f"disk {disk} comes to rest on two walls, {' and '.join(walls)}: only rest on one straight wall is modelled; "
+            "contact_duration, a time in the scene, lets such a scene go on"
+        )
+
+
 class Resolver:
     """Resolves the contacts of one stage; counts them, books momentum, and keeps their rows if asked to."""
 
@@ -75,9 +83,14 @@ class Resolver:
         self.rows: list[Row] = []
         share, self.at_once_limit = instant_of(stage)
         self._instant = share if self.at_once is None else self.at_once
+        self._settles = stage.settles and self.at_once is None
 
     def resolve(self, component: list[Event]) -> list[int]:
         """Resolve contacts of one time that are connected through shared disks; the disks that it changed."""
+        if self._state.supports is not None:
+            rests = [event for event in component if event.b < 0 and event.image[1]]
+            if rests:
+                return self._resolve_and_rest([event for event in component if event not in rests], rests)
         if len(component) > 1:
             return self._joint(component)
         event = component[0]
@@ -85,15 +98,93 @@ class Resolver:
             return self._pair(event)
         return self._wall(event)
 
+    def _resolve_and_rest(self, contacts: list[Event], rests: list[Event]) -> list[int]:
+        """Resolve contacts; then the disks that these leave untouched come to rest, or slide over the end of their wall."""
+        changed = self.resolve(contacts) if contacts else []
+        for event in rests:
+            if event.a not in changed:
+                self._rest(event) if event.image[1] == SUPPORTED else self._leave(event)
+                changed.append(event.a)
+        return changed
+
+    def _rest(self, event: Event) -> None:
+        """Let a disk rest on a wall; it may have rested on another one, which this one takes it from.
+
+        Raises TwoSupportsError where it would lie on both.
+        """
+        state = self._state
+        t, i, place, side = event.time, event.a, -1 - event.b, event.image[0]
+        assert state.supports is not None
+        support = state.supports[place]
+        assert support is not None
+        self._check_single(i, place)
+        self._free(i, t)
+        x, y = state.place(i, t)
+        u, w = before = state.speed(i, t)
+        x, y = resting_place(support.face, side, x, y, self._radius[i])
+        still = self._is_still(i, t)
+        u, w = slope(support.face, u, w)
+        state.anchor(i, t, x, y, u, w)
+        state.meet(i, ((event.b, side, SUPPORTED),))
+        self._book_support(i, t, 1.0)
+        self._note_time(i, t, False, still)
+        impulse = self._book_wall(self._mass_of(i), u - before[0], w - before[1])
+        self._counters.rests += 1
+        self._row(t, Kind.REST, i, -1, self._wall_number(place), impulse, -1)
+
+    def _check_single(self, i: int, place: int) -> None:
+        """Raise TwoSupportsError where disk i, which comes to rest on one wall, stays pressed onto the one that it rests on."""
+        state = self._state
+        held = held_by(state.met[i])
+        if held is None or held.how != SUPPORTED or state.supports is None:
+            return
+        old, new = state.supports[held.place], state.supports[place]
+        assert old is not None
+        assert new is not None
+        if held.side * (old.face.nx * new.ax + old.face.ny * new.ay) < 0.0:
+            walls = [self._stage.wall_names[self._wall_number(k)] for k in (held.place, place)]
+            raise TwoSupportsError(i, walls)
+
+    def _leave(self, event: Event) -> None:
+        """Let a disk that slid over the end of its wall fly on; a row without an impulse."""
+        state = self._state
+        t, i = event.time, event.a
+        x, y = state.place(i, t)
+        u, w = state.speed(i, t)
+        self._free(i, t)
+        state.anchor(i, t, x, y, u, w)
+        state.meet(i, ((event.b, event.image[0], LEFT),))
+        self._note_time(i, t, False, False)
+        self._counters.wall_contacts += 1
+        self._row(t, Kind.WALL, i, -1, self._wall_number(-1 - event.b), 0.0, -1)
+
+    def _free(self, i: int, t: Real) -> None:
+        """Book what a wall has given to disk i until now, if it rested there; the impulse that comes frees it."""
+        if self._state.supports is not None:
+            self._book_support(i, t, -1.0)
+
+    def _book_support(self, i: int, t: Real, sign: float) -> None:
+        """Note that a wall begins (+1) or ceases (-1) to support disk i, if it rests on one."""
+        support, gravity = self._state.support_of(i), self._stage.gravity
+        if support is None or gravity is None:
+            return
+        passed = self._state.epoch * self._stage.epoch_length + float(t)
+        total = self._counters.support_force
+        for axis, (along, whole) in enumerate(zip((support.ax, support.ay), gravity, strict=True)):
+            force = sign * (self._mass_of(i) * (along - whole))
+            total[axis] += force
+            self._counters.outer_momentum[axis] -= force * passed
+
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of disk i from outside, at the present time; a row of its own."""
         state = self._state
         t = state.now
         x, y = state.place(i, t)
         before = state.speed(i, t)
+        self._free(i, t)
         state.anchor(i, t, x, y, vx, vy)
         state.forget_low_parts(i)
-        state.met[i] = ()
+        state.meet(i, ())
         mass = self._mass_of(i)
         if math.isfinite(mass):
             self._book(mass * (vx - before[0]), mass * (vy - before[1]))
@@ -107,6 +198,7 @@ class Resolver:
         xa, ya = state.place(a, t)
         xb, yb = state.place(b, t)
         dx, dy = self._apart(event, xa, ya, xb, yb)
+        still = self._is_still(a, t) and self._is_still(b, t)
         if state.low_parts:
             ua, wa, ub, wb, q = self._careful_pair(a, b, dx, dy)
         else:
@@ -115,13 +207,16 @@ class Resolver:
             share_a, share_b = self._shares(a, b)
             restitution = self._restitution(self._stage.pair_restitution, t, a, b)
             ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
+        self._free(a, t)
+        self._free(b, t)
         state.anchor(a, t, xa, ya, ua, wa)
         state.anchor(b, t, xb, yb, ub, wb)
         kx = event.image[0] + state.wraps_x[a] - state.wraps_x[b]
         ky = event.image[1] + state.wraps_y[a] - state.wraps_y[b]
-        state.met[a], state.met[b] = ((b, kx, ky),), ((a, -kx, -ky),)
-        self._note_time(a, t, q == 0.0)
-        self._note_time(b, t, q == 0.0)
+        state.meet(a, ((b, kx, ky),))
+        state.meet(b, ((a, -kx, -ky),))
+        self._note_time(a, t, q == 0.0, still)
+        self._note_time(b, t, q == 0.0, still)
         reduced = self._reduced(a, b)
         distance = sqrt(dx * dx + dy * dy)
         self._note_overlap(a, b, distance)
@@ -147,6 +242,8 @@ class Resolver:
         x, y = state.place(i, t)
         u, w = state.speed(i, t)
         before = u, w
+        # A series on one straight wall is over when it is, and may well be lower than the last bits before.
+        still = not self._series(i, place) and self._is_still(i, t)
         restitution = self._restitution(stage.wall_restitution, t, i, i)
         if state.low_parts:
             u, w = self._careful_wall(i, *self._normal(place, side, x, y))
@@ -157,9 +254,10 @@ class Resolver:
         else:
             w, _ = flat_update(w, stage.boundaries[place].side, restitution)
         x, y = self._on_boundary(place, i, x, y)
+        self._free(i, t)
         state.anchor(i, t, x, y, u, w)
-        state.met[i] = ((event.b, side, 0),)
-        self._note_time(i, t, (u, w) == before)
+        state.meet(i, ((event.b, side, 0),))
+        self._note_time(i, t, (u, w) == before, still)
         mass = self._mass_of(i)
         impulse = self._book_wall(mass, u - before[0], w - before[1])
         self._counters.wall_contacts += 1
@@ -194,16 +292,20 @@ class Resolver:
                 contacts.append(JointContact(number[event.a], None, nx, ny, e))
         outcome = self._together(contacts, before, [self._mass_of(i) for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
+        if not active and stage.gravity is not None:
+            return self.resolve(component[:1])  # gravity closes these gaps: they are met, one by one
         changed = sorted({i for k in active for i in component[k][2:4] if i >= 0})
+        still = all(self._is_still(i, t) for i in changed)
         for i in changed:
             x, y = at[number[i]]
             for k in active:
                 if component[k].a == i and component[k].b < 0:
                     x, y = self._on_boundary(-1 - component[k].b, i, x, y)
+            self._free(i, t)
             state.anchor(i, t, x, y, *outcome.velocities[number[i]])
             state.forget_low_parts(i)
-            state.met[i] = tuple(self._met(component[k], i) for k in active if i in component[k][2:4])
-            self._note_time(i, t, False)
+            state.meet(i, tuple(self._met(component[k], i) for k in active if i in component[k][2:4]))
+            self._note_time(i, t, False, still)
         first = self._counters.events
         for k in active:
             self._note_joint(component[k], contacts[k], outcome.impulses[k], first)
@@ -277,11 +379,28 @@ class Resolver:
         state = self._state
         return contact_restitution(restitution, duration, t - state.contact_time[a], t - state.contact_time[b])
 
-    def _note_time(self, i: int, t: Real, idle: bool) -> None:
-        """Note a contact of disk i; of idle ones, which change nothing, a third at the same instant is too many."""
+    def _is_still(self, i: int, t: Real) -> bool:
+        """Whether disk i has not come further, since its flight began, than the last bits of its place."""
+        state = self._state
+        if not self._settles:
+            return False
+        return is_still(*state.place(i, t), state.vx[i], state.vy[i], *state.speed(i, t), t - state.t[i])
+
+    def _series(self, i: int, place: int) -> bool:
+        """Whether disk i met that straight wall already last."""
+        state = self._state
+        if state.supports is None or state.supports[place] is None:
+            return False
+        return len(state.met[i]) == 1 and state.met[i][0][0] == -1 - place
+
+    def _note_time(self, i: int, t: Real, idle: bool, still: bool) -> None:
+        """Note a contact of disk i; of idle ones, which change nothing, a third at the same instant is too many.
+
+        still: it is as good as at the instant of the one before, because the disk did not move in between.
+        """
         state = self._state
         weight = self.at_once_limit // 3 + 1 if idle else 1
-        again = t - state.contact_time[i] <= self._instant * t
+        again = still or t - state.contact_time[i] <= self._instant * t
         state.at_once[i] = state.at_once[i] + weight if again else weight
         state.contact_time[i] = t
 

@@ -8,10 +8,12 @@ from eventsim.engines.base import Snapshot
 from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Acceleration, Real
+from eventsim.formulas.rest import SUPPORTED, Support, held_by
 from eventsim.scene.stage import Stage
 
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
-"""Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, 0); several after a joint contact."""
+"""Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, STRUCK, SUPPORTED or LEFT); several after
+a joint contact."""
 
 
 class EngineState:
@@ -43,6 +45,10 @@ class EngineState:
         self.low_vx = [0.0] * n if self.low_parts else []
         self.low_vy = [0.0] * n if self.low_parts else []
         self.gravity_x, self.gravity_y = _accelerations(stage)
+        self._free_x, self._free_y = self.gravity_x, self.gravity_y
+        self.supports = stage.supports
+        if stage.supports is not None:
+            self.gravity_x, self.gravity_y = list(self._free_x), list(self._free_y)
         self.now: Real = number(0.0)
         self.epoch = 0
         self.epoch_length = stage.epoch_length
@@ -73,6 +79,23 @@ class EngineState:
         """From here on the velocity of disk i is a float."""
         if self.low_parts:
             self.low_vx[i] = self.low_vy[i] = 0.0
+    def meet(self, i: int, met: Met) -> None:
+        """Let disk i remember whom it met; what it rests on takes a part of its gravity, and anything else frees it."""
+        self.met[i] = met
+        if self.supports is not None:
+            self._pull(i)
+
+    def _pull(self, i: int) -> None:
+        support = self.support_of(i)
+        free = self._free_x[i], self._free_y[i]
+        self.gravity_x[i], self.gravity_y[i] = free if support is None else (support.ax, support.ay)
+
+    def support_of(self, i: int) -> Support | None:
+        """What disk i rests on; None in free flight."""
+        held = None if self.supports is None else held_by(self.met[i])
+        if held is None or held.how != SUPPORTED:
+            return None
+        return self.supports[held.place]  # type: ignore[index]
 
     def turn_over(self) -> None:
         """Begin a new window: every disk is advanced to the end of the old one, which becomes time 0."""
@@ -119,6 +142,9 @@ class EngineState:
         self.met, self.contact_time, self.at_once = list(saved.met), list(saved.contact_time), list(saved.at_once)
         self.low_vx, self.low_vy = list(saved.low_vx), list(saved.low_vy)
         self.count = [count + 1 for count in self.count]
+        if self.supports is not None:
+            for i in range(self.n):
+                self._pull(i)
 
 
 def _accelerations(stage: Stage) -> tuple[list[Acceleration], list[Acceleration]]:

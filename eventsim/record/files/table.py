@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, LABELS, ROW, Column, Rows, blank_rows
+from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, LABELS, ROW, Column, Kind, Rows, blank_rows
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance
 
@@ -88,7 +88,7 @@ def checked_log(provenance: Provenance, rows: Rows, path: Path) -> EventLog:
     if provenance.rows not in (None, len(rows)):
         raise LogError(f"{path}: holds {len(rows)} rows where {provenance.rows} were written; the file was cut off")
     count = len(provenance.scene.disks)
-    has_wall = rows["kind"] == LABELS.index("wall")
+    has_wall = (rows["kind"] == Kind.WALL) | (rows["kind"] == Kind.REST)
     clock = rows["epoch"], rows["remainder"]
     rules = {
         "events are not numbered 0, 1, 2, ...": rows["event"] != np.arange(len(rows)),
@@ -96,7 +96,7 @@ def checked_log(provenance: Provenance, rows: Rows, path: Path) -> EventLog:
         f"column b names no disk of the scene (0 to {count - 1})": (rows["b"] < -1) | (rows["b"] >= count),
         "a pair needs a second disk and only a pair has one": (rows["b"] >= 0) != (rows["kind"] == 0),
         "a pair needs two different disks": rows["a"] == rows["b"],
-        "a wall needs a name and only a wall has one": (rows["wall"] >= 0) != has_wall,
+        "a contact with a wall needs its name and only such a contact has one": (rows["wall"] >= 0) != has_wall,
         "joint is neither -1 nor an earlier event": (rows["joint"] < -1) | (rows["joint"] > rows["event"]),
         "the remainder is not a time >= 0": ~((clock[1] >= 0) & np.isfinite(clock[1])),
         "the epoch runs backwards": np.diff(clock[0], prepend=0) < 0,

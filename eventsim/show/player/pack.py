@@ -105,6 +105,7 @@ def scene_description(stage: Stage) -> dict[str, Any]:
         "epochLength": stage.epoch_length,
         "period": stage.period,
         "gravity": stage.gravity,
+        "slopes": None if stage.supports is None else stage.slopes.tolist(),
     }
 
 

@@ -25,21 +25,23 @@ class Column {
 }
 
 class World {
-  /* scene: {count, epochLength, period: [number | null, ...], gravity: [gx, gy] | null, disks: {x, y, vx, vy, radius, mass}}. */
+  /* scene: {count, epochLength, period: [number | null, ...], gravity: [gx, gy] | null, disks: {x, y, vx, vy, radius, mass},
+     slopes: the part of gravity that is left to a disk at rest on each wall, or null where none comes to rest}. */
   constructor(scene) {
     this.count = scene.count;
     this.epochLength = scene.epochLength;
     this.period = scene.period;
     this.gravity = scene.gravity;
+    this.slopes = scene.slopes;
     this.disks = scene.disks;
     this.anchor = {};
-    for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy"]) this.anchor[name] = new Column();
+    for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy", "gx", "gy"]) this.anchor[name] = new Column();
     this.event = {};
     for (const name of ["time", "a", "b", "kind", "wall"]) this.event[name] = new Column();
     this.anchorsOf = [];
     for (let i = 0; i < this.count; i++) {
       this.anchorsOf.push([]);
-      this._anchor(i, 0, 0, scene.disks.x[i], scene.disks.y[i], scene.disks.vx[i], scene.disks.vy[i]);
+      this._anchor(i, 0, 0, scene.disks.x[i], scene.disks.y[i], scene.disks.vx[i], scene.disks.vy[i], this._pull(i));
     }
     this.now = { x: new Float64Array(this.count), y: new Float64Array(this.count),
                  vx: new Float64Array(this.count), vy: new Float64Array(this.count) };
@@ -49,8 +51,9 @@ class World {
   append(rows) {
     for (let k = 0; k < rows.a.length; k++) {
       const epoch = rows.epoch[k], remainder = rows.remainder[k];
-      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k]);
-      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k]);
+      const rests = rows.kind[k] === REST, pull = rests ? this.slopes[rows.wall[k]] : this._pull(rows.a[k]);
+      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull);
+      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]));
       const last = this.event.time.length ? this.event.time.values[this.event.time.length - 1] : 0;
       this.event.time.push(Math.max(epoch * this.epochLength + remainder, last));
       for (const name of ["a", "b", "kind", "wall"]) this.event[name].push(rows[name][k]);
@@ -76,10 +79,10 @@ class World {
     for (let i = 0; i < this.count; i++) {
       const k = this.anchorsOf[i][this.anchorBefore(i, time)];
       const lag = this._lag(k, time);
-      x[i] = wrapped(this._place("x", 0, i, k, lag), this.period[0]);
-      y[i] = wrapped(this._place("y", 1, i, k, lag), this.period[1]);
-      vx[i] = this._velocity("vx", 0, i, k, lag);
-      vy[i] = this._velocity("vy", 1, i, k, lag);
+      x[i] = wrapped(this._place("x", k, lag), this.period[0]);
+      y[i] = wrapped(this._place("y", k, lag), this.period[1]);
+      vx[i] = this._velocity("x", k, lag);
+      vy[i] = this._velocity("y", k, lag);
     }
     return this.now;
   }
@@ -123,25 +126,25 @@ class World {
     for (let place = this.anchorBefore(i, from); place < list.length && times[list[place]] < to; place++) {
       const k = list[place], until = place + 1 < list.length ? Math.min(times[list[place + 1]], to) : to;
       const begin = Math.max(times[k], from), parts = this.gravity ? PARABOLA_PIECES : 1;
-      let x0 = this._place("x", 0, i, k, begin - times[k]), y0 = this._place("y", 1, i, k, begin - times[k]);
+      let x0 = this._place("x", k, begin - times[k]), y0 = this._place("y", k, begin - times[k]);
       for (let part = 1; part <= parts; part++) {
         const lag = begin - times[k] + ((until - begin) * part) / parts;
-        const x1 = this._place("x", 0, i, k, lag), y1 = this._place("y", 1, i, k, lag);
+        const x1 = this._place("x", k, lag), y1 = this._place("y", k, lag);
         piece(x0, y0, x1, y1);
         x0 = x1; y0 = y1;
       }
     }
   }
 
-  _turn(i, epoch, remainder, vx, vy) {
+  _turn(i, epoch, remainder, vx, vy, pull) {
     const k = this.anchorsOf[i][this.anchorsOf[i].length - 1];
     const lag = (epoch - this.anchor.epoch.values[k]) * this.epochLength + (remainder - this.anchor.remainder.values[k]);
-    const x = wrapped(this._place("x", 0, i, k, lag), this.period[0]);
-    const y = wrapped(this._place("y", 1, i, k, lag), this.period[1]);
-    this._anchor(i, epoch, remainder, x, y, vx, vy);
+    const x = wrapped(this._place("x", k, lag), this.period[0]);
+    const y = wrapped(this._place("y", k, lag), this.period[1]);
+    this._anchor(i, epoch, remainder, x, y, vx, vy, pull);
   }
 
-  _anchor(i, epoch, remainder, x, y, vx, vy) {
+  _anchor(i, epoch, remainder, x, y, vx, vy, pull) {
     const anchor = this.anchor;
     this.anchorsOf[i].push(anchor.time.length);
     anchor.epoch.push(epoch);
@@ -149,26 +152,29 @@ class World {
     anchor.time.push(epoch * this.epochLength + remainder);
     anchor.x.push(x); anchor.y.push(y);
     anchor.vx.push(vx); anchor.vy.push(vy);
+    anchor.gx.push(pull[0]); anchor.gy.push(pull[1]);
   }
 
   _lag(k, time) {
     return time - this.anchor.epoch.values[k] * this.epochLength - this.anchor.remainder.values[k];
   }
 
-  _pull(axis, i) {
-    return this.gravity && this.disks.mass[i] < Infinity ? this.gravity[axis] : 0;
+  _pull(i) {
+    return this.gravity && this.disks.mass[i] < Infinity ? this.gravity : WEIGHTLESS;
   }
 
-  _place(name, axis, i, k, lag) {
-    return this.anchor[name].values[k] + lag * (this.anchor["v" + name].values[k] + 0.5 * this._pull(axis, i) * lag);
+  _place(axis, k, lag) {
+    const { [axis]: at, ["v" + axis]: speed, ["g" + axis]: pull } = this.anchor;
+    return at.values[k] + lag * (speed.values[k] + 0.5 * pull.values[k] * lag);
   }
 
-  _velocity(name, axis, i, k, lag) {
-    return this.anchor[name].values[k] + this._pull(axis, i) * lag;
+  _velocity(axis, k, lag) {
+    return this.anchor["v" + axis].values[k] + this.anchor["g" + axis].values[k] * lag;
   }
 }
 
-const PARABOLA_PIECES = 8;
+const PARABOLA_PIECES = 8, WEIGHTLESS = [0, 0];
+const REST = 2;  // the kind of a row from which on a disk is supported by a wall
 
 function wrapped(x, period) {
   if (period === null) return x;

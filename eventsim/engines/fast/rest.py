@@ -1,0 +1,138 @@
+"""Coming to rest on straight walls; compiled only for scenes where that can be.
+
+Kernels predict it; what then happens is rare, and left to the reference engine's rules.
+"""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.advance import pulls
+from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.layout import (
+    FLAGS,
+    MET,
+    MET_KX,
+    MET_KY,
+    NOBODY,
+    RADIUS,
+    REALS,
+    RESTING,
+    SEVERAL,
+    SUPPORT,
+    SUPPORT_FACE,
+    SUPPORT_HIGH,
+    SUPPORT_LOW,
+    VX,
+    VY,
+    WALL,
+    WORDS,
+    T,
+    X,
+    Y,
+)
+from eventsim.engines.fast.memory import real, word
+from eventsim.engines.fast.met import side_met
+from eventsim.engines.fast.shapes import FACE, POST, WIDTH
+from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.real import NEVER
+from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, is_in_line, rest_delay, rest_on_face_delay, slide_delay
+from eventsim.formulas.walls.face import Face, face_side
+
+
+@inline
+def _face_at(numbers, k):
+    return Face(
+        real(numbers, k),
+        real(numbers, k + 1),
+        real(numbers, k + 2),
+        real(numbers, k + 3),
+        real(numbers, k + 4),
+        real(numbers, k + 5),
+        real(numbers, k + 6),
+        real(numbers, k + 7),
+        real(numbers, k + 8),
+    )
+
+
+@inline
+def rests(m, i):
+    """Whether disk i rests on a wall."""
+    return word(m.disks, i * WORDS + FLAGS) & RESTING != 0
+
+
+@part
+def border_contact(m, rules, i, place, side, target, x, v, g):
+    """(time, how) of the next event of disk i at a wall of the domain, which keeps its coordinate x at `target`."""
+    f = i * REALS
+    t = real(m.disks, f + T)
+    if rests(m, i) and word(m.disks, i * WORDS + MET) == -2 - place:
+        return NEVER, STRUCK
+    size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
+    delay = rest_delay(side * (x - target), side * v, side * g, size, rules.wall_restitution, t)
+    if delay < NEVER:
+        return t + delay, SUPPORTED
+    return t + crossing_delay(x, v, g, target, side), STRUCK
+
+
+@part
+def shape_rest(m, rules, i, k):
+    """(delay, side, how) where the next event of disk i at the k-th shape is not an impact, how STRUCK where it may be.
+
+    NEVER with another `how`: a disk on the line of the shape, or at its end, passes it.
+    """
+    f, w, s = i * REALS, i * WORDS, WIDTH * k
+    t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
+    x, y, vx, vy = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
+    ax, ay = pulls(m, rules, i)
+    place = rules.first_feature + k
+    met = word(m.disks, w + MET)
+    kind = real(m.features, s)
+    if SEVERAL < met < NOBODY and word(m.disks, w + MET_KY) != STRUCK:
+        how, on = word(m.disks, w + MET_KY), SUPPORT * (-2 - met)
+        line = _face_at(m.supports, on + SUPPORT_FACE)
+        if met == -2 - place and how == SUPPORTED:
+            low, high = real(m.supports, on + SUPPORT_LOW), real(m.supports, on + SUPPORT_HIGH)
+            return slide_delay(line, low, high, x, y, vx, vy, ax, ay), word(m.disks, w + MET_KX), LEFT
+        a, b = real(m.features, s + 2), real(m.features, s + 3)
+        end_x, end_y = a + real(m.features, s + 4), b + real(m.features, s + 5)
+        if kind == FACE and is_in_line(line, a, b) and is_in_line(line, end_x, end_y):
+            return NEVER, 0, LEFT
+        if kind == POST and how == SUPPORTED and is_in_line(line, a, b):
+            return NEVER, 0, LEFT
+    support = SUPPORT * place
+    low, high = real(m.supports, support + SUPPORT_LOW), real(m.supports, support + SUPPORT_HIGH)
+    if not low < high:  # this one supports nobody
+        return NEVER, 0, STRUCK
+    face = _face_at(m.supports, support + SUPPORT_FACE)
+    side = side_met(m, i, place)
+    if side == 0:
+        side = face_side(face, x, y, vx, vy)
+    delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, rules.wall_restitution, t)
+    return delay, side, SUPPORTED if delay < NEVER else STRUCK
+
+
+@part
+def is_for_rules(m, rules, i, code, time):
+    """Whether the reference engine's rules are to resolve an event: a disk of it rests, or comes to rest, or leaves a wall."""
+    if code >= 0:
+        return rests(m, i) or rests(m, code)
+    if code > WALL:
+        return False
+    if rests(m, i):
+        return True
+    wall_code = WALL - code
+    place = wall_code // 2
+    if place >= rules.first_feature:
+        return shape_rest(m, rules, i, place - rules.first_feature)[2] != STRUCK
+    f = i * REALS
+    r, side = real(m.disks, f + RADIUS), -1.0 if wall_code % 2 else 1.0
+    ax, ay = pulls(m, rules, i)
+    if rules.wall_x is not None and place < 2 and rules.wall_x == 0:
+        target = rules.width - r if side < 0.0 else r
+        return (
+            border_contact(m, rules, i, place, side, target, real(m.disks, f + X), real(m.disks, f + VX), ax)[1]
+            != STRUCK
+        )
+    target = rules.height - r if side < 0.0 else r
+    return (
+        border_contact(m, rules, i, place, side, target, real(m.disks, f + Y), real(m.disks, f + VY), ay)[1] != STRUCK
+    )
