@@ -79,6 +79,8 @@ def rest_delay(gap: Real, rate: Real, fall: Real, scale: Real, restitution: Real
     if not rate < 0.0:
         instant = AT_ONCE * t
         flight = (2.0 * rate) / -fall
+        if not rate > 0.0:
+            return 0.0
         if not flight > instant:
             late = LATEST * instant
             return flight / (1.0 - restitution) if flight < (1.0 - restitution) * late else late

@@ -144,7 +144,7 @@ class Contacts:
             target = where + side * disk.radius
             size = abs(disk.x) + abs(disk.y) + abs(target)
             delay, how = border_contact(
-                stage.supports, disk.held, place, side, target, x, v, g, size, stage.wall_restitution, disk.t
+                stage.supports, disk.held, place, side, target, x, v, g, size, stage.series_restitution, disk.t
             )
             return disk.t + delay, int(side), how
         shape = stage.features[place - self._boundaries].shape
@@ -153,7 +153,7 @@ class Contacts:
         delay_to = DELAYS[type(shape)]
         if stage.supports is None:
             return disk.t + (found := delay_to(shape, *flight, disk.radius, met))[0], found[1], STRUCK
-        e = stage.wall_restitution
+        e = stage.series_restitution
         delay, side, how = shape_contact(
             stage.supports, disk.held, place, shape, delay_to, flight, disk.radius, met, e, disk.t
         )

@@ -124,6 +124,11 @@ class Stage:
         return slopes
 
     @property
+    def series_restitution(self) -> float:
+        """The restitution of bounces that follow each other ever faster; in the TC model they are elastic in the end."""
+        return self.wall_restitution if self.contact_duration is None else 1.0
+
+    @property
     def settles(self) -> bool:
         """Whether disks end up lying on something: gravity, contacts that take energy, and no contact duration."""
         return self.gravity is not None and self.loses_energy and self.contact_duration is None
@@ -176,7 +181,7 @@ def stage_of(scene: Scene) -> Stage:
         size=size,
         boundaries=boundaries,
         features=features,
-        supports=_supports(scene, boundaries, features, wall_restitution == 1.0, x, y),
+        supports=_supports(scene, boundaries, features, wall_restitution == 1.0 or scene.contact_duration is not None, x, y),
         wall_names=(*names, *walls.feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,
@@ -238,11 +243,11 @@ def _supports(
 ) -> tuple[Support | None, ...] | None:
     """The supports of a scene in which disks can come to rest: walls take energy, or a disk lies on one at the start.
 
-    Not in the TC model, in which contacts that are close to each other take none.  A wall inside the domain that disks also
+    elastic: contacts that are close to each other take none, as in the TC model.  A wall inside the domain that disks also
     meet in an image supports nobody: so a disk on it does not reach the border, and a wrap ends no rest.
     """
     gravity, disks = scene.gravity, scene.disks
-    if gravity is None or (scene.restitution is not None and scene.contact_duration is not None):
+    if gravity is None:
         return None
     faces = [item.shape if isinstance(item.shape, Face) and not item.imaged else None for item in features]
     supports = supports_of([(one.axis, one.position) for one in boundaries], faces, gravity)

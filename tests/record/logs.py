@@ -41,7 +41,7 @@ def random_rows(count: int, seed: int = 1, disks: int = 4) -> Rows:
     rows["a"] = rng.integers(0, disks - 1, count)
     rows["epoch"] = np.sort(rng.integers(0, 100, count))
     rows["remainder"] = rng.random(count)
-    pair, wall = rows["kind"] == Kind.PAIR, rows["kind"] == Kind.WALL
+    pair, wall = rows["kind"] == Kind.PAIR, np.isin(rows["kind"], (Kind.WALL, Kind.REST))
     rows["b"][pair] = disks - 1
     rows["wall"][wall] = rng.integers(0, 4, int(wall.sum()))
     for name in (*FLOATS, *FLOATS_B):

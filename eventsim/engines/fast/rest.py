@@ -54,6 +54,12 @@ def _face_at(numbers, k):
 
 
 @inline
+def _series_restitution(restitution, duration):
+    """The restitution of bounces that follow each other ever faster; in the TC model they are elastic in the end."""
+    return restitution if duration is None else 1.0
+
+
+@inline
 def rests(m, i):
     """Whether disk i rests on a wall."""
     return word(m.disks, i * WORDS + FLAGS) & RESTING != 0
@@ -67,7 +73,7 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     if rests(m, i) and word(m.disks, i * WORDS + MET) == -2 - place:
         return NEVER, STRUCK
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
-    delay = rest_delay(side * (x - target), side * v, side * g, size, rules.wall_restitution, t)
+    delay = rest_delay(side * (x - target), side * v, side * g, size, _series_restitution(rules.wall_restitution, rules.duration), t)
     if delay < NEVER:
         return t + delay, SUPPORTED
     return t + crossing_delay(x, v, g, target, side), STRUCK
@@ -106,7 +112,7 @@ def shape_rest(m, rules, i, k):
     side = side_met(m, i, place)
     if side == 0:
         side = face_side(face, x, y, vx, vy)
-    delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, rules.wall_restitution, t)
+    delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, _series_restitution(rules.wall_restitution, rules.duration), t)
     return delay, side, SUPPORTED if delay < NEVER else STRUCK
 
 

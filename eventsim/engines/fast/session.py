@@ -384,7 +384,7 @@ class FastSession:
         return remainder_since(self.state.epoch, self.stage.epoch_length, until, self.stage.start_time)
 
     def _give_up(self, i: int) -> str:
-        stopped, self.reason = endless(self.stage, i, self.state.place(i, self.state.now))
+        stopped, self.reason = endless(self.state, self.stage, i)
         return stopped
 
     @property

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
+from eventsim.engines.collapse import named
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
@@ -191,8 +192,7 @@ class ReferenceSession:
         return remainder_since(self.state.epoch, self.stage.epoch_length, until, self.stage.start_time)
 
     def _give_up(self, i: int) -> str:
-        x, y = self.state.place(i, self.state.now)
-        stopped, self.reason = endless(self.stage, i, (float(x), float(y)))
+        stopped, self.reason = endless(self.state, self.stage, i)
         return stopped
 
     @property
@@ -228,18 +228,31 @@ class ReferenceSession:
         self._predict_afresh()
 
 
-def endless(stage: Stage, i: int, place: tuple[float, float]) -> tuple[str, str]:
-    """An instant that does not end: why a run stops there, and a sentence on disk i and what is known of it."""
+def endless(state: EngineState, stage: Stage, i: int) -> tuple[str, str]:
+    """An instant that does not end: why a run stops there, and a sentence on disk i, those around it and what is known."""
     inelastic = stage.pair_restitution < 1.0 or stage.wall_restitution < 1.0
     what = "collapse" if inelastic or stage.gravity is not None else "digits"
     cause = (
-        "its contacts follow one another faster than the clock can tell (inelastic collapse, or a disk at rest on another "
-        "one or on a wall); contact_duration, a time in the scene, lets such a scene go on"
+        "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
+        "on a round one); contact_duration, a time in the scene, lets such a scene go on"
         if what == "collapse"
-        else "its contacts at this instant do not end"
+        else "at this instant do not end"
     )
-    x, y = place
-    return what, f"disk {i} at ({x + stage.corner[0]:g}, {y + stage.corner[1]:g}): {cause}"
+    x, y = (float(at) for at in state.place(i, state.now))
+    x, y = x + stage.corner[0], y + stage.corner[1]
+    return what, f"the contacts of {named(_pile(state, i))} at ({x:g}, {y:g}) {cause}"
+
+
+def _pile(state: EngineState, i: int) -> list[int]:
+    """Disk i, and those that it is piled up with: one of two met the other one last, just now and over and over."""
+    again = [j for j in range(state.n) if state.at_once[j] > 1 and state.contact_time[j] == state.contact_time[i]]
+    pile, added = {i}, {i}
+    while added:
+        near = {j for j in again for one in added if any(met[0] == one for met in state.met[j])}
+        near |= {met[0] for one in added for met in state.met[one] if met[0] in again}
+        added = near - pile
+        pile |= added
+    return sorted(pile)
 
 
 def refused(error: SqueezedError | TwoSupportsError, component: list[Event]) -> tuple[str, str]:

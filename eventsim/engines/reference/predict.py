@@ -47,7 +47,7 @@ class Predictor:
         )
         self._period = stage.period
         self._falls = stage.gravity is not None
-        self._wall_restitution = stage.wall_restitution
+        self._series_restitution = stage.series_restitution
         self._unmoved = _classes(stage)
         everyone = list(range(stage.n))
         self._everyone: list[Group] = [(everyone, image) for image in images_of(stage)]
@@ -172,7 +172,7 @@ class Predictor:
             delay, how = crossing_delay(x[i], v[i], g[i], target, -step), STRUCK
         else:
             size = abs(state.x[i]) + abs(state.y[i]) + abs(target)
-            held, e = held_by(state.met[i]), self._wall_restitution
+            held, e = held_by(state.met[i]), self._series_restitution
             delay, how = border_contact(
                 state.supports, held, place, -step, target, x[i], v[i], g[i], size, e, state.t[i]
             )
@@ -191,7 +191,7 @@ class Predictor:
             delay, side = delay_to(shape, *flight, self._radius[i], met)
             how = STRUCK
         else:
-            held, e = held_by(state.met[i]), self._wall_restitution
+            held, e = held_by(state.met[i]), self._series_restitution
             delay, side, how = shape_contact(
                 state.supports, held, place, shape, delay_to, flight, self._radius[i], met, e, state.t[i]
             )
