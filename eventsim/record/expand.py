@@ -46,7 +46,7 @@ def expand_rows(log: EventLog) -> Rows:
     Raises LogError where the rows do not follow from the scene.
     """
     expansion = Expansion(log)
-    if len(log) >= MANY_ROWS and find_spec("numba") is not None:
+    if len(log) >= MANY_ROWS and expansion.stage.supports is None and find_spec("numba") is not None:
         return _expanded_by_kernels(expansion, log)
     rows = log.rows.copy()
     numbers = expansion.numbers()

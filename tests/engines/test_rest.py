@@ -286,7 +286,7 @@ def test_engines_agree_on_what_comes_to_rest():
 @pytest.mark.parametrize("suffix", [".csv", ".npz", ".jsonl"])
 @pytest.mark.parametrize("compact", [False, True])
 def test_files_of_rests_and_slides_replay(tmp_path, suffix, compact):
-    scene, along, normal = ramp(0.5, 4.0)
+    scene = ramp(0.5, 4.0)[0]
     path = tmp_path / f"slide{suffix}"
     run = es.simulate(scene, until=4.0, engine="reference", log=path, compact=compact)
     log = es.load_log(path).expand()

@@ -54,7 +54,7 @@ def _face_at(numbers, k):
 
 
 @inline
-def _series_restitution(restitution, duration):
+def _series(restitution, duration):
     """The restitution of bounces that follow each other ever faster; in the TC model they are elastic in the end."""
     return restitution if duration is None else 1.0
 
@@ -73,7 +73,8 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     if rests(m, i) and word(m.disks, i * WORDS + MET) == -2 - place:
         return NEVER, STRUCK
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
-    delay = rest_delay(side * (x - target), side * v, side * g, size, _series_restitution(rules.wall_restitution, rules.duration), t)
+    restitution = _series(rules.wall_restitution, rules.duration)
+    delay = rest_delay(side * (x - target), side * v, side * g, size, restitution, t)
     if delay < NEVER:
         return t + delay, SUPPORTED
     return t + crossing_delay(x, v, g, target, side), STRUCK
@@ -112,7 +113,8 @@ def shape_rest(m, rules, i, k):
     side = side_met(m, i, place)
     if side == 0:
         side = face_side(face, x, y, vx, vy)
-    delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, _series_restitution(rules.wall_restitution, rules.duration), t)
+    restitution = _series(rules.wall_restitution, rules.duration)
+    delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t)
     return delay, side, SUPPORTED if delay < NEVER else STRUCK
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.fast import layout
-from eventsim.engines.fast.advance import place, pull, wrap
+from eventsim.engines.fast.advance import place, pulls, wrap
 from eventsim.engines.fast.compiled import inline, kernel, link, part
 from eventsim.engines.fast.layout import (
     NOBODY,
@@ -112,6 +112,7 @@ class Retracer:
             low=self.state.low.reshape(-1) if self.state.low_parts else None,
             features=self._features,
             levels=None,
+            supports=None,  # scenes in which disks come to rest are left to `eventsim.record.expand`
             rows=self._rows,
         )
         crowd = Crowd(self.state.n)
@@ -194,8 +195,8 @@ def _next_wrap(m, rules, i):
     """(time, code) of the next wrap; of equal ones the one that `eventsim.record.disk_flight` takes."""
     f = i * REALS
     t = real(m.disks, f + T)
-    x, u, gx = real(m.disks, f + X), real(m.disks, f + VX), pull(m, i, rules.gx, rules.classes)
-    y, w, gy = real(m.disks, f + Y), real(m.disks, f + VY), pull(m, i, rules.gy, rules.classes)
+    gx, gy = pulls(m, rules, i)
+    x, u, y, w = real(m.disks, f + X), real(m.disks, f + VX), real(m.disks, f + Y), real(m.disks, f + VY)
     first, code = _next_across(NEVER, NO_CODE, t, x, u, gx, rules.length_x, WRAP_LEFT, WRAP_RIGHT)
     return _next_across(first, code, t, y, w, gy, rules.length_y, WRAP_DOWN, WRAP_UP)
 
@@ -228,8 +229,8 @@ def _wall_met(m, rules, i, wall, t, features):
     """The code of the contact that disk i has with a wall at a time; NO_CODE where there is none, or several."""
     f = i * REALS
     begin, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
-    x, u, gx = real(m.disks, f + X), real(m.disks, f + VX), pull(m, i, rules.gx, rules.classes)
-    y, w, gy = real(m.disks, f + Y), real(m.disks, f + VY), pull(m, i, rules.gy, rules.classes)
+    gx, gy = pulls(m, rules, i)
+    x, u, y, w = real(m.disks, f + X), real(m.disks, f + VX), real(m.disks, f + Y), real(m.disks, f + VY)
     if wall < rules.first_feature:
         code = _wall_across(begin, x, u, gx, r, rules.width, wall, t, rules.wall_x)
         return code if code != NO_CODE else _wall_across(begin, y, w, gy, r, rules.height, wall, t, rules.wall_y)
@@ -254,7 +255,7 @@ def _shape_met(m, rules, i, wall, t, features):
         return code
     for k in range(features):
         if real(m.features, WIDTH * k + 1) == wall:
-            time, side = shape_time(m, rules, i, k)
+            time, side, _ = shape_time(m, rules, i, k, m.supports)
             if time == t:
                 if code != NO_CODE:
                     return NO_CODE
