@@ -353,13 +353,21 @@ def pair_time(m, rules, i, j, kx, ky):
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
-    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, rules.classes)
+    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, _or(rules.classes, m.supports))
 
 
 @inline
-def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, classes):
+def _or(classes, supports):
+    """None where all disks of the scene fall alike."""
+    if classes is None and supports is None:
+        return None
+    return 1
+
+
+@inline
+def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, unlike):
     ri, rj = real(m.disks, i * REALS + RADIUS), real(m.disks, j * REALS + RADIUS)
-    if ax is not None and classes is not None and (ax != bx or ay != by):
+    if ax is not None and unlike is not None and (ax != bx or ay != by):
         return circle_delays(dx, dy, du, dw, ax - bx, ay - by, ri + rj, 1.0)[0]
     delay = screened_pair_delay(dx, dy, du, dw, ri + rj)
     if delay == delay:
