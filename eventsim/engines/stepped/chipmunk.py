@@ -90,7 +90,7 @@ class ChipmunkSession(SteppedSession):
 
     def _solved(self, arbiter: Any, space: Any, data: Any) -> None:
         one, other = arbiter.shapes
-        impulse = arbiter.total_impulse.length
+        impulse = math.hypot(*arbiter.total_impulse)  # its own length squares, which overflows
         depth = max((-point.distance for point in arbiter.contact_point_set.points), default=0.0)
         i, j = self._disk_of.get(one), self._disk_of.get(other)
         if i is None:
