@@ -73,7 +73,7 @@ def test_two_disks_in_a_hard_box():
     """Unit box, r = .2: pair rate 4.15547414, hits on the four walls 9.57666101, force on each wall 5.64111898."""
     sums = BatchSums()
     for seed in range(4):
-        sums.take(hard_box(seed), 150_000_000)
+        sums.take(hard_box(seed), 200_000_000)
     assert holds(sums.per_time(PAIRS), 4.15547414)
     assert holds(sums.per_time(WALLS), 9.57666101)
     assert holds(sums.per_time(WALL_IMPULSE), 4.0 * 5.64111898)
