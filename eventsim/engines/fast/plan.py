@@ -36,6 +36,9 @@ CLASS = 4.0
 FEWEST_SEEN = 3
 """Along a period: with fewer columns, cells on both sides of one would be the same."""
 
+ORDERED_DISKS = 200
+"""From here on neighbours are put near each other in memory."""
+
 MANY_DISKS = 50_000
 """From here on the records outgrow the caches: memory is prefetched, and days are shorter."""
 

@@ -16,7 +16,7 @@ from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.order import along_a_curve
-from eventsim.engines.fast.plan import MANY_DISKS, Sizes, day_length, shortest_day
+from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortest_day
 from eventsim.engines.fast.rules import features_of, kind_of, rules_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.calendar import CONTACT, Event
@@ -75,7 +75,7 @@ class FastSession:
         plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
         wanted = lanes_work() if lanes is None else lanes
         self._lanes = 8 if wanted and straight and plain else None
-        order = along_a_curve(stage.x, stage.y) if stage.n >= MANY_DISKS else np.arange(stage.n)
+        order = along_a_curve(stage.x, stage.y) if stage.n >= ORDERED_DISKS else np.arange(stage.n)
         self.state = FastState(stage, order, self._counts)
         self._columns = (*COLUMNS, *LOW_COLUMNS) if stage.low_parts else COLUMNS
         self._rules = rules_of(stage)

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 import eventsim as es
 from eventsim.engines.base import Session, Stop
 from eventsim.engines.fast import FastSession, grids, plan
-from eventsim.engines.fast import session as fast_session
 from eventsim.engines.fast.plan import Sizes
 from eventsim.engines.reference import ReferenceSession
 from eventsim.record.digest import digest_of
@@ -129,7 +128,7 @@ def test_scalar_kernel_and_lanes_and_two_cell_sizes_agree() -> None:
 def test_what_is_done_for_many_disks_changes_no_bit(
     domain: str, quantised: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (plan, grids, fast_session):  # the order in memory, prefetches, the calendar's waiting room
+    for module in (plan, grids):  # prefetches, the calendar's waiting room
         monkeypatch.setattr(module, "MANY_DISKS", 0)
     gas = lattice_gas(20, 20, 1.25, np.random.default_rng(6), domain, quantised, 0.0)
     assert_same(stage_of(gas), Stop(events=12_000))
