@@ -71,7 +71,7 @@ def test_with_a_contact_duration_the_run_goes_on():
     assert es.simulate(gentle, until=10.0, engine="reference").stopped in ("until", "quiet")
 
 
-@pytest.mark.parametrize(("ratio", "most"), [(100.0, 100_000), (1e16, 800_000_000), (1e300, MOST_AT_ONCE)])
+@pytest.mark.parametrize(("ratio", "most"), [(100.0, 100_000), (1e16, 800_000_000), (1e150, MOST_AT_ONCE)])
 def test_uneven_masses_may_have_as_many_contacts_at_one_instant_as_the_law_gives_them(ratio, most):
     """Between a heavy disk and a wall a light one has pi sqrt(M/m): 314159265 of them for 1e16."""
     assert instant_of(stage_of(es.gallery("galperin", mass_ratio=ratio)))[1] == most
