@@ -391,3 +391,21 @@ def test_the_state_at_a_time_of_the_log_is_the_state_after_that_event():
 def test_a_time_that_the_clock_cannot_count_is_refused():
     with pytest.raises(es.EventsimError, match="the clock of this scene ends at"):
         es.simulate(pair_scene([[0.0, 0.0]], [[1.0, 0.0]]), until=1e300)
+
+
+@pytest.mark.parametrize("k", [20, 40, 50, 52])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_f7_the_sign_of_the_smallest_gap_decides(k, sign):
+    scene = es.Scene(
+        disks=es.Disks(
+            [(0.0, 0.0), (0.5, 0.0), (1.0 + sign * 2.0**-k, 0.0)],
+            [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)],
+            0.125,
+            (1.0, 3.0, 1.0),
+        ),
+        domain=es.Open(),
+    )
+    run = es.simulate(scene, until=10.0, engine="reference")
+    expected = (-0.5, -0.25, 1.25) if sign > 0 else (-1.25, 0.25, 0.5)
+    assert run.state.velocity[:, 0].tolist() == list(expected)
+    assert run.counters.clusters == 0
