@@ -75,9 +75,13 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    commit = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
+    ).stdout.strip()
     print(" ".join(f"{name:>14}" for name in COLUMNS))
-    table = [row | {"commit": commit} for scene in chosen.scene for row in measure(scene, chosen.events, chosen.repeats)]
+    table = [
+        row | {"commit": commit} for scene in chosen.scene for row in measure(scene, chosen.events, chosen.repeats)
+    ]
     if chosen.csv is not None:
         with chosen.csv.open("w", newline="") as stream:
             writer = csv.DictWriter(stream, [*COLUMNS, "commit"])

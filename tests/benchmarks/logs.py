@@ -30,7 +30,9 @@ def run_once(scene: es.Scene, kind: str, contacts: int, folder: Path) -> tuple[f
     suffix, _, compact = kind.partition(" ")
     path = folder / f"log.{suffix}"
     begun = perf_counter(), thread_time(), process_time()
-    run = es.simulate(scene, events=contacts, engine="fast", log=False if kind == "none" else path, compact=bool(compact))
+    run = es.simulate(
+        scene, events=contacts, engine="fast", log=False if kind == "none" else path, compact=bool(compact)
+    )
     ended = perf_counter(), thread_time(), process_time()
     size = 0 if kind == "none" else path.stat().st_size
     path.unlink(missing_ok=True)
@@ -78,12 +80,16 @@ def main() -> None:
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
     parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    commit = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
+    ).stdout.strip()
     table = []
     print(" ".join(f"{name:>15}" for name in COLUMNS))
     for n in chosen.n:
         for eta in chosen.eta:
-            for row in measure(n, eta, chosen.contacts, chosen.repeats, ["none", *(k for k in chosen.kinds if k != "none")]):
+            for row in measure(
+                n, eta, chosen.contacts, chosen.repeats, ["none", *(k for k in chosen.kinds if k != "none")]
+            ):
                 table.append({**row, "commit": commit})
                 print(" ".join(f"{row[name]!s:>15}" for name in COLUMNS), flush=True)
     if chosen.csv is not None:

@@ -124,7 +124,9 @@ def pymunk_seconds(scene: es.Scene) -> Timed:
     return timed
 
 
-def compare(peer: str, n: int, eta: float, unit: str, peer_rate: Timed, own_rate: Timed, repeats: int) -> dict[str, object]:
+def compare(
+    peer: str, n: int, eta: float, unit: str, peer_rate: Timed, own_rate: Timed, repeats: int
+) -> dict[str, object]:
     """A row of the table."""
     own_rate()  # loads the kernels
     found = [(peer_rate(), own_rate()) for _ in range(repeats)]
@@ -139,7 +141,9 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    commit = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
+    ).stdout.strip()
     print(" ".join(f"{name:>18}" for name in COLUMNS))
     table = []
     for eta in (0.1, 0.3):

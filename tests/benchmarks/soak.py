@@ -127,7 +127,7 @@ def draw(looks: list[Look], title: str, path: Path) -> None:
     for panel, (name, values) in zip(panels, series.items(), strict=True):
         panel.plot(x, values, color="#1f5a99", lw=1.2)
         panel.set_ylabel(name, fontsize=8)
-        panel.set_ylim(bottom=0.0)
+        panel.set_ylim(0.0, 1.1 * max(values) or 1.0)
     panels[0].axhline(MOST_DRIFT, color="#aa3333", ls="--", lw=0.8)
     panels[2].axhline(MOST_OVERLAP, color="#aa3333", ls="--", lw=0.8)
     panels[-1].set_xlabel("contacts")

@@ -89,6 +89,7 @@ CLOSING = [
     (1.0, 2.0, 1.0, NEVER),
     (-1.0, 2.0, -2.0, 1.0),  # closed, and its apex only touches: due when it falls
     (-5.0, 2.0, -2.0, 1.0),  # never opens: due when it begins to fall
+    (0.0, 0.5, -2.0, 0.5),
 ]
 
 
@@ -129,6 +130,7 @@ def test_a_coordinate_is_watched_from_its_side():
     [
         (1.0, 3.0, (0.25, 0.75), 0.75),
         (2.0, 2.0, (0.5, 0.5), 1.0),
+        (3.0, 1.0, (0.75, 0.25), 0.75),
         (INF, 3.0, (1.0, 0.0), 3.0),
         (3.0, INF, (0.0, 1.0), 3.0),
         (0.0, 3.0, (0.0, 1.0), 0.0),
@@ -162,7 +164,9 @@ def test_a_pair_keeps_momentum_and_turns_its_approach_round(restitution):
     )
 
 
-@pytest.mark.parametrize("before", [(1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0)])
+@pytest.mark.parametrize(
+    "before", [(1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0), (0.5, 0.0, 0.0, 0.0)]
+)
 def test_a_pair_that_does_not_approach_is_left_alone(before):
     assert impulse.pair_update(1.0, 0.0, *before, 0.5, 0.5, 1.0) == (*before, 0.0)
 
@@ -177,6 +181,8 @@ def test_walls_reflect():
     assert impulse.flat_update(3.0, -1.0, 0.5) == (-1.5, -4.5)
     assert impulse.flat_update(3.0, 1.0, 1.0) == (3.0, 0.0)
     assert impulse.flat_update(0.0, 1.0, 1.0) == (0.0, 0.0)
+    assert impulse.flat_update(0.25, 1.0, 1.0) == (0.25, 0.0)
+    assert impulse.wall_update(1.0, 1.0, 0.25, 0.25, 1.0) == (0.25, 0.25, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -234,6 +240,8 @@ SLOPE = faces.face(1.0, 2.0, 5.0, 5.0)
         ((5.0, 5.0), (0.0, 1.0), 1),
         ((5.0, 5.0), (0.0, -1.0), -1),
         ((5.0, 5.0), (4.0, 3.0), -1),
+        ((1.0, 2.125), (0.0, 0.0), 1),
+        ((1.0, 2.0), (0.0, 0.125), 1),
         ((5.0, 5.0), (-1.0, 0.0), 1),
         ((0.0, 0.0), (0.0, 0.0), -1),
     ],
