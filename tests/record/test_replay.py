@@ -131,6 +131,7 @@ def _clock(epoch_length: float, time: float) -> tuple[int, float]:
 
 
 numbers = st.floats(-8.0, 8.0)
+pulls = numbers.map(lambda g: g if abs(g) > 1e-150 else 0.0)  # what a scene takes for a gravity
 
 
 @given(x=numbers, v=numbers, g=st.one_of(st.none(), numbers), target=st.sampled_from([0.0, 4.0]))
@@ -144,7 +145,7 @@ def test_crossings_of_many_are_those_of_one(x: float, v: float, g: float | None,
 @settings(max_examples=40, deadline=None)  # under gravity a flight may wrap thousands of times
 @given(
     places=st.lists(st.tuples(st.floats(0.0, 3.5), st.floats(0.0, 1.5), numbers, numbers), min_size=1, max_size=4),
-    gravity=st.one_of(st.none(), st.tuples(numbers, numbers)),
+    gravity=st.one_of(st.none(), st.tuples(pulls, pulls)),
     window=st.integers(0, 1),
     share=st.floats(0.0, 0.99),
 )
