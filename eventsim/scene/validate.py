@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 # Of many problems of one kind so many are written out; the rest are counted.
 WRITTEN_OUT = 3
+
+LIGHTEST, MOST_ENERGY = 1e-320, 1e300
+"""A mass that has a half; an energy of which many can be added."""
+
 NO_DISKS = "disk: a scene needs at least one disk"
 
 
@@ -66,9 +70,7 @@ def touching_by_rounding(scene: Scene) -> list[str]:
     touch = "overlap by {:.3g}: touching, but for rounding"
     return [
         *_summary(pairs, "pairs like this", lambda i, j, d: f"disk[{i}] and disk[{j}] " + touch.format(d)),
-        *_summary(
-            walls, "disks at walls", lambda i, w, d: f"disk[{i}] and wall {pieces[w].name} " + touch.format(d)
-        ),
+        *_summary(walls, "disks at walls", lambda i, w, d: f"disk[{i}] and wall {pieces[w].name} " + touch.format(d)),
         *_summary(
             sides,
             "disks at a side",
@@ -128,8 +130,8 @@ def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -
                 RADII,
             ),
             "mass": (
-                (disks.mass == 0.0) | ((disks.mass >= SHORTEST) & (disks.mass <= LONGEST)) | (disks.mass == np.inf),
-                f"must be at least 0 (inf: cannot be deflected), else from {SHORTEST} to {LONGEST}",
+                (disks.mass == 0.0) | (disks.mass >= LIGHTEST),
+                f"must be at least 0 (inf: cannot be deflected; 0: deflects nobody; no other below {LIGHTEST})",
             ),
         }
     problems: list[str] = []
@@ -155,8 +157,8 @@ def _scale_problems(scene: Scene) -> list[str]:
         problems.append(f"velocity: {fastest:g} times the largest length, {extent:g}, must be at most {LONGEST}")
     if pull * extent > LONGEST:
         problems.append(f"gravity: {pull:g} times the largest length, {extent:g}, must be at most {LONGEST}")
-    if not heaviest * max(fastest, 1.0) * max(fastest, pull * extent) <= LONGEST:
-        problems.append(f"mass: the energy of a disk of mass {heaviest:g} must be at most {LONGEST}")
+    if not heaviest * max(fastest, 1.0) * max(fastest, pull * extent, 1.0) <= MOST_ENERGY:
+        problems.append(f"mass: {heaviest:g}, and the energy of such a disk, must be at most {MOST_ENERGY}")
     return problems
 
 
