@@ -198,7 +198,7 @@ def test_the_sign_of_the_smallest_gap_decides(k, sign):
     assert session.motion().vx.tolist() == list(expected)
 
 
-@pytest.mark.parametrize(("e", "events"), [(0.08, 11), (0.0719, 89)])
+@pytest.mark.parametrize(("e", "events"), [(0.08, 11), (0.0719, 89), (0.0718, 504)])
 def test_a_chain_that_just_does_not_collapse_is_counted(e, events):
     session, stopped = certified(
         line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0)), until=100.0
@@ -206,11 +206,15 @@ def test_a_chain_that_just_does_not_collapse_is_counted(e, events):
     assert (stopped, session.proven) == ("quiet", events)
 
 
-def test_a_collapse_is_told():
-    scene = line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(0.05, 1.0))
+@pytest.mark.parametrize(("e", "time"), [(0.05, 12.0 / 7.0), (0.0717, 1.78303658286)])
+def test_a_collapse_is_told(e, time):
+    """The times from 900 decimal digits; the second restitution is just below the limit 7 - 4 sqrt 3 of a collapse."""
+    scene = line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0))
     session, stopped = certified(scene, until=100.0)
     assert stopped == "collapse"
     assert "collapse" in session.reason
+    epoch, remainder = session.clock
+    assert epoch * session.stage.epoch_length + remainder == pytest.approx(time, abs=1e-11)
 
 
 @pytest.mark.parametrize("name", ["corner", "newton-cradle", "tie", "two-disks"])

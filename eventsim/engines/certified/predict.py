@@ -72,7 +72,7 @@ class Screen:
             least = np.maximum(cross - slack, 0.0)
             largest = speed2 * reach2 + slack * fast * self._reach.max()
             root = np.sqrt(np.maximum(largest - least * least, 0.0))
-            with np.errstate(divide="ignore", invalid="ignore"):
+            with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
                 earliest = begin + (c - MARGIN * size * size) / (root + slack - b)
             late = (earliest > self.held_up[i]) | (earliest > self.held_up)
             misses = (b > slack) | (least * least > largest) | (late & (b < 0.0) & (c > MARGIN * size * size))
