@@ -16,7 +16,7 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
     """Validate SCENE, and explain what it has and which machinery it gets for that.
 
     A scene with problems is answered with all of them at once, each naming the key or the disks, the value
-    and the rule.
+    and the rule.  A warning tells where its outcome hangs on the last bits of its numbers.
 
     \b
     Examples:
@@ -44,6 +44,9 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
       images                      periodic images in which a disk can be met: 1, 3 or 9
       touching_pairs              pairs at contact at the start
       touching_notes              starting overlaps so small that they count as touching
+      near_ties                   a list {first, second, time, apart}: contacts [a, b or wall] in a short run
+                                  that share a disk and that only rounding parts; null in scenes of more
+                                  than 1,000 disks
       until, events, engine       the stop of the scene; what auto chooses
       horizon                     null without --horizon; {event, time} of the first contact that runs from
                                   starts a last bit apart disagree on (null: none; exact ties part them at

@@ -11,6 +11,7 @@ from eventsim.engines.reference.cells import ENOUGH_DISKS
 
 if TYPE_CHECKING:
     from eventsim.cli.needs import Needs
+    from eventsim.engines.near_ties import NearTie
 
 DOMAINS = {
     "box": "hard walls left, right, bottom and top",
@@ -39,6 +40,8 @@ def explanation(needs: Needs) -> Iterator[tuple[str, str]]:
     yield "contacts", _contacts(needs)
     if needs.touching_pairs or needs.touching_notes:
         yield "start", _start(needs)
+    if needs.near_ties:
+        yield "warning", _near_ties(needs.near_ties)
     yield "search", _search(needs)
     yield "clock", _clock(needs)
     yield "engine", _engine(needs)
@@ -124,6 +127,21 @@ def _start(needs: Needs) -> str:
         pairs = "1 pair touches" if needs.touching_pairs == 1 else f"{needs.touching_pairs:,} pairs touch"
         sentences.insert(0, f"{pairs}; contacts of one instant that share disks are resolved together")
     return "; ".join(sentences)
+
+
+def _near_ties(ties: tuple[NearTie, ...]) -> str:
+    first = ties[0]
+    one, other = (_contact(*contact) for contact in (first.first, first.second))
+    more = f", and {plural(len(ties) - 1, 'more pair')} of contacts like these" if len(ties) > 1 else ""
+    return (
+        f"{one} meet at time {short(first.time)}, and {other} only {first.apart:.2g} later{more}: the last bits of the start "
+        "decide which comes first, and all that follows hangs on it; coordinates of few binary digits make it one time, "
+        "and contacts of one time are resolved together"
+    )
+
+
+def _contact(a: int, b: int | str) -> str:
+    return f"disks {a} and {b}" if isinstance(b, int) else f"disk {a} and wall {b}"
 
 
 def _search(needs: Needs) -> str:

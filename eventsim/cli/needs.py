@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eventsim.engines.auto import first_engine
+from eventsim.engines.near_ties import NearTie, near_ties
 from eventsim.engines.reference.cells import images_of, plan
 from eventsim.scene.disks import Disks
 from eventsim.scene.overlaps import pair_overlaps
@@ -71,6 +72,7 @@ class Needs:
         images: in how many periodic images a disk can be met from inside the domain: 1, 3 or 9.
         touching_pairs: pairs of disks at contact at the start, exactly or but for rounding.
         touching_notes: sentences on starting overlaps so small that they count as touching.
+        near_ties: contacts in a short run that share a disk and that only rounding parts; None where nobody looked.
         until, events: the stop that the scene carries.
         engine: what `auto` chooses.
     """
@@ -102,13 +104,14 @@ class Needs:
     images: int
     touching_pairs: int
     touching_notes: tuple[str, ...]
+    near_ties: tuple[NearTie, ...] | None
     until: float | None
     events: int | None
     engine: str
 
 
 def needs_of(scene: Scene) -> Needs:
-    """Return the facts about a scene; O(N log N) for N disks."""
+    """Return the facts about a scene; O(N log N) for N disks, and a short run where these are few."""
     disks, domain, stage = scene.disks, scene.domain, stage_of(scene)
     species, species_count = _species(disks)
     speed = np.hypot(disks.velocity[:, 0], disks.velocity[:, 1])
@@ -142,6 +145,7 @@ def needs_of(scene: Scene) -> Needs:
         images=len(images_of(stage)),
         touching_pairs=_touching_pairs(scene),
         touching_notes=tuple(touching_by_rounding(scene)),
+        near_ties=near_ties(scene),
         until=scene.until,
         events=scene.events,
         engine=first_engine(stage),

@@ -73,6 +73,19 @@ def test_touching_by_rounding_is_said(eventsim, scene_file):
     assert "touching, but for rounding" in result.stdout
 
 
+def test_an_outcome_that_hangs_on_the_last_bit_is_told(eventsim):
+    hanging = eventsim("check", "tie", "--set", "delay=1e-15")
+    assert hanging.exit_code == 0
+    told = " ".join(hanging.stdout.split())
+    assert (
+        "warning disks 0 and 1 meet at time 3, and disks 0 and 2 only 1.3e-15 later: the last bits of the start" in told
+    )
+    for delay in ("0", "1e-9"):  # an exact tie is resolved jointly; a billionth is no rounding
+        assert "warning" not in eventsim("check", "tie", "--set", f"delay={delay}").stdout
+    facts = json.loads(eventsim("check", "tie", "--set", "delay=1e-15", "--json").stdout)
+    assert [(tie["first"], tie["second"]) for tie in facts["near_ties"]] == [([0, 1], [0, 2])]
+
+
 def test_all_problems_come_at_once(eventsim, scene_file):
     scene_file.write_text(scene_file.read_text().replace("radius = 0.25", "radius = -1.0\nspin = 2"))
     result = eventsim("check", scene_file)
