@@ -3,11 +3,13 @@
 import math
 import re
 
+import numpy as np
 import pytest
 
 import eventsim as es
 from eventsim.engines.reference.resolve import MOST_AT_ONCE, instant_of
 from eventsim.scene.stage import stage_of
+from tests.engines.scenes import lattice_gas
 
 
 def bounce(**changes):
@@ -69,6 +71,23 @@ def test_with_a_contact_duration_the_run_goes_on():
     scene = es.gallery("collapse", restitution=0.05)
     gentle = es.Scene(scene.disks, scene.domain, restitution=0.05, contact_duration=1e-3)
     assert es.simulate(gentle, until=10.0, engine="reference").stopped in ("until", "quiet")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("duration", [None, 1e-6])
+def test_ten_thousand_inelastic_disks_collapse_with_a_diagnosis_or_have_a_hundred_contacts_each(duration):
+    pytest.importorskip("numba")
+    scene = lattice_gas(10_000, 0.4, restitution=0.6, contact_duration=duration)
+    run = es.simulate(scene, events=500_000, engine="fast")  # each of two disks
+    if duration is None:
+        assert run.stopped in ("collapse", "digits")
+        assert re.search(r"disks,? \d+, .* at time [\d.]+", run.reason)
+        assert "contact_duration" in run.reason
+    else:
+        assert run.stopped == "events"
+        assert np.isfinite(run.state.velocity).all()
+    assert run.residuals.max_overlap < 1e-12  # some hundred last bits of a coordinate, 140
+    assert run.residuals.momentum < 1e-14
 
 
 @pytest.mark.parametrize(("ratio", "most"), [(100.0, 100_000), (1e16, 800_000_000), (1e150, MOST_AT_ONCE)])
