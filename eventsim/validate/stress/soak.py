@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -18,7 +18,7 @@ EVENTS, UNTIL = 80, 50.0
 """Where a run of the soak stops; a scene without contacts at its time."""
 
 LIMIT = 5.0
-"""Seconds for one run; a longer one has hung."""
+"""Seconds for one run, of computing and without compiling; a longer one has hung."""
 
 MOST_DISKS, TRIES = 7, 40
 
@@ -81,11 +81,13 @@ def _first_finding(seed: int, engines: tuple[str, ...]) -> Finding | None:
     scene = random_scene(seed)
     first: Run | None = None
     for engine in engines:
-        began = perf_counter()
+        began = process_time()
         run = simulate(scene, engine=engine, log=True)
+        # The processor's clock does not see that other programs are at work, the elapsed time not that kernels were compiled.
+        seconds = min(process_time() - began, run.elapsed_s)
         sentence = _fault(run)
-        if sentence is None and run.elapsed_s > LIMIT:
-            sentence = f"took {perf_counter() - began:.1f} s"
+        if sentence is None and seconds > LIMIT:
+            sentence = f"took {seconds:.1f} s"
         if sentence is None and first is not None:
             sentence = _difference(first, run)
         if sentence is not None:
