@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
-from eventsim.cli.exits import FAILED
+from eventsim.cli.exits import FAILED, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
 from eventsim.cli.target import writable
+
+if TYPE_CHECKING:
+    from eventsim.validate.stress.soak import Finding
 
 FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 
@@ -86,7 +91,8 @@ def command(
       out, csv             the files written (null without)
       of --soak: soak, seed, engines, findings (a list: seed, engine, sentence), faults
 
-    Exit codes: 0 done; 1 an event-driven engine is at fault; 2 bad usage; 130 interrupted.
+    Exit codes: 0 done; 1 an event-driven engine is at fault; 2 bad usage; 130 interrupted (a soak tells what
+    it found so far).
     """
     if soak is not None:
         if names or out or table:
@@ -134,21 +140,28 @@ def command(
 
 
 def _soak(seeds: range, engines: tuple[str, ...], as_json: bool, quiet: bool) -> None:
-    """Run the soak; print what was found."""
+    """Run the soak; print what was found, also up to an interrupt."""
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.verdicts import soak_data, soak_text
     from eventsim.cli.words import as_json_text
     from eventsim.validate.stress.soak import soak
 
-    findings = []
-    with ProgressBar(quiet=quiet) as progress:
-        for done, finding in enumerate(soak(seeds, engines), 1):
-            progress(done / len(seeds), done, 0.0)
-            if finding is not None:
-                findings.append(finding)
+    findings: list[Finding] = []
+    done, interrupted = 0, False
+    try:
+        with ProgressBar(quiet=quiet) as progress:
+            for done, finding in enumerate(soak(seeds, engines), 1):
+                progress(done / len(seeds), done, 0.0)
+                if finding is not None:
+                    findings.append(finding)
+    except KeyboardInterrupt:
+        interrupted = True
+    seeds = seeds[:done]
     if as_json:
         click.echo(as_json_text(soak_data(seeds, engines, findings)))
     elif not quiet:
         click.echo(soak_text(seeds, engines, findings))
+    if interrupted:
+        click.get_current_context().exit(INTERRUPTED)
     if findings:
         click.get_current_context().exit(FAILED)
