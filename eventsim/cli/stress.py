@@ -30,7 +30,7 @@ FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
     default=10.0,
     show_default=True,
     metavar="S",
-    help="Seconds for one engine on one scene.",
+    help="Seconds of computing for one engine on one scene.",
 )
 @click.option(
     "--workers",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -32,7 +32,8 @@ class TimeUpError(Exception):
 class Bench:
     """One engine, ready for the runs of one case; keeps the worst change of energy that it saw.
 
-    limit: seconds that all runs together may take; what comes before the first events of a run, compiling, is not counted.
+    limit: seconds of computing that all runs together may take, whatever else the machine does; what comes before the first
+    events of a run, compiling, is not counted.
     """
 
     def __init__(self, engine: str, limit: float) -> None:
@@ -61,7 +62,7 @@ class Bench:
 
     def _watch(self, _share: float | None, _events: int, _time: float) -> None:
         """Count the seconds since the last look; raises TimeUpError where none are left."""
-        now = perf_counter()
+        now = process_time()
         if self._since is not None:
             self._left -= now - self._since
         self._since = now

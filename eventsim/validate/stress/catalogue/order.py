@@ -13,6 +13,9 @@ from eventsim.validate.stress.catalogue.scenes import lattice_gas, on_plane, rel
 
 ULP = 2.0**-52
 
+LAST_TIMES = 40
+"""Events among which the widest gap is looked for."""
+
 
 def _causality(bench: Bench) -> float:
     worst = 0.0
@@ -40,10 +43,16 @@ def _two_pairs(bench: Bench) -> float:
 
 
 def _against_all_pairs(bench: Bench, scene: Scene, events: int) -> float:
-    """The difference from a run that tries every pair, cells and shortcuts left out."""
-    session = ReferenceSession(stage_of(scene), keep_rows=True, grid=None)
-    session.advance(Stop(events=events), 10**9)
-    time = float(session.take_rows()["time"][-1])
+    """The difference from a run that tries every pair, cells and shortcuts left out, after about so many events.
+
+    It is looked at where events are far apart: at the time of one, rounding would decide whether it has happened.
+    """
+    first = ReferenceSession(stage_of(scene), keep_rows=True, grid=None)
+    first.advance(Stop(events=events), 10**9)
+    times = first.take_rows()["time"][-LAST_TIMES:]
+    widest = int(np.argmax(np.diff(times)))
+    time = float(times[widest] + times[widest + 1]) / 2.0
+    session = ReferenceSession(stage_of(scene), keep_rows=False, grid=None)
     session.advance(Stop(until=time), 10**9)
     motion = session.motion()
     run = bench.run(scene, until=time)
@@ -62,7 +71,7 @@ def _cell_ties(bench: Bench) -> float:
 
 
 def _races(bench: Bench) -> float:
-    return _against_all_pairs(bench, lattice_gas(40, 0.4, quantum=0.25, seed=6), 1000)
+    return _against_all_pairs(bench, lattice_gas(40, 0.4, quantum=0.25, seed=6), 300)
 
 
 def _mirror(bench: Bench) -> float:
@@ -134,9 +143,9 @@ CASES = (
         "f31-races",
         "quantised velocities: many ties, many stale predictions",
         "A contact that has been overtaken by another one is resolved all the same, or a tie is lost.",
-        "The run that tries all pairs, 1000 events.",
-        0.0,
-        "One log for all machineries.",
+        "The run that tries all pairs, 300 events.",
+        1e-6,
+        "2^(-53 + .053 n) after n events of 40 disks, and 2^16 for chance; float engines have one log, a proof has no rounding.",
         _races,
     ),
     Case(
