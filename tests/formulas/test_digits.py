@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eventsim.formulas.digits import careful_pair_delay
-from eventsim.formulas.expansion import added, leading, multiplied, scaled, two_product
+from eventsim.formulas.expansion import added, grown, leading, multiplied, scaled, two_product
 from eventsim.formulas.real import NEVER
 
 CLASSES = ("plain", "near", "far", "graze", "large", "slow", "fast")
@@ -171,6 +171,20 @@ def test_an_approaching_overlap_is_due_now_and_a_receding_one_never():
     assert careful_pair_delay(*straight(-1.0, 0.0)) == 0.0
     # in contact, moving tangentially: (3, 4) and (-4, 3)
     assert careful_pair_delay(0.0, 0.0, 4.0, -3.0, 0.0, 2.5, 3.0, 4.0, *STILL, 0.0, 2.5, 0.0, 0.0) == NEVER
+
+
+def test_an_expansion_has_no_zeros_and_nothing_is_the_empty_one():
+    assert grown([], 0.0) == []
+    assert grown([1.0], -1.0) == []
+    assert grown([], 3.0) == [3.0]
+    assert grown([2.0**-60], 1.0) == [2.0**-60, 1.0]
+    assert scaled([2.0**-60, 1.0], 4.0) == [2.0**-58, 4.0]
+    assert scaled([1.0], 0.0) == multiplied([], [1.0]) == multiplied([1.0], []) == []
+    assert multiplied([2.0**-60, 1.0], [2.0]) == [2.0**-59, 2.0]
+    assert leading([]) == (0.0, 0.0)
+    assert leading([2.0**-130, 2.0**-70, 2.0**-60, 1.0]) == (1.0, 2.0**-60 + 2.0**-70)
+    assert leading([3.0 * 2.0**-110, 2.0**-56, 2.0**-2, 2.0**52]) == (2.0**52, 0.25 + 2.0**-56)
+    assert leading([2.0**-56, 1.0 + 2.0**-52, 2.0**53]) == (2.0**53 + 2.0, -1.0 + 2.0**-52)
 
 
 FLOATS = st.floats(-1e10, 1e10).filter(lambda x: x == 0.0 or abs(x) > 1e-10)

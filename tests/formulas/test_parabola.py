@@ -6,7 +6,14 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from eventsim.formulas.parabola import NO_OVERLAP, circle_delays, circle_gap
+from eventsim.formulas.parabola import (
+    ANY_OVERLAP,
+    NO_OVERLAP,
+    PRESENT_OVERLAP,
+    _positive_roots,
+    circle_delays,
+    circle_gap,
+)
 from eventsim.formulas.real import NEVER
 
 value = st.floats(-3.0, 3.0)
@@ -52,3 +59,49 @@ def test_inside_a_circle_it_falls_to_the_bottom():
 
 def test_an_overlap_that_falls_is_due_now():
     assert circle_delays(0.0, 0.9, 0.0, -1.0, 0.0, -2.0, 1.0, 1.0)[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "roots"),
+    [
+        ((1.0, -4.0, 3.0), (1.0, 3.0)),
+        ((4.0, -4.0, 0.75), (0.25, 0.75)),
+        ((0.5, -0.5, 0.09375), (0.25, 0.75)),  # its discriminant is 1/16
+        ((1.0, 2.0, -3.0), (0.0, 1.0)),
+        ((1.0, -2.0, -3.0), (0.0, 3.0)),
+        ((1.0, 0.5, -0.5), (0.0, 0.5)),
+        ((1.0, 0.0, -4.0), (0.0, 2.0)),
+        ((1.0, 4.0, 3.0), (0.0, 0.0)),
+        ((1.0, -4.0, 0.0), (0.0, 4.0)),
+        ((1.0, 4.0, 0.0), (0.0, 0.0)),
+        ((1.0, -3.0, 2.0), (1.0, 2.0)),
+        ((1.0, -4.0, 5.0), (0.0, 0.0)),
+        ((1.0, -4.0, 4.0), (0.0, 0.0)),  # it does not change its sign there
+    ],
+)
+def test_what_brackets_the_cubic(polynomial, roots):
+    assert _positive_roots(*polynomial) == roots
+
+
+@pytest.mark.parametrize(
+    ("speed", "any_overlap", "present", "none"),
+    [
+        (-1.0, 0.0, 0.0, NEVER),  # it falls
+        (0.0, 0.0, 0.0, NEVER),  # it is about to
+        (0.25, 0.125, NEVER, NEVER),  # it rises by 1/64 and falls again, closed all the time
+        (0.5, 0.25, NEVER, NEVER),
+    ],
+)
+def test_a_closed_gap_counts_as_the_caller_says(speed, any_overlap, present, none):
+    flight = 0.0, 0.5, 0.0, speed, 0.0, -2.0, 1.0, 1.0
+    for overlap, delay in ((ANY_OVERLAP, any_overlap), (PRESENT_OVERLAP, present), (NO_OVERLAP, none)):
+        assert circle_delays(*flight, overlap)[0] == pytest.approx(delay, rel=1e-12)
+
+
+def test_what_rests_on_the_top_or_hangs_below():
+    assert circle_delays(0.0, 1.0, 0.0, 0.0, 0.0, -2.0, 1.0, 1.0)[0] == 0.0
+    assert circle_delays(0.0, -1.0, 0.0, 0.0, 0.0, -2.0, 1.0, 1.0)[0] == NEVER
+    assert circle_delays(0.0, -1.0, 0.0, 0.0, 0.0, -2.0, 1.0, -1.0)[0] == 0.0
+    assert circle_delays(0.0, 1.0, 0.0, 0.0, 0.0, -2.0, 1.0, -1.0)[0] == pytest.approx(2.0**0.5, rel=1e-12)
+    # as fast round the top as gravity bends the way: d.v = 0 and v^2 + d.a = 0, and it leaves
+    assert circle_delays(0.0, 1.0, 2.0, 0.0, 0.0, -4.0, 1.0, 1.0)[0] == NEVER

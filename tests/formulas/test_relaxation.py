@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from eventsim.formulas.relaxation import StrainedError, relaxed
+from eventsim.formulas.relaxation import StrainedError, _half_exponent, _power, relaxed, snapped
 from eventsim.formulas.simultaneous import JointContact, SqueezedError, complementary, resolve_together
 
 
@@ -72,3 +72,46 @@ def test_a_long_row_squeezed_between_immovable_ends_is_refused():
 def test_relaxation_says_when_nothing_settles():
     with pytest.raises(StrainedError):
         relaxed([[Fraction(1), Fraction(-1)], [Fraction(-1), Fraction(1)]], [Fraction(-1), Fraction(-1)])
+
+
+TWO = [[Fraction(2), Fraction(1)], [Fraction(1), Fraction(2)]]
+
+
+def test_a_contact_without_impulse_has_exactly_none():
+    x = relaxed(TWO, [Fraction(-2), Fraction(5)])
+    assert float(x[0]) == 1.0
+    assert x[1] == 0
+
+
+def test_contacts_of_very_uneven_masses_relax_as_fast():
+    """With the scaled matrix of these units the solution is (1, 1); unscaled its condition would be 2**40."""
+    units = [Fraction(2**10), Fraction(1, 2**10)]
+    matrix = [[TWO[j][k] * units[j] * units[k] for k in range(2)] for j in range(2)]
+    x = relaxed(matrix, [-3 * unit for unit in units])
+    # 2^-90 of the largest approach, which is 2^20 times the other one
+    assert [float(value * unit) for value, unit in zip(x, units, strict=True)] == pytest.approx(
+        [1.0, 1.0], abs=2.0**-50
+    )
+
+
+@pytest.mark.parametrize(
+    ("value", "size", "kept"),
+    [
+        (Fraction(1, 3), 0.0, 0),
+        (Fraction(2, 3), 0.0, 1),
+        (Fraction(1, 2**70), 1.0, 0),  # half a unit of 2^-69
+        (Fraction(3, 2**70), 1.0, Fraction(1, 2**68)),
+        (Fraction(1, 2**71), 0.5, 0),
+        (Fraction(3, 2**71), 0.5, Fraction(1, 2**69)),
+        (Fraction(0.1) + Fraction(1, 2**75), 1.0, Fraction(0.1)),
+        (-Fraction(0.1) - Fraction(1, 2**75), 1.0, -Fraction(0.1)),
+    ],
+)
+def test_what_is_below_70_bits_of_the_largest_velocity_is_noise(value, size, kept):
+    assert snapped(value, size) == kept
+
+
+def test_powers_of_two():
+    assert [_power(k) for k in (-2, -1, 0, 1, 2)] == [Fraction(1, 4), Fraction(1, 2), 1, 2, 4]
+    values = [Fraction(0), Fraction(1), Fraction(4), Fraction(1, 4), Fraction(2**10), Fraction(1, 2**10)]
+    assert [_half_exponent(value) for value in values] == [0, 0, 1, -1, 5, -5]
