@@ -114,3 +114,63 @@ def test_a_disk_between_immovable_ones_that_close_in_on_it_is_squeezed():
     contacts = [JointContact(1, 0, 1.0, 0.0, 1.0), JointContact(1, 2, -1.0, 0.0, 1.0)]
     with pytest.raises(SqueezedError):
         resolve_together(contacts, [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)], [math.inf, 1.0, math.inf])
+
+
+def test_impulses_are_momenta_whatever_the_length_of_the_directions():
+    for length in (1.0, 128.0):
+        contacts = [
+            JointContact(0, 1, 3.0 * length, 4.0 * length, 1.0),
+            JointContact(2, 1, -4.0 * length, 3.0 * length, 1.0),
+        ]
+        outcome = resolve_together(contacts, [(-3.0, -4.0), (0.0, 0.0), (0.0, 0.0)], [1.0, 1.0, 1.0])
+        assert outcome.velocities == [(0.0, 0.0), (-3.0, -4.0), (0.0, 0.0)]
+        assert outcome.impulses == [5.0, 0.0]
+        assert outcome.active == [True, False]
+
+
+def test_the_impulse_between_an_immovable_disk_and_a_wall_has_no_size():
+    contacts = [JointContact(0, None, 0.0, 1.0, 1.0), JointContact(1, 0, 0.0, 1.0, 1.0)]
+    outcome = resolve_together(contacts, [(0.0, -1.0), (0.0, -1.0)], [math.inf, 1.0])
+    assert math.isnan(outcome.impulses[0])
+    assert outcome.impulses[1] == 4.0
+    assert outcome.active == [True, True]
+
+
+def test_an_immovable_disk_may_be_named_first():
+    contacts = [JointContact(0, 1, 1.0, 0.0, 1.0), JointContact(2, 1, 0.0, 1.0, 0.5)]
+    outcome = resolve_together(contacts, [(-1.0, 0.0), (0.0, 0.0), (0.0, -2.0)], [math.inf, 1.0, math.inf])
+    assert outcome.velocities == [(-1.0, 0.0), (-2.0, -3.0), (0.0, -2.0)]
+
+
+def test_two_images_of_one_disk_push_it_together():
+    one, other, turned = (
+        JointContact(0, 1, 5.0, 0.0, 1.0),
+        JointContact(0, 1, 3.0, 4.0, 1.0),
+        JointContact(1, 0, -3.0, -4.0, 1.0),
+    )
+    velocities, masses = [(-4.0, -2.0), (0.0, 0.0)], [1.0, 3.0]
+    outcome = resolve_together([one, other], velocities, masses)
+    assert outcome.velocities == [(2.0, 1.0), (-2.0, -1.0)]  # both approaches turn round: the relative velocity does
+    assert resolve_together([one, turned], velocities, masses) == outcome
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5])
+def test_contacts_that_are_all_coupled_are_all_turned_round(n):
+    """A matrix without zeros: 1 beside the diagonal, 2 on it."""
+    matrix = [[Fraction(1 + (j == k)) for k in range(n)] for j in range(n)]
+    assert complementary(matrix, [Fraction(-n - 1)] * n) == [1] * n
+    assert complementary(matrix, [Fraction(-1)] + [Fraction(3)] * (n - 1)) == [Fraction(1, 2)] + [0] * (n - 1)
+    assert complementary(matrix, [Fraction(3)] * (n - 1) + [Fraction(-1)]) == [0] * (n - 1) + [Fraction(1, 2)]
+    approaches = [Fraction(-sum(range(1, n + 1)) - k) for k in range(1, n + 1)]
+    assert complementary(matrix, approaches) == list(range(1, n + 1))
+
+
+def test_velocities_beyond_all_floats_are_infinite_with_their_sign():
+    outcome = resolve_together(
+        [JointContact(0, 1, 1.0, 0.0, 1.0), JointContact(2, 0, 0.0, 1.0, 1.0)],
+        [(1e308, 0.0), (1.7e308, 0.0), (0.0, 0.0)],
+        [1.0, math.inf, 1.0],
+    )
+    assert outcome.velocities[0] == (math.inf, 0.0)
+    outcome = resolve_together([JointContact(0, 1, -1.0, 0.0, 1.0)], [(-1e308, 0.0), (-1.7e308, 0.0)], [1.0, math.inf])
+    assert outcome.velocities[0] == (-math.inf, 0.0)
