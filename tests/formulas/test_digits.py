@@ -179,12 +179,12 @@ def test_an_expansion_has_no_zeros_and_nothing_is_the_empty_one():
     assert grown([], 3.0) == [3.0]
     assert grown([2.0**-60], 1.0) == [2.0**-60, 1.0]
     assert scaled([2.0**-60, 1.0], 4.0) == [2.0**-58, 4.0]
-    assert scaled([1.0], 0.0) == multiplied([], [1.0]) == multiplied([1.0], []) == []
+    assert scaled([], 3.0) == scaled([1.0], 0.0) == multiplied([], [1.0]) == multiplied([1.0], []) == []
     assert multiplied([2.0**-60, 1.0], [2.0]) == [2.0**-59, 2.0]
     assert leading([]) == (0.0, 0.0)
     assert leading([2.0**-130, 2.0**-70, 2.0**-60, 1.0]) == (1.0, 2.0**-60 + 2.0**-70)
     assert leading([3.0 * 2.0**-110, 2.0**-56, 2.0**-2, 2.0**52]) == (2.0**52, 0.25 + 2.0**-56)
-    assert leading([2.0**-56, 1.0 + 2.0**-52, 2.0**53]) == (2.0**53 + 2.0, -1.0 + 2.0**-52)
+    assert leading([2.0**-60, 1.0 + 2.0**-50, 4.0]) == (5.0 + 2.0**-50, 2.0**-60)
 
 
 FLOATS = st.floats(-1e10, 1e10).filter(lambda x: x == 0.0 or abs(x) > 1e-10)
