@@ -174,3 +174,9 @@ def test_velocities_beyond_all_floats_are_infinite_with_their_sign():
     assert outcome.velocities[0] == (math.inf, 0.0)
     outcome = resolve_together([JointContact(0, 1, -1.0, 0.0, 1.0)], [(-1e308, 0.0), (-1.7e308, 0.0)], [1.0, math.inf])
     assert outcome.velocities[0] == (-math.inf, 0.0)
+
+
+def test_contacts_in_a_ring_are_coupled_by_elimination_too():
+    """Of four in a ring, the neighbours of one are not coupled before it is eliminated."""
+    matrix = [[Fraction({0: 4, 1: 1, 2: 0, 3: 1}[abs(j - k)]) for k in range(4)] for j in range(4)]
+    assert complementary(matrix, [Fraction(-value) for value in (10, 12, 18, 20)]) == [1, 2, 3, 4]
