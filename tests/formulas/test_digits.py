@@ -142,6 +142,20 @@ def test_a_miss_that_only_the_exact_flight_shows():
         assert (careful_pair_delay(*pair) < NEVER) == hits == (exact_delay(*pair) is not None)
 
 
+@pytest.mark.parametrize(
+    ("pair", "delay"),
+    [
+        ((-5.0, 0.0, 1.0, 0.0, 1.0, 0.5, 0.0, 0.0, *STILL, 3.0, 0.5, 0.0, 0.0), 2.0),
+        # 1 - 2**-60 is no float, and what its rounding takes is the gap
+        ((-2.0, 0.0, 1.0, 0.0, 2.0**-60, 0.5, 0.0, 0.0, *STILL, 1.0, 0.5, 0.0, 0.0), 2.0**-60),
+        ((13.0, 0.0, 1.0, 0.0, 0.0, 0.5, 0.0, 0.0, *STILL, 0.0, 0.5, 16.0, 0.0), 2.0),
+        ((0.0, 13.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.0, *STILL, 0.0, 0.5, 0.0, 16.0), 2.0),
+    ],
+)
+def test_clocks_and_periods_are_taken_off_exactly(pair, delay):
+    assert careful_pair_delay(*pair) == careful_pair_delay(*exchanged(pair)) == delay
+
+
 def test_a_far_pair_keeps_its_digits():
     assert careful_pair_delay(*straight(-1e8, 0.3)) == 99999999.0460607985830543  # by 30-digit arithmetic
 
