@@ -142,3 +142,11 @@ def test_an_arc_goes_through_its_three_points():
     for x, y in ((1.0, 0.0), (1.5, 0.5), (1.0, 1.0)):
         assert on_arc(made, x, y)
     assert not on_arc(made, 0.5, 0.5)
+
+
+def test_a_disk_thrown_past_the_end_of_a_wall_lands_on_its_far_side():
+    flight = 2.0, -1.5, -1.5, 3.0
+    assert face_delay(face(-1.0, 0.0, 1.0, 0.0), *flight, 0.5, -2.0, 0.5, 0) == (2.0, 1)
+    turned = -1.5, 2.0, 3.0, -1.5  # x and y exchanged: the normal turns round
+    assert face_delay(face(0.0, -1.0, 0.0, 1.0), *turned, -2.0, 0.5, 0.5, 0) == (2.0, -1)
+    assert face_delay(face(-1.0, 0.0, 1.0, 0.0), *flight, 1.5, -2.0, 0.5, 0)[0] == NEVER  # beyond the end again
