@@ -9,6 +9,7 @@ import numpy as np
 from eventsim.engines.base import Snapshot
 from eventsim.formulas.clock import window_length
 from eventsim.formulas.motion import position
+from eventsim.formulas.rest import SUPPORTED, held_by
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -30,6 +31,9 @@ def demand_fit(snapshot: Snapshot, stage: Stage) -> None:
         for other, kx, ky in met:
             if not (-1 - shapes < other < stage.n and max(abs(kx), abs(ky)) <= MOST_COUNTED):
                 raise ValueError(f"disk {i} cannot have met {other}")
+        held = held_by(met)
+        if held is not None and stage.supports is not None and stage.supports[held.place] is None:
+            raise ValueError(f"disk {i} cannot rest on {met[0][0]}")
     if not (0 <= snapshot.epoch < 2**62 and 0 <= snapshot.window <= stage.window_cap and snapshot.window_rows >= 0):
         raise ValueError("its clock cannot stand there")
     end = window_length(snapshot.window, stage.epoch_length)
@@ -64,12 +68,26 @@ def _demand_inside(snapshot: Snapshot, stage: Stage, t: Floats) -> None:
     """Every disk inside the domain, where its flight began and now."""
     if stage.size is None:
         return
-    held = np.zeros(stage.n, bool) if stage.mass is None else np.isinf(stage.mass)
+    pull = _accelerations(snapshot, stage)
     columns = ((snapshot.x, snapshot.vx), (snapshot.y, snapshot.vy))
     for axis, ((places, speeds), size) in enumerate(zip(columns, stage.size, strict=True)):
-        g = None if stage.gravity is None else np.where(held, 0.0, stage.gravity[axis])
         there = np.array(places)
-        here = position(there, np.array(speeds), snapshot.now - t, g)
+        here = position(there, np.array(speeds), snapshot.now - t, None if pull is None else pull[:, axis])
         for place in (there, here):
             if not np.all((place >= -OUTSIDE * size) & (place <= (1.0 + OUTSIDE) * size)):
                 raise ValueError("a disk is outside the domain")
+
+
+def _accelerations(snapshot: Snapshot, stage: Stage) -> Floats | None:
+    """What each disk's flight has as its acceleration (n, 2): that along its wall where it rests; None without gravity."""
+    if stage.gravity is None:
+        return None
+    falls = np.ones(stage.n) if stage.mass is None else np.isfinite(stage.mass)
+    pull: Floats = falls[:, None] * np.array(stage.gravity)
+    if stage.supports is not None:
+        for i, met in enumerate(snapshot.met):
+            held = held_by(met)
+            support = None if held is None or held.how != SUPPORTED else stage.supports[held.place]
+            if support is not None:
+                pull[i] = support.ax, support.ay
+    return pull

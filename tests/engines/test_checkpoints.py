@@ -20,6 +20,7 @@ from eventsim.engines.base import Snapshot, Stop
 from eventsim.engines.checkpoint import Every, interval, load_checkpoint
 from eventsim.engines.fitting import demand_fit
 from eventsim.engines.packing import packed, unpacked
+from eventsim.formulas.rest import SUPPORTED
 from eventsim.record.files import SUFFIXES
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas, session_of
@@ -228,6 +229,37 @@ def test_a_checkpoint_that_cannot_be_one_is_refused_before_an_engine_sees_it(sav
     with pytest.raises(es.CheckpointError, match=words) as caught:
         es.resume(saved, events=200)
     assert str(caught.value).startswith(str(saved))
+
+
+def at_rest():
+    """One disk that lies still on the floor from early on, and one that slides down a slope."""
+    disks = es.Disks([[2.0, 0.25], [1.0, 1.3]], radius=0.1)
+    slope = es.Segment((0.5, 1.2), (4.0, 0.8))
+    return es.Scene(disks, es.Box((4.0, 2.0)), [slope], gravity=(0.0, -9.81), restitution=0.25)
+
+
+@pytest.mark.parametrize("engine", ["reference", pytest.param("fast", marks=WITH_NUMBA)])
+def test_a_run_goes_on_with_disks_at_rest(tmp_path, engine):
+    path = tmp_path / "run.checkpoint"
+    whole = es.simulate(at_rest(), until=6.0, engine=engine, log=tmp_path / "whole.csv")
+    es.simulate(at_rest(), until=1.0, engine=engine, log=tmp_path / "run.csv", checkpoint=path)
+    resting = [met[0][2] for met in load_checkpoint(path).snapshot.met]
+    assert resting == [SUPPORTED, SUPPORTED]
+    for until in (5.0, 6.0):  # one fall in that time is further than the domain is high
+        run = es.resume(path, until=until)
+    assert run.digest == whole.digest
+    assert run.state.position.tolist() == whole.state.position.tolist()
+
+
+def test_a_snapshot_rests_on_what_supports_disks(tmp_path):
+    scene = es.Scene(es.Disks([[1.0, 1.0]], radius=0.5), es.Box((4.0, 2.0)), [es.Segment((2.0, 1.0), (3.0, 1.0))],
+                     gravity=(0.0, -1.0), restitution=0.5)  # fmt: skip
+    stage = stage_of(scene)
+    es.simulate(scene, until=0.5, engine="reference", checkpoint=tmp_path / "a")
+    saved = load_checkpoint(tmp_path / "a").snapshot
+    demand_fit(replace(saved, met=(((-5, 1, SUPPORTED),),)), stage)
+    with pytest.raises(ValueError, match="cannot rest on -6"):  # the segment's end
+        demand_fit(replace(saved, met=(((-6, 1, SUPPORTED),),)), stage)
 
 
 def test_a_damaged_file_is_refused(saved):
