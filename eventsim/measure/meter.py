@@ -53,7 +53,7 @@ class Meter:
         self.discard = scene.equilibration if discard is None else discard
         self._stage = stage_of(scene)
         self._tally = Tally(self.ensemble, self._stage)
-        self._follower = Follower(scene)
+        self._follower = Follower(self._stage)
         counted = np.flatnonzero(self.ensemble.counted)
         self._watched = counted[np.linspace(0, len(counted) - 1, min(WATCHED, len(counted))).astype(np.int64)]
         self._waiting: list[Rows] = []
@@ -138,7 +138,8 @@ class Meter:
     def _add_flights(self, flights: Flights, series: Series) -> None:
         self._tally.add_flights(series, flights)
         if self.scene.gravity is not None:
-            series.add(ENERGY, *self._tally.energy_time(flights))
+            self._tally.add_energy(series, flights)
+            self._tally.add_weight(series, flights)
 
     def _scales(self, end: float, rows: int) -> tuple[Series, Correlator]:
         """The series and the correlator, made from the pace of the first block."""

@@ -33,6 +33,26 @@ class Series:
         flat = np.bincount((place - low) * channels + channel, amount, (high - low) * channels)
         self._sums[low:high] += flat.reshape(-1, channels)
 
+    def add_spread(self, channel: Column, begin: Floats, end: Floats, amount: Floats) -> None:
+        """Add amounts (n,), not negative, to channels (n,), evenly spread between times (n,), cut exactly where bins end."""
+        if not len(end):
+            return
+        self._reach(float(end.max()))
+        low, high = (np.minimum((at / self.width).astype(np.int64), MOST_BINS - 1) for at in (begin, end))
+        span = end - begin
+        rate = np.divide(amount, span, out=np.zeros_like(amount), where=span > 0.0)
+        parts = high > low
+        first = np.where(parts, rate * ((low + 1) * self.width - begin), amount)
+        np.add.at(self._sums, (low, channel), first)
+        if parts.any():
+            low, high, channel, rate, end = low[parts], high[parts], channel[parts], rate[parts], end[parts]
+            np.add.at(self._sums, (high, channel), rate * (end - high * self.width))
+            lowest = int(low.min())
+            steps = np.zeros((int(high.max()) - lowest + 1, self._sums.shape[1]))
+            np.add.at(steps, (low + 1 - lowest, channel), rate)
+            np.subtract.at(steps, (high - lowest, channel), rate)
+            self._sums[lowest : lowest + len(steps)] += self.width * np.maximum(np.cumsum(steps, axis=0), 0.0)
+
     def add_held(self, channel: int, time: Floats, value: Floats) -> None:
         """Add value x time of values (n,) that are held between times (n + 1,), cut exactly where bins end."""
         self._reach(float(time[-1]))

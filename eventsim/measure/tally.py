@@ -44,6 +44,9 @@ class Tally:
         self.thermal_speed = start**0.5 if start > 0.0 else 1.0
         # histogram bins per unit of speed, for each disk
         self._speed_scale = SPEED_BINS / (FASTEST * np.where(thermal > 0.0, thermal, 1.0))
+        # how hard a disk of unit mass presses on each wall that it rests on
+        across = np.array(stage.gravity or (0.0, 0.0)) - stage.slopes
+        self._press = np.hypot(across[:, 0], across[:, 1])
         # the lever of a wall of the domain, seen from its middle: half the width less the radius
         self._lever = np.zeros(len(stage.wall_names) + 1)
         self._lever_radius = np.zeros(len(stage.wall_names) + 1)
@@ -76,12 +79,21 @@ class Tally:
             if self.walls:
                 series.add(GENERAL + chosen["wall"].astype(np.int64), when, chosen["impulse"])
 
+    def add_weight(self, series: Series, flights: Flights) -> None:
+        """Add the impulse that walls give to the disks that rest on them."""
+        if flights.wall is None or not self.walls:
+            return
+        rests = np.flatnonzero(flights.wall >= 0)
+        wall, end, duration = flights.wall[rests], flights.end[rests], flights.duration[rests]
+        weight = self._mass[flights.disk[rests]] * self._press[wall]
+        series.add_spread(GENERAL + wall, end - duration, end, weight * duration)
+
     def add_flights(self, series: Series, flights: Flights) -> None:
-        """Add what flights say: lengths, speeds, times; each at its end."""
+        """Add what flights say: lengths, speeds, times; each at its end, or evenly over the time that a disk rests."""
         kind = self.ensemble.species_of[flights.disk]
         known = kind >= 0
         if not known.all():
-            flights = Flights(*(getattr(flights, name)[known] for name in flights.__slots__))
+            flights = flights.take(known)
             kind = kind[known]
         begun, before = (np.einsum("fk,fk->f", v, v) for v in (flights.begun, flights.before))
         speed = np.sqrt(begun)
@@ -93,11 +105,11 @@ class Tally:
         else:
             square = begun
         place = self.first_species + PER_SPECIES * kind
-        series.add(place + DISK_TIME, flights.end, flights.duration)
-        series.add(place + PATH, flights.end, speed * flights.duration)
-        series.add(place + SPEED2, flights.end, square * flights.duration)
+        _add(series, place + DISK_TIME, flights, flights.duration)
+        _add(series, place + PATH, flights, speed * flights.duration)
+        _add(series, place + SPEED2, flights, square * flights.duration)
         bin_ = np.minimum((speed * self._speed_scale[flights.disk]).astype(np.int64), SPEED_BINS)
-        series.add(self.first_speed + (SPEED_BINS + 1) * kind + bin_, flights.end, flights.duration)
+        _add(series, self.first_speed + (SPEED_BINS + 1) * kind + bin_, flights, flights.duration)
 
     def energy_changes(self, flights: Flights, count: int) -> Floats:
         """By how much each of `count` rows changes the kinetic energy, without gravity."""
@@ -106,9 +118,21 @@ class Tally:
         gain = 0.5 * self._mass[flights.disk] * (after - before)
         return np.bincount(flights.row, gain, count).astype(np.float64)
 
-    def energy_time(self, flights: Flights) -> tuple[Column, Floats]:
-        """End and energy x time of each flight; Simpson's rule, exact under gravity."""
+    def add_energy(self, series: Series, flights: Flights) -> None:
+        """Add the energy x time of each flight; Simpson's rule, exact under gravity."""
         middle = 0.5 * (flights.begun + flights.before)
         parts = [np.einsum("fk,fk->f", v, v) for v in (flights.begun, middle, flights.before)]
         square = (parts[0] + 4.0 * parts[1] + parts[2]) / 6.0
-        return flights.end, 0.5 * self._mass[flights.disk] * square * flights.duration
+        energy = 0.5 * self._mass[flights.disk] * square * flights.duration
+        _add(series, np.full(len(energy), ENERGY), flights, energy)
+
+
+def _add(series: Series, channel: Column, flights: Flights, amount: Floats) -> None:
+    """Add amounts (F,) at the ends of flights, those of disks at rest, which may last, over their time."""
+    if flights.wall is None:
+        series.add(channel, flights.end, amount)
+        return
+    rests = flights.wall >= 0
+    series.add(channel[~rests], flights.end[~rests], amount[~rests])
+    end = flights.end[rests]
+    series.add_spread(channel[rests], end - flights.duration[rests], end, amount[rests])
