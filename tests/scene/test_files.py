@@ -49,7 +49,7 @@ def scenes(draw):
         draw(st.lists(points, min_size=count, max_size=count)),
         draw(st.lists(points, min_size=count, max_size=count)),
         0.0,
-        draw(st.lists(st.one_of(st.floats(0, 1e300), st.just(math.inf)), min_size=count, max_size=count)),
+        draw(st.lists(st.one_of(st.floats(0, 1e250), st.just(math.inf)), min_size=count, max_size=count)),
     )
     return Scene(
         disks,

@@ -17,7 +17,7 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Rows, blank_rows
-from eventsim.record.files.sink import PART, FileSink, demand_same
+from eventsim.record.files.sink import FileSink, demand_same
 from eventsim.record.files.table import columns_kept
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
 
@@ -55,13 +55,16 @@ class JournalSink(FileSink):
     def _open(self) -> None:
         self._journal = {}
         if self.part.is_dir():
-            shutil.rmtree(self.part)  # left over from a run that was killed
+            self._discard()  # left over from a run that was killed
         self.part.unlink(missing_ok=True)
-        self.part.mkdir()
-        begun = self.part / (METADATA + PART)
-        begun.write_text(provenance_text(self.provenance), encoding="ascii")
-        begun.replace(self.part / METADATA)
-        self._journal = {name: (self.part / name).open("wb") for name in self.columns}
+        # A run may be killed at any moment: the journal comes in one piece, and goes in one.
+        begun = self._beside()
+        begun.mkdir()
+        (begun / METADATA).write_text(provenance_text(self.provenance), encoding="ascii")
+        for name in self.columns:
+            (begun / name).touch()
+        begun.replace(self.part)
+        self._journal = {name: (self.part / name).open("ab") for name in self.columns}
         self._begin()
 
     def _reopen(self, rows: int) -> None:
@@ -99,7 +102,15 @@ class JournalSink(FileSink):
         self._stop()
 
     def _discard(self) -> None:
-        shutil.rmtree(self.part, ignore_errors=True)
+        gone = self._beside()
+        self.part.replace(gone)
+        shutil.rmtree(gone, ignore_errors=True)
+
+    def _beside(self) -> Path:
+        """A free name for a journal that is not yet, or no more, one to be read."""
+        path = self.part.with_name(self.part.name + "~")
+        shutil.rmtree(path, ignore_errors=True)
+        return path
 
 
 def journal_provenance(part: Path) -> Provenance:
