@@ -55,8 +55,8 @@ def command(
     \b
     Quantities: temperature (kT), Z (P V / N kT from the virial), Z_walls, pressure, collision_rate (pair contacts of a
     disk per time), wall_contact_rate, force_WALL (impacts, and the weight of disks at rest on it), mean_free_time,
-    mean_free_path, mean_speed, diffusion, cooling_exponent (-d ln T per contact of a disk); with several species also temperature_I, mean_speed_I,
-    collision_rate_I and collision_rate_I_J.
+    mean_free_path, mean_speed, diffusion, cooling_exponent (-d ln T per contact of a disk); with several species also
+    temperature_I, mean_speed_I, collision_rate_I and collision_rate_I_J.
 
     Exit codes: 0 done; 2 bad usage, scene or file, or nothing to measure; 130 interrupted.
     """
