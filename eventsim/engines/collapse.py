@@ -27,11 +27,15 @@ SETTLED = 2.0**-20
 MANY_DISKS = 8
 """More disks are counted, not named."""
 
-REMEDY = "contact_duration, a time in the scene, lets such a scene go on"
-
-
 LAST_ROUNDS = 4
 """The ratio is that of so many rounds at the end, where it has settled."""
+
+
+def remedy(stage: Stage) -> str:
+    """What is left to do about contacts that pile up."""
+    if stage.contact_duration is None:
+        return "contact_duration, a time in the scene, lets such a scene go on"
+    return f"contact_duration = {stage.contact_duration:g}, as in this scene, did not prevent it; a longer one may"
 
 
 class Rounds(NamedTuple):
@@ -60,16 +64,16 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
     if rounds.number < 2:
         return "digits", (
             f"the contacts of {names} at time {time:.9g} follow one another faster than the digits of float64 can tell, "
-            f"without a steady ratio before: they may or may not end; {REMEDY}"
+            f"without a steady ratio before: they may or may not end; {remedy(stage)}"
         )
     series = (
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
     if rounds.last < SETTLED * rounds.first:
-        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {REMEDY}"
+        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {remedy(stage)}"
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
-        f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {REMEDY}"
+        f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {remedy(stage)}"
     )
 
 

@@ -197,6 +197,23 @@ def test_with_a_contact_duration_it_goes_on(name):
     assert run.stopped == "until"
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("name", ["valley", "stack"])
+def test_a_contact_duration_that_is_there_is_not_promised_as_the_remedy(engine, name):
+    scene = dataclasses.replace(REFUSED[name][0](), contact_duration=1e-30)
+    run = es.simulate(scene, until=20.0, engine=engine)
+    assert run.stopped == "collapse"
+    assert run.reason.endswith("contact_duration = 1e-30, as in this scene, did not prevent it; a longer one may")
+
+
+def test_a_disk_that_lies_in_a_corner_is_refused_whatever_the_contact_duration():
+    disk = es.Disks([[0.5, 0.5]], radius=0.5)
+    scene = es.Scene(disk, es.Box((10.0, 10.0)), gravity=(-1.0, -1.0), restitution=0.5, contact_duration=1e-3)
+    run = es.simulate(scene, until=5.0, engine="reference")
+    assert run.stopped == "collapse"
+    assert run.reason.endswith("is modelled, whatever the contact_duration")
+
+
 def test_scenes_without_gravity_or_restitution_have_no_supports():
     assert stage_of(dropped(gravity=None)).supports is None
     assert stage_of(dropped(restitution=None)).supports is None

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
-from eventsim.engines.collapse import named
+from eventsim.engines.collapse import named, remedy
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
@@ -234,7 +234,7 @@ def endless(state: EngineState, stage: Stage, i: int) -> tuple[str, str]:
     what = "collapse" if inelastic or stage.gravity is not None else "digits"
     cause = (
         "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
-        "on a round one); contact_duration, a time in the scene, lets such a scene go on"
+        f"on a round one); {remedy(stage)}"
         if what == "collapse"
         else "at this instant do not end"
     )

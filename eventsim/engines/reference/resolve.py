@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from eventsim.engines.base import Counters
+from eventsim.engines.collapse import remedy
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
@@ -59,10 +60,11 @@ def instant_of(stage: Stage) -> tuple[float, int]:
 class TwoSupportsError(Exception):
     """A disk comes to rest on two walls: how they share its weight is no question of impulses."""
 
-    def __init__(self, disk: int, walls: list[str]) -> None:
+    def __init__(self, disk: int, walls: list[str], stage: Stage) -> None:
+        # with a contact duration there is rest only of disks that lie on a wall at the start, however long it is
+        then = f"; {remedy(stage)}" if stage.contact_duration is None else ", whatever the contact_duration"
         super().__init__(
-            f"disk {disk} comes to rest on two walls, {' and '.join(walls)}: only rest on one straight wall is modelled; "
-            "contact_duration, a time in the scene, lets such a scene go on"
+            f"disk {disk} comes to rest on two walls, {' and '.join(walls)}: only rest on one straight wall is modelled{then}"
         )
 
 
@@ -143,7 +145,7 @@ class Resolver:
         assert new is not None
         if held.side * (old.face.nx * new.ax + old.face.ny * new.ay) < 0.0:
             walls = [self._stage.wall_names[self._wall_number(k)] for k in (held.place, place)]
-            raise TwoSupportsError(i, walls)
+            raise TwoSupportsError(i, walls, self._stage)
 
     def _leave(self, event: Event) -> None:
         """Let a disk that slid over the end of its wall fly on; a row without an impulse."""
