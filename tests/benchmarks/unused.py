@@ -30,18 +30,18 @@ def cut_walls() -> None:
     from eventsim.engines.fast import loop, predict
     from eventsim.engines.fast.compiled import inline
 
-    predict._shapes = inline(lambda m, rules, i, floor, time, code, shared, features: (time, code, shared))
+    predict.earliest_at_shapes = inline(lambda m, rules, i, floor, time, code, shared, features: (time, code, shared))
     loop.resolve_wall = inline(lambda m, rules, sums, i, code, t, number, slot, clock: None)
 
 
 def cut_gravity() -> None:
     """Straight flights, and nobody's own acceleration."""
-    from eventsim.engines.fast import advance, predict, resolve
+    from eventsim.engines.fast import advance, alone, pairs, predict, resolve
     from eventsim.engines.fast.compiled import inline
 
     pull = inline(lambda m, i, g, classes: None)
     position, velocity = inline(lambda x, v, t, g: x + v * t), inline(lambda v, t, g: v)
-    for module in (advance, predict, resolve):
+    for module in (advance, alone, pairs, predict, resolve):
         for name, function in (("pull", pull), ("position", position), ("velocity", velocity)):
             if hasattr(module, name):
                 setattr(module, name, function)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pulls
+from eventsim.engines.fast.alone import shape_time
 from eventsim.engines.fast.calendar import bucket
 from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline, kernel
@@ -24,8 +25,9 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.levels import gather_near, home_of
 from eventsim.engines.fast.loop import pointers
 from eventsim.engines.fast.memory import real, word
-from eventsim.engines.fast.predict import corner_slot, images, pair_is_due, shape_time
+from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.engines.fast.rest import border_contact
+from eventsim.engines.fast.search import corner_slot
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.rest import STRUCK
 

@@ -26,7 +26,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
-from eventsim.engines.fast.predict import image, pair_is_due, shift
+from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rows import write_row
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update

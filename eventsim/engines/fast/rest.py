@@ -31,26 +31,11 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.met import side_met
-from eventsim.engines.fast.shapes import FACE, POST, WIDTH
+from eventsim.engines.fast.shapes import FACE, POST, WIDTH, face_at
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, is_in_line, rest_delay, rest_on_face_delay, slide_delay
-from eventsim.formulas.walls.face import Face, face_side
-
-
-@inline
-def _face_at(numbers, k):
-    return Face(
-        real(numbers, k),
-        real(numbers, k + 1),
-        real(numbers, k + 2),
-        real(numbers, k + 3),
-        real(numbers, k + 4),
-        real(numbers, k + 5),
-        real(numbers, k + 6),
-        real(numbers, k + 7),
-        real(numbers, k + 8),
-    )
+from eventsim.formulas.walls.face import face_side
 
 
 @inline
@@ -95,7 +80,7 @@ def shape_rest(m, rules, i, k):
     kind = real(m.features, s)
     if SEVERAL < met < NOBODY and word(m.disks, w + MET_KY) != STRUCK:
         how, on = word(m.disks, w + MET_KY), SUPPORT * (-2 - met)
-        line = _face_at(m.supports, on + SUPPORT_FACE)
+        line = face_at(m.supports, on + SUPPORT_FACE)
         if met == -2 - place and how == SUPPORTED:
             low, high = real(m.supports, on + SUPPORT_LOW), real(m.supports, on + SUPPORT_HIGH)
             return slide_delay(line, low, high, x, y, vx, vy, ax, ay), word(m.disks, w + MET_KX), LEFT
@@ -109,7 +94,7 @@ def shape_rest(m, rules, i, k):
     low, high = real(m.supports, support + SUPPORT_LOW), real(m.supports, support + SUPPORT_HIGH)
     if not low < high:  # this one supports nobody
         return NEVER, 0, STRUCK
-    face = _face_at(m.supports, support + SUPPORT_FACE)
+    face = face_at(m.supports, support + SUPPORT_FACE)
     side = side_met(m, i, place)
     if side == 0:
         side = face_side(face, x, y, vx, vy)

@@ -18,6 +18,22 @@ WIDTH = 11
 FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
 
 
+@inline
+def face_at(numbers, k):
+    """The face whose numbers begin at number k of a table."""
+    return Face(
+        real(numbers, k),
+        real(numbers, k + 1),
+        real(numbers, k + 2),
+        real(numbers, k + 3),
+        real(numbers, k + 4),
+        real(numbers, k + 5),
+        real(numbers, k + 6),
+        real(numbers, k + 7),
+        real(numbers, k + 8),
+    )
+
+
 @part
 def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
@@ -33,18 +49,7 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
     kind = real(row, s)
     a, b = real(row, s + 2), real(row, s + 3)
     if faces is not None and kind == FACE:
-        face = Face(
-            a,
-            b,
-            real(row, s + 4),
-            real(row, s + 5),
-            real(row, s + 6),
-            real(row, s + 7),
-            real(row, s + 8),
-            real(row, s + 9),
-            real(row, s + 10),
-        )
-        return face_delay(face, x, y, vx, vy, gx, gy, radius, met)
+        return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
     if posts is not None and kind == POST:
         return post_delay(Post(a, b), x, y, vx, vy, gx, gy, radius, met)
     if containers is not None and kind == CONTAINER:

@@ -1,0 +1,143 @@
+"""When two disks meet, by the images that see each other."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.advance import place, pulls
+from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.layout import (
+    CLASSES,
+    FLAGS,
+    IMMOVABLE,
+    RADIUS,
+    REALS,
+    VX,
+    VY,
+    WORDS,
+    T,
+    X,
+    Y,
+)
+from eventsim.engines.fast.memory import real, word
+from eventsim.engines.fast.met import just_met
+from eventsim.formulas.contact import screened_pair_delay
+from eventsim.formulas.digits import careful_pair_delay
+from eventsim.formulas.motion import position, velocity
+from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.real import NEVER
+
+
+@inline
+def image(d, length):
+    """-1, 0 or 1: the image that brings a distance along a period below half of it."""
+    if length is None:
+        return 0
+    if d > 0.5 * length:
+        return 1
+    return -1 if d < -(0.5 * length) else 0
+
+
+@inline
+def shift(k, length):
+    """The distance of an image; 0 without a period."""
+    return 0.0 if length is None else k * length
+
+
+@inline
+def images(m, rules, i, j, now, x, y):
+    """The image (kx, ky) of disk j that is nearest to disk i, which is at (x, y)."""
+    if rules.length_x is None and rules.length_y is None:
+        return 0, 0
+    other_x, other_y = place(m, rules, j, now)
+    return image(x - other_x, rules.length_x), image(y - other_y, rules.length_y)
+
+
+@inline
+def pair_time(m, rules, i, j, kx, ky):
+    """The contact time of two disks; symmetric under their exchange, bit for bit."""
+    f, g = i * REALS, j * REALS
+    ti, tj = real(m.disks, f + T), real(m.disks, g + T)
+    begin = ti if ti > tj else tj
+    ax, ay = pulls(m, rules, i)
+    bx, by = pulls(m, rules, j)
+    lag, other_lag = begin - ti, begin - tj
+    ui, wi, uj, wj = real(m.disks, f + VX), real(m.disks, f + VY), real(m.disks, g + VX), real(m.disks, g + VY)
+    dx = position(real(m.disks, f + X), ui, lag, ax) - position(real(m.disks, g + X), uj, other_lag, bx)
+    dy = position(real(m.disks, f + Y), wi, lag, ay) - position(real(m.disks, g + Y), wj, other_lag, by)
+    dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
+    du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
+    dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
+    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, _or(rules.classes, m.supports))
+
+
+@inline
+def _or(classes, supports):
+    """None where all disks of the scene fall alike."""
+    if classes is None and supports is None:
+        return None
+    return 1
+
+
+@inline
+def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, unlike):
+    ri, rj = real(m.disks, i * REALS + RADIUS), real(m.disks, j * REALS + RADIUS)
+    if ax is not None and unlike is not None and (ax != bx or ay != by):
+        return circle_delays(dx, dy, du, dw, ax - bx, ay - by, ri + rj, 1.0)[0]
+    delay = screened_pair_delay(dx, dy, du, dw, ri + rj)
+    if delay == delay:
+        return delay
+    if ax is not None:
+        return careful_pair_delay(dx, dy, du, dw, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
+    return _careful_delay(m, rules, i, j, kx, ky)
+
+
+@part
+def _careful_delay(m, rules, i, j, kx, ky):
+    """The delay of a pair in straight flight from the two flights themselves, right to the last bit."""
+    f, g = i * REALS, j * REALS
+    return careful_pair_delay(
+        real(m.disks, f + X),
+        real(m.disks, f + Y),
+        real(m.disks, f + VX),
+        real(m.disks, f + VY),
+        real(m.disks, f + T),
+        real(m.disks, f + RADIUS),
+        real(m.disks, g + X),
+        real(m.disks, g + Y),
+        real(m.disks, g + VX),
+        real(m.disks, g + VY),
+        real(m.disks, g + T),
+        real(m.disks, g + RADIUS),
+        shift(kx, rules.length_x),
+        shift(ky, rules.length_y),
+    )
+
+
+@inline
+def can_meet(m, i, j, classes):
+    """Two immovable disks, or two tracers, do not meet."""
+    if classes is None:
+        return True
+    return word(m.disks, i * WORDS + FLAGS) & word(m.disks, j * WORDS + FLAGS) & CLASSES == 0
+
+
+@inline
+def flies_alike(m, rules, i, j, gx, classes, supports):
+    """Whether the relative flight of two disks is straight."""
+    if gx is None or (classes is None and supports is None):
+        return True
+    if supports is not None:
+        ax, ay = pulls(m, rules, i)
+        bx, by = pulls(m, rules, j)
+        return not (ax != bx or ay != by)
+    return (word(m.disks, i * WORDS + FLAGS) ^ word(m.disks, j * WORDS + FLAGS)) & IMMOVABLE == 0
+
+
+@inline
+def pair_is_due(m, rules, i, j, kx, ky):
+    """The contact time of a pair, NEVER if it has just met or never meets."""
+    if not can_meet(m, i, j, rules.classes):
+        return NEVER
+    time = pair_time(m, rules, i, j, kx, ky)
+    if time < NEVER and flies_alike(m, rules, i, j, rules.gx, rules.classes, m.supports) and just_met(m, i, j, kx, ky):
+        return NEVER
+    return time
