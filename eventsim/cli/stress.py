@@ -38,11 +38,9 @@ FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
     default=2,
     show_default=True,
     metavar="W",
-    help="Engines that run at the same time.",
+    help="Processes at the same time.",
 )
-@click.option(
-    "--soak", type=Whole(min=1), metavar="N", help="Instead: N random scenes, engine against engine."
-)
+@click.option("--soak", type=Whole(min=1), metavar="N", help="Instead: N random scenes, engine against engine.")
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="S", help="First seed of --soak."
 )
@@ -94,10 +92,13 @@ def command(
     Exit codes: 0 done; 1 an event-driven engine is at fault; 2 bad usage; 130 interrupted (a soak tells what
     it found so far).
     """
+    from eventsim.simulation import engine_named
+
     if soak is not None:
         if names or out or table:
             raise click.UsageError("--soak draws its own scenes: no NAME, --out or --csv with it")
-        _soak(range(seed, seed + soak), engines or ("reference", "fast"), as_json, quiet)
+        against = tuple(engine_named(name).name for name in dict.fromkeys(engines)) or ("reference", "fast")
+        _soak(range(seed, seed + soak), against, workers, as_json, quiet)
         return
     figure_path = writable(out, "--out", FIGURE_SUFFIXES)
     table_path = writable(table, "--csv", (".csv",))
@@ -106,7 +107,6 @@ def command(
     from eventsim.cli.verdicts import as_data, as_listing, as_text
     from eventsim.cli.words import as_json_text
     from eventsim.engines import ENGINES
-    from eventsim.simulation import engine_named
     from eventsim.validate.stress.atlas import atlas_of, write_csv
     from eventsim.validate.stress.catalogue import chosen
     from eventsim.validate.stress.verdict import Verdict
@@ -122,7 +122,7 @@ def command(
         def told(_verdict: Verdict) -> None:
             nonlocal done
             done += 1
-            progress(done / total, done, 0.0)
+            progress.show(done / total, f"{done:,} of {total:,} verdicts")
 
         verdicts = atlas_of(cases, wanted, limit, workers, told)
     if table_path is not None:
@@ -139,7 +139,7 @@ def command(
         click.get_current_context().exit(FAILED)
 
 
-def _soak(seeds: range, engines: tuple[str, ...], as_json: bool, quiet: bool) -> None:
+def _soak(seeds: range, engines: tuple[str, ...], workers: int, as_json: bool, quiet: bool) -> None:
     """Run the soak; print what was found, also up to an interrupt."""
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.verdicts import soak_data, soak_text
@@ -150,8 +150,8 @@ def _soak(seeds: range, engines: tuple[str, ...], as_json: bool, quiet: bool) ->
     done, interrupted = 0, False
     try:
         with ProgressBar(quiet=quiet) as progress:
-            for done, finding in enumerate(soak(seeds, engines), 1):
-                progress(done / len(seeds), done, 0.0)
+            for done, finding in enumerate(soak(seeds, engines, workers), 1):
+                progress.show(done / len(seeds), f"{done:,} of {len(seeds):,} scenes, {len(findings)} findings")
                 if finding is not None:
                     findings.append(finding)
     except KeyboardInterrupt:

@@ -13,6 +13,7 @@ from pathlib import Path
 from time import perf_counter
 from types import ModuleType
 from typing import Any
+from uuid import uuid4
 
 from llvmlite import binding
 from numba import cfunc, config, njit, types
@@ -120,14 +121,30 @@ def _kept(compiler: Callable[..., Any], function: Callable[..., Any], *signature
     before = config.CACHE_DIR
     config.CACHE_DIR = str(_FOLDER)  # read when the function is decorated; the caller's own setting is left alone
     try:
-        return compiler(*signature, error_model="numpy", cache=True)(function)
+        kept = compiler(*signature, error_model="numpy", cache=True)(function)
     except RuntimeError:  # no folder to write to
         return compiler(*signature, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
+    name_apart(kept)
+    return kept
+
+
+def name_apart(kept: Any) -> None:
+    """Let no two processes give one name to two kernels.
+
+    numba numbers the files of a function's versions by the index that it has read; two processes that compile at one time would
+    write different machine code under one number, and one of them would later be run with the other's arguments.
+    """
+    files = getattr(
+        kept._cache, "_cache_file", None
+    )  # numba's own affair: where it is not there, names stay as they are
+    if files is not None:
+        files._data_name_pattern = files._data_name_pattern.replace("{number:d}", "{number:d}." + _THIS_PROCESS)
 
 
 _FOLDER = cache_folder()
+_THIS_PROCESS = uuid4().hex[:8]
 
 _CAREFUL = types.float64(*[types.float64] * 14)
 _careful = types.ExternalFunction("eventsim_careful_pair_delay", _CAREFUL)

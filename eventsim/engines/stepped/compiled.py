@@ -41,11 +41,13 @@ else:
         before = config.CACHE_DIR
         config.CACHE_DIR = _FOLDER  # read when the function is decorated
         try:
-            return cast(Loop, njit(error_model="numpy", cache=True)(function))
+            kept = njit(error_model="numpy", cache=True)(function)
         except RuntimeError:  # no folder to write to
             return cast(Loop, njit(error_model="numpy")(function))
         finally:
             config.CACHE_DIR = before
+        compiled.name_apart(kept)
+        return cast(Loop, kept)
 
     def part(function: Loop) -> Loop:
         """Compile what loops call."""

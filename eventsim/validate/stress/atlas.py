@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import csv
-import multiprocessing
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from multiprocessing.connection import Connection, wait
-from multiprocessing.process import BaseProcess
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
-from time import perf_counter
 
 from eventsim.validate.stress.case import Case
 from eventsim.validate.stress.catalogue import CASES
 from eventsim.validate.stress.verdict import Verdict, Word, hung, judge
+from eventsim.validate.stress.workers import Silence, answers
 
 PATIENCE = 180.0
 """Seconds beyond the limit after which an engine is ended from outside: kernels for a scene may have to be compiled."""
@@ -23,22 +20,6 @@ COLUMNS = ("scene", "engine", "verdict", "fault", "error", "tolerance", "seconds
 Told = Callable[[Verdict], None]
 
 
-@dataclass(slots=True)
-class _Worker:
-    """A process that judges one engine: where to hear from it, which cases are left, when the present one began.
-
-    patience: seconds for one case.  ended: it will say no more.
-    """
-
-    engine: str
-    process: BaseProcess
-    pipe: Connection
-    left: list[Case]
-    began: float
-    patience: float
-    ended: bool = False
-
-
 def atlas_of(
     cases: Sequence[Case], engines: Sequence[str], limit: float, workers: int, told: Told | None = None
 ) -> list[Verdict]:
@@ -46,77 +27,20 @@ def atlas_of(
 
     limit: seconds for one engine on one case.  Verdicts are in the order of the cases, then of the engines.
     """
+    jobs = [[(engine, case.name) for case in cases] for engine in engines]
     found: dict[tuple[str, str], Verdict] = {}
-    for verdict in _verdicts(list(cases), list(engines), limit, max(workers, 1)):
-        found[verdict.case, verdict.engine] = verdict
+    for (engine, name), answer in answers(partial(judge_named, limit=limit), jobs, workers, limit + PATIENCE):
+        verdict = hung(CASES[name], engine, answer) if isinstance(answer, Silence) else answer
+        found[name, engine] = verdict
         if told is not None:
             told(verdict)
     return [found[case.name, engine] for case in cases for engine in engines]
 
 
-def _verdicts(cases: list[Case], engines: list[str], limit: float, workers: int) -> Iterator[Verdict]:
-    waiting = list(engines) if cases else []
-    running: list[_Worker] = []
-    try:
-        while waiting or running:
-            while waiting and len(running) < workers:
-                running.append(_started(waiting.pop(0), cases, limit))
-            ready = wait([worker.pipe for worker in running], timeout=0.2)
-            for worker in list(running):
-                verdict = _heard(worker, worker.pipe in ready)
-                if verdict is None:
-                    continue
-                yield verdict
-                worker.left.pop(0)
-                worker.began = perf_counter()
-                if worker.left and not worker.ended:
-                    continue
-                running.remove(worker)
-                _end(worker)
-                if worker.left:
-                    running.append(_started(worker.engine, worker.left, limit))
-    finally:
-        for worker in running:
-            _end(worker)
-
-
-def _started(engine: str, cases: list[Case], limit: float) -> _Worker:
-    context = multiprocessing.get_context("spawn")
-    here, there = context.Pipe(duplex=False)
-    names = [case.name for case in cases]
-    process = context.Process(target=judge_all, args=(names, engine, limit, there), daemon=True)
-    process.start()
-    there.close()
-    return _Worker(engine, process, here, list(cases), perf_counter(), limit + PATIENCE)
-
-
-def judge_all(names: Iterable[str], engine: str, limit: float, pipe: Connection) -> None:
-    """Judge an engine on cases, one after the other; what a process of the atlas does."""
-    for name in names:
-        pipe.send(judge(CASES[name], engine, limit))
-    pipe.close()
-
-
-def _heard(worker: _Worker, ready: bool) -> Verdict | None:
-    """The next verdict from a process, or on it: one that ends or takes too long has hung."""
-    seconds = perf_counter() - worker.began
-    if ready:
-        try:
-            verdict: Verdict = worker.pipe.recv()
-        except EOFError:
-            worker.ended = True
-            return hung(worker.left[0], worker.engine, seconds, "its process ended")
-        return verdict
-    if seconds > worker.patience:
-        worker.ended = True
-        return hung(worker.left[0], worker.engine, seconds)
-    return None
-
-
-def _end(worker: _Worker) -> None:
-    worker.process.kill()
-    worker.process.join()
-    worker.pipe.close()
+def judge_named(cell: tuple[str, str], limit: float) -> Verdict:
+    """Judge a cell of the atlas, (engine, case)."""
+    engine, name = cell
+    return judge(CASES[name], engine, limit)
 
 
 def write_csv(verdicts: Iterable[Verdict], path: Path) -> None:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from time import process_time
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,12 +16,16 @@ from eventsim.engines.base import Run
 from eventsim.errors import SceneError
 from eventsim.scene import Box, Channel, Disks, Domain, Open, Periodic, Scene
 from eventsim.simulation import simulate
+from eventsim.validate.stress.workers import Silence, answers
 
 EVENTS, UNTIL = 80, 50.0
 """Where a run of the soak stops; a scene without contacts at its time."""
 
 LIMIT = 5.0
 """Seconds for one run, of computing and without compiling; a longer one has hung."""
+
+PATIENCE = 180.0
+"""Seconds beyond it after which a run is ended from outside: kernels for a scene may have to be compiled."""
 
 MOST_DISKS, TRIES = 7, 40
 
@@ -32,16 +39,21 @@ class Finding:
     sentence: str
 
 
+class Family(NamedTuple):
+    """What all disks of a random scene share, and most of what decides which kernels it needs."""
+
+    domain: Domain
+    radii: tuple[float, float]
+    masses: tuple[float, float]
+    gravity: tuple[float, float] | None
+    restitution: float | None
+    duration: float | None
+
+
 def random_scene(seed: int) -> Scene:
     """A few disks whose places, speeds, radii and masses are multiples of each other, moved by an ulp or not at all."""
     rng = np.random.default_rng(seed)
-    side = float(rng.choice([4.0, 6.0, 8.0]))
-    domain: Domain = (Box((side, side)), Periodic((side, side)), Channel((side, side)), Open())[rng.integers(4)]
-    radii = rng.choice([(0.5, 0.5), (0.5, 0.25), (0.5, 0.0), (1.0, 2.0**-20)])
-    masses = rng.choice([(1.0, 1.0), (1.0, 3.0), (1.0, 1e12), (1.0, math.inf), (1.0, 0.0)])
-    gravity = (0.0, -1.0) if rng.random() < 0.2 else None
-    restitution = float(rng.choice([0.5, 0.9])) if rng.random() < 0.3 else None
-    duration = 1e-3 if restitution is not None and rng.random() < 0.7 else None
+    family, side = _random_family(rng)
     found: list[tuple[list[float], list[float], float, float]] = []
     wanted = int(rng.integers(2, MOST_DISKS + 1))
     scene: Scene | None = None
@@ -51,15 +63,15 @@ def random_scene(seed: int) -> Scene:
             place = np.nextafter(place, place + rng.choice([-1.0, 1.0], size=2))
         velocity = rng.integers(-4, 5, size=2) / 4.0
         kind = rng.integers(2)
-        new = (place.tolist(), velocity.tolist(), float(radii[kind]), float(masses[rng.integers(2)]))
+        new = (place.tolist(), velocity.tolist(), family.radii[kind], family.masses[rng.integers(2)])
         position, speed, radius, mass = zip(*found, new, strict=True)
         try:
             scene = Scene(
                 Disks(position, speed, radius, mass),
-                domain,
-                gravity=gravity,
-                restitution=restitution,
-                contact_duration=duration,
+                family.domain,
+                gravity=family.gravity,
+                restitution=family.restitution,
+                contact_duration=family.duration,
                 until=UNTIL,
                 events=EVENTS,
             )
@@ -71,18 +83,50 @@ def random_scene(seed: int) -> Scene:
     return scene if scene is not None else random_scene(seed + 2**32)
 
 
-def soak(seeds: range, engines: tuple[str, ...]) -> Iterator[Finding | None]:
-    """For each seed, what is wrong, or None: a hang, a number that is none, a clock that steps back, engines that disagree."""
+def _random_family(rng: np.random.Generator) -> tuple[Family, float]:
+    """What the disks share, and the side of the square that their centres are in."""
+    side = float(rng.choice([4.0, 6.0, 8.0]))
+    domain: Domain = (Box((side, side)), Periodic((side, side)), Channel((side, side)), Open())[rng.integers(4)]
+    radii = rng.choice([(0.5, 0.5), (0.5, 0.25), (0.5, 0.0), (1.0, 2.0**-20)])
+    masses = rng.choice([(1.0, 1.0), (1.0, 3.0), (1.0, 1e12), (1.0, math.inf), (1.0, 0.0)])
+    gravity = (0.0, -1.0) if rng.random() < 0.2 else None
+    restitution = float(rng.choice([0.5, 0.9])) if rng.random() < 0.3 else None
+    duration = 1e-3 if restitution is not None and rng.random() < 0.7 else None
+    return Family(domain, tuple(radii.tolist()), tuple(masses.tolist()), gravity, restitution, duration), side
+
+
+def soak(seeds: range, engines: tuple[str, ...], workers: int = 1) -> Iterator[Finding | None]:
+    """For each seed what is wrong, or None: a hang, a number that is none, a clock that steps back, engines that disagree.
+
+    workers: processes.  Seeds that share kernels go to one of them, so that each kernel is compiled, or loaded, only once; seeds
+    come in the order of their answers.
+    """
+    jobs = _shared_out(seeds, workers)
+    for seed, answer in answers(partial(finding_of, engines=engines), jobs, workers, LIMIT + PATIENCE):
+        yield Finding(seed, " or ".join(engines), str(answer)) if isinstance(answer, Silence) else answer
+
+
+def _shared_out(seeds: range, workers: int) -> list[list[int]]:
+    """The seeds of each worker: whole families, whose scenes share their kernels."""
+    families: dict[Hashable, list[int]] = defaultdict(list)
     for seed in seeds:
-        yield _first_finding(seed, engines)
+        family, _ = _random_family(np.random.default_rng(seed))
+        families[type(family.domain), family.gravity, family.restitution is None, family.duration].append(seed)
+    by_size = sorted(families.values(), key=len, reverse=True)
+    return [[seed for members in by_size[k::workers] for seed in members] for k in range(workers)]
 
 
-def _first_finding(seed: int, engines: tuple[str, ...]) -> Finding | None:
+def finding_of(seed: int, engines: tuple[str, ...]) -> Finding | None:
+    """What is wrong with a seed, if anything."""
     scene = random_scene(seed)
     first: Run | None = None
     for engine in engines:
         began = process_time()
-        run = simulate(scene, engine=engine, log=True)
+        try:
+            run = simulate(scene, engine=engine, log=True)
+        except Exception as failure:
+            # An engine that fails is a finding; the other seeds are still to be looked at.
+            return Finding(seed, engine, f"failed: {type(failure).__name__}: {failure}")
         # The processor's clock does not see that other programs are at work, the elapsed time not that kernels were compiled.
         seconds = min(process_time() - began, run.elapsed_s)
         sentence = _fault(run)

@@ -9,6 +9,7 @@ from time import perf_counter
 
 from eventsim.errors import EventsimError
 from eventsim.validate.stress.case import Bench, Case, GaveUpError, TimeUpError
+from eventsim.validate.stress.workers import Silence
 
 EVENT_DRIVEN, CERTIFIED = ("reference", "fast"), "certified"
 """Engines that must be right, or refuse with a documented reason; and the one that may also say that it cannot prove a scene,
@@ -71,10 +72,10 @@ def judge(case: Case, engine: str, limit: float) -> Verdict:
     return Verdict(case.name, engine, word, error, perf_counter() - began, sentence, is_fault(engine, word, documented))
 
 
-def hung(case: Case, engine: str, seconds: float, what: str | None = None) -> Verdict:
+def hung(case: Case, engine: str, silence: Silence) -> Verdict:
     """The verdict on an engine that did not come back."""
-    sentence = f"{what or 'did not come back'} after {seconds:.1f} s"
-    return Verdict(case.name, engine, Word.SLOW, math.nan, seconds, sentence, engine in EVENT_DRIVEN)
+    fault = engine in EVENT_DRIVEN
+    return Verdict(case.name, engine, Word.SLOW, math.nan, silence.seconds, str(silence), fault)
 
 
 def is_fault(engine: str, word: Word, documented: bool) -> bool:

@@ -3,17 +3,15 @@
 import csv
 import json
 import math
-import os
-import time
 
 import pytest
 from click.testing import CliRunner
 
-import eventsim.validate.stress.atlas as atlas
 from eventsim.cli import main
 from eventsim.validate.stress.case import Case, GaveUpError
 from eventsim.validate.stress.catalogue import CASES
-from eventsim.validate.stress.verdict import Word, judge
+from eventsim.validate.stress.verdict import Word, hung, judge
+from eventsim.validate.stress.workers import Silence
 
 
 def case(answer, refusals=()):
@@ -52,24 +50,11 @@ def test_a_documented_refusal_is_no_fault():
     assert verdict.sentence == "stopped by digits: spent"
 
 
-def ends_or_hangs(names, engine, limit, pipe):
-    """In place of `judge_all`: one case ends the process, another one hangs."""
-    for name in names:
-        if name == "f2-miss":
-            os._exit(1)
-        if name == "f8-two-pairs":
-            time.sleep(60.0)
-        pipe.send(judge(CASES[name], engine, limit))
-
-
-def test_a_process_that_ends_or_hangs_costs_only_its_own_case(monkeypatch):
-    monkeypatch.setattr(atlas, "judge_all", ends_or_hangs)
-    monkeypatch.setattr(atlas, "PATIENCE", 4.0)
-    names = ("f2-miss", "f8-two-pairs", "f9-touching")
-    verdicts = atlas.atlas_of([CASES[name] for name in names], ["reference"], 0.5, 1)
-    assert [v.word for v in verdicts] == [Word.SLOW, Word.SLOW, Word.RIGHT]
-    assert "its process ended" in verdicts[0].sentence
-    assert "did not come back" in verdicts[1].sentence
+def test_an_engine_that_does_not_come_back_has_hung():
+    verdict = hung(CASES["f2-miss"], "fast", Silence(190.0, ended=False))
+    assert (verdict.word, verdict.fault) == (Word.SLOW, True)
+    assert verdict.sentence == "did not come back after 190.0 s"
+    assert not hung(CASES["f2-miss"], "stepped", Silence(1.0, ended=True)).fault
 
 
 def test_stress_prints_a_table_and_writes_figure_and_csv(tmp_path):

@@ -8,11 +8,12 @@ from click.testing import CliRunner
 from eventsim.cli import main
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
-from eventsim.validate.stress.soak import Finding, random_scene, soak
+from eventsim.validate.stress.soak import Finding, _shared_out, finding_of, random_scene, soak
 
 
 def test_the_reference_engine_survives_a_small_soak():
-    assert [found for found in soak(range(1000, 1060), ("reference",)) if found is not None] == []
+    findings = [finding_of(seed, ("reference",)) for seed in range(1000, 1060)]
+    assert findings == [None] * 60
 
 
 def test_invariants_hold_event_by_event():
@@ -29,11 +30,30 @@ def test_a_seed_gives_one_scene():
 @pytest.mark.slow
 def test_the_engines_agree_on_random_scenes():
     pytest.importorskip("numba")
-    assert [found for found in soak(range(300), ("reference", "fast")) if found is not None] == []
+    assert list(soak(range(300), ("reference", "fast"), workers=2)) == [None] * 300
+
+
+def test_seeds_are_shared_out_by_what_kernels_they_need():
+    seeds = range(200)
+    shares = _shared_out(seeds, 3)
+    assert sorted(seed for share in shares for seed in share) == list(seeds)
+    kinds = [
+        {(type(s.domain), s.gravity, s.contact_duration, s.restitution is None) for s in map(random_scene, share)}
+        for share in shares
+    ]
+    assert not kinds[0] & kinds[1] | kinds[0] & kinds[2] | kinds[1] & kinds[2]
+
+
+def test_an_engine_that_fails_is_a_finding(monkeypatch):
+    def broken(*_args, **_options):
+        raise ZeroDivisionError("division by zero")
+
+    monkeypatch.setattr("eventsim.validate.stress.soak.simulate", broken)
+    assert finding_of(3, ("reference",)) == Finding(3, "reference", "failed: ZeroDivisionError: division by zero")
 
 
 def test_an_interrupted_soak_tells_what_it_found_so_far(monkeypatch):
-    def broken_off(seeds, engines):
+    def broken_off(seeds, engines, workers):
         yield None
         yield Finding(seeds[1], engines[0], "took 6.0 s")
         raise KeyboardInterrupt
