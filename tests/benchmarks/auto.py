@@ -8,12 +8,12 @@ time of the process within `simulate`, which other work on the machine disturbs 
 
 from __future__ import annotations
 
-import argparse
-import csv
 import statistics
 import subprocess
 import sys
-from pathlib import Path
+from collections.abc import Iterator
+
+from tests.benchmarks.table import Table, arguments, whole
 
 COLUMNS = ("scene", "events", "reference_s", "fast_s", "auto_s", "ended_with", "auto_ratio")
 ONCE = """
@@ -36,10 +36,9 @@ def seconds(scene: str, engine: str, events: int) -> tuple[float, str]:
     return float(taken), ended_with
 
 
-def measure(scene: str, lengths: list[int], repeats: int) -> list[dict[str, object]]:
+def measure(scene: str, lengths: list[int], repeats: int) -> Iterator[dict[str, object]]:
     """The rows of the table for one scene."""
     seconds(scene, "fast", 1000)
-    rows: list[dict[str, object]] = []
     reference, before = 0.0, 1
     for events in lengths:
         scaled = reference * events / before
@@ -53,40 +52,28 @@ def measure(scene: str, lengths: list[int], repeats: int) -> list[dict[str, obje
         middle = {engine: statistics.median(values) for engine, values in found.items()}
         reference, before = middle.get("reference", scaled), events
         best = min(reference, middle["fast"])
-        rows.append(
-            {
-                "scene": scene,
-                "events": events,
-                "reference_s": round(reference, 3),
-                "fast_s": round(middle["fast"], 3),
-                "auto_s": round(middle["auto"], 3),
-                "ended_with": ended_with,
-                "auto_ratio": round(middle["auto"] / best, 2),
-            }
-        )
-        print(" ".join(f"{rows[-1][name]!s:>14}" for name in COLUMNS), flush=True)
-    return rows
+        yield {
+            "scene": scene,
+            "events": events,
+            "reference_s": round(reference, 3),
+            "fast_s": round(middle["fast"], 3),
+            "auto_s": round(middle["auto"], 3),
+            "ended_with": ended_with,
+            "auto_ratio": round(middle["auto"] / best, 2),
+        }
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = arguments(__doc__)
     parser.add_argument("--scene", nargs="+", default=["gas", "periodic-fluid"])
-    parser.add_argument("--events", type=lambda text: int(float(text)), nargs="+", default=[10**k for k in range(2, 8)])
+    parser.add_argument("--events", type=whole, nargs="+", default=[10**k for k in range(2, 8)])
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
-    ).stdout.strip()
-    print(" ".join(f"{name:>14}" for name in COLUMNS))
-    table = [
-        row | {"commit": commit} for scene in chosen.scene for row in measure(scene, chosen.events, chosen.repeats)
-    ]
-    if chosen.csv is not None:
-        with chosen.csv.open("w", newline="") as stream:
-            writer = csv.DictWriter(stream, [*COLUMNS, "commit"])
-            writer.writeheader()
-            writer.writerows(table)
+    table = Table(COLUMNS)
+    for scene in chosen.scene:
+        for row in measure(scene, chosen.events, chosen.repeats):
+            table.add(row)
+    table.write(chosen.csv)
 
 
 if __name__ == "__main__":

@@ -8,13 +8,9 @@ contacts, those with walls as well, per second of processor time.
 
 from __future__ import annotations
 
-import argparse
-import csv
 import math
 import statistics
-import subprocess
 from collections.abc import Callable
-from pathlib import Path
 from time import process_time
 
 import numpy as np
@@ -24,6 +20,7 @@ from eventsim.engines.base import Stop
 from eventsim.engines.fast import FastSession
 from eventsim.scene.stage import stage_of
 from tests.benchmarks.rates import lattice_gas
+from tests.benchmarks.table import Table, arguments, whole
 
 COLUMNS = ("scene", "n", "contacts", "rate_median", "of_plain", "crossings", "stale", "bytes_per_disk", "compile_s")
 BUDGET = 1 << 40
@@ -40,7 +37,9 @@ def polydisperse(n: int, eta: float) -> es.Scene:
     """Radii from 1/6 to 1/2, equally spread, places exchanged at random."""
     share = np.random.default_rng(2).uniform(1.0 / 3.0, 1.0, n)
     scene = lattice_gas(n, eta / float(np.mean(share**2)))
-    return es.Scene(es.Disks(scene.disks.position, scene.disks.velocity, 0.5 * np.resize(share, len(scene.disks))), scene.domain)
+    return es.Scene(
+        es.Disks(scene.disks.position, scene.disks.velocity, 0.5 * np.resize(share, len(scene.disks))), scene.domain
+    )
 
 
 def with_large(scene: es.Scene, radii: np.ndarray, seed: int = 3) -> es.Scene:
@@ -123,31 +122,21 @@ def measure(
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--n", type=lambda text: int(float(text)), nargs="+", default=[10_000])
+    parser = arguments(__doc__)
+    parser.add_argument("--n", type=whole, nargs="+", default=[10_000])
     parser.add_argument("--eta", type=float, default=0.4)
     parser.add_argument(
         "--scenes", nargs="+", choices=[name for name in SCENES if name != "plain"], default=list(SCENES)[1:]
     )
-    parser.add_argument("--contacts", type=lambda text: int(float(text)), default=300_000)
+    parser.add_argument("--contacts", type=whole, default=300_000)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--warm-up", type=float, default=5.0, help="contacts per disk before the clock starts")
-    parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
-    ).stdout.strip()
-    table = []
-    print(" ".join(f"{name:>16}" for name in COLUMNS))
+    table = Table(COLUMNS, 16)
     for n in chosen.n:
         for row in measure(n, chosen.eta, ["plain", *chosen.scenes], chosen.contacts, chosen.repeats, chosen.warm_up):
-            table.append({**row, "eta": chosen.eta, "commit": commit})
-            print(" ".join(f"{row[name]!s:>16}" for name in COLUMNS), flush=True)
-    if chosen.csv is not None:
-        with chosen.csv.open("w", newline="") as stream:
-            writer = csv.DictWriter(stream, [*COLUMNS, "eta", "commit"])
-            writer.writeheader()
-            writer.writerows(table)
+            table.add({**row, "eta": chosen.eta})
+    table.write(chosen.csv)
 
 
 if __name__ == "__main__":

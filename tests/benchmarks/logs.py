@@ -8,16 +8,14 @@ simulates and closes the file: what remains of the ratio where the writer has a 
 
 from __future__ import annotations
 
-import argparse
-import csv
 import statistics
-import subprocess
 import tempfile
 from pathlib import Path
 from time import perf_counter, process_time, thread_time
 
 import eventsim as es
 from tests.benchmarks.rates import lattice_gas
+from tests.benchmarks.table import Table, arguments, whole
 
 COLUMNS = ("n", "eta", "log", "contacts", "rate_median", "ratio", "own_ratio", "cpu_ratio", "bytes_per_row")
 KINDS = ("none", "npz compact", "npz", "parquet compact", "parquet", "csv compact", "csv")
@@ -72,31 +70,21 @@ def measure(n: int, eta: float, contacts: int, repeats: int, kinds: list[str]) -
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--n", type=lambda text: int(float(text)), nargs="+", default=[1000, 10_000, 100_000])
+    parser = arguments(__doc__)
+    parser.add_argument("--n", type=whole, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--eta", type=float, nargs="+", default=[0.5])
-    parser.add_argument("--contacts", type=lambda text: int(float(text)), default=2_000_000)
+    parser.add_argument("--contacts", type=whole, default=2_000_000)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
-    parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
-    ).stdout.strip()
-    table = []
-    print(" ".join(f"{name:>15}" for name in COLUMNS))
+    table = Table(COLUMNS, 15)
     for n in chosen.n:
         for eta in chosen.eta:
             for row in measure(
                 n, eta, chosen.contacts, chosen.repeats, ["none", *(k for k in chosen.kinds if k != "none")]
             ):
-                table.append({**row, "commit": commit})
-                print(" ".join(f"{row[name]!s:>15}" for name in COLUMNS), flush=True)
-    if chosen.csv is not None:
-        with chosen.csv.open("w", newline="") as stream:
-            writer = csv.DictWriter(stream, [*COLUMNS, "commit"])
-            writer.writeheader()
-            writer.writerows(table)
+                table.add(row)
+    table.write(chosen.csv)
 
 
 if __name__ == "__main__":

@@ -8,13 +8,9 @@ disks, take turns, and are timed by the CPU time of the process; pymunk steps by
 
 from __future__ import annotations
 
-import argparse
-import csv
 import math
 import statistics
-import subprocess
 from collections.abc import Callable
-from pathlib import Path
 from time import process_time
 
 import eventsim as es
@@ -22,6 +18,7 @@ from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
 from eventsim.scene.files import scene_from_dict
 from eventsim.scene.stage import stage_of
+from tests.benchmarks.table import Table, arguments
 
 COLUMNS = ("peer", "n", "eta", "unit", "peer_rate", "fast_rate", "ratio")
 STEP = 1e-3
@@ -132,34 +129,24 @@ def compare(
     found = [(peer_rate(), own_rate()) for _ in range(repeats)]
     theirs, ours = (statistics.median(rates) for rates in zip(*found, strict=True))
     row = (peer, n, eta, unit, float(f"{theirs:.4g}"), float(f"{ours:.4g}"), round(ours / theirs, 1))
-    print(" ".join(f"{value!s:>18}" for value in row), flush=True)
     return dict(zip(COLUMNS, row, strict=True))
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = arguments(__doc__)
     parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
-    ).stdout.strip()
-    print(" ".join(f"{name:>18}" for name in COLUMNS))
-    table = []
+    table = Table(COLUMNS, 18)
     for eta in (0.1, 0.3):
         scene = gas(250, eta)
         pace = billiards_contacts(scene), own_contacts(scene)
-        table.append(compare("billiards", 250, eta, "contacts/s", *pace, chosen.repeats))
+        table.add(compare("billiards", 250, eta, "contacts/s", *pace, chosen.repeats))
     for eta in (0.1, 0.3):
         for n in (100, 250, 500):
             scene = gas(n, eta)
             pace = pymunk_seconds(scene), own_seconds(scene)
-            table.append(compare("pymunk", n, eta, "simulated s/s", *pace, chosen.repeats))
-    if chosen.csv is not None:
-        with chosen.csv.open("w", newline="") as stream:
-            writer = csv.DictWriter(stream, [*COLUMNS, "commit"])
-            writer.writeheader()
-            writer.writerows(row | {"commit": commit} for row in table)
+            table.add(compare("pymunk", n, eta, "simulated s/s", *pace, chosen.repeats))
+    table.write(chosen.csv)
 
 
 if __name__ == "__main__":

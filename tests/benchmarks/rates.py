@@ -8,15 +8,11 @@ The yardstick is a folder with a module `yardstick` that has `System(n, eta)` wi
 
 from __future__ import annotations
 
-import argparse
-import csv
 import importlib
 import math
 import statistics
-import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from time import process_time
 
 import numpy as np
@@ -25,6 +21,7 @@ import eventsim as es
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
 from eventsim.scene.stage import stage_of
+from tests.benchmarks.table import Table, arguments, whole
 
 COLUMNS = (
     "n",
@@ -129,31 +126,20 @@ def measure(
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--n", type=lambda text: int(float(text)), nargs="+", default=[100, 1000, 10_000])
+    parser = arguments(__doc__)
+    parser.add_argument("--n", type=whole, nargs="+", default=[100, 1000, 10_000])
     parser.add_argument("--eta", type=float, nargs="+", default=[0.2, 0.5, 0.7])
-    parser.add_argument("--contacts", type=lambda text: int(float(text)), default=1_000_000)
+    parser.add_argument("--contacts", type=whole, default=1_000_000)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--warm-up", type=float, default=10.0, help="contacts per disk before the clock starts")
     parser.add_argument("--yardstick", help="folder of the yardstick")
-    parser.add_argument("--csv", type=Path, help="write the table here as well")
     chosen = parser.parse_args()
-    commit = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
-    ).stdout.strip()
-    table = []
-    print(" ".join(f"{name:>14}" for name in COLUMNS))
+    table = Table(COLUMNS)
     for n in chosen.n:
         for eta in chosen.eta:
             for row in measure(n, eta, chosen.contacts, chosen.repeats, chosen.yardstick, chosen.warm_up):
-                table.append({**row, "commit": commit})
-                print(" ".join(f"{row[name]!s:>14}" for name in COLUMNS), flush=True)
-    if chosen.csv is not None:
-        chosen.csv.parent.mkdir(parents=True, exist_ok=True)
-        with chosen.csv.open("w", newline="") as stream:
-            writer = csv.DictWriter(stream, [*COLUMNS, "commit"])
-            writer.writeheader()
-            writer.writerows(table)
+                table.add(row)
+    table.write(chosen.csv)
 
 
 if __name__ == "__main__":

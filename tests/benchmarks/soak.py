@@ -20,6 +20,7 @@ from eventsim.engines.base import Session, Stop
 from eventsim.engines.residuals import residuals_of
 from eventsim.formulas.clock import clock_time
 from eventsim.scene.stage import stage_of
+from tests.benchmarks.table import whole
 
 LOOKS = 200
 WARM_UP = 0.01
@@ -138,7 +139,7 @@ def draw(looks: list[Look], title: str, path: Path) -> None:
 def main() -> int:
     """Read the command line, soak, chart, judge."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--events", type=lambda text: int(float(text)), default=10**6)
+    parser.add_argument("--events", type=whole, default=10**6)
     parser.add_argument("--n", type=int, default=10_000)
     parser.add_argument("--packing-fraction", type=float, default=0.5)
     parser.add_argument("--engine", default="fast", choices=("fast", "reference"))

@@ -11,7 +11,6 @@ turns, of the rate of the whole package to that of the row, per second of proces
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import statistics
 import subprocess
@@ -20,6 +19,8 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from time import process_time
+
+from tests.benchmarks.table import Table, arguments, whole
 
 COLUMNS = ("without", "ratio", "lowest", "highest", "rate_median")
 WHOLE, BARE = "nothing", "the driver: log, measures, progress"
@@ -153,7 +154,9 @@ def measure(n: int, eta: float, contacts: int, repeats: int) -> list[dict[str, o
     for name, found in rates.items():
         ratios = [whole / other for whole, other in zip(rates[WHOLE], found, strict=True)]
         values = statistics.median(ratios), min(ratios), max(ratios), statistics.median(found)
-        rows.append(dict(zip(COLUMNS, (name, *(round(value, 3) for value in values[:3]), round(values[3])), strict=True)))
+        rows.append(
+            dict(zip(COLUMNS, (name, *(round(value, 3) for value in values[:3]), round(values[3])), strict=True))
+        )
     return rows
 
 
@@ -167,27 +170,21 @@ def ask(worker: subprocess.Popen[str], line: str | None) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--n", type=lambda text: int(float(text)), default=1000)
+    parser = arguments(__doc__)
+    parser.add_argument("--n", type=whole, default=1000)
     parser.add_argument("--eta", type=float, default=0.5)
-    parser.add_argument("--contacts", type=lambda text: int(float(text)), default=2_000_000)
+    parser.add_argument("--contacts", type=whole, default=2_000_000)
     parser.add_argument("--repeats", type=int, default=9)
-    parser.add_argument("--csv", type=Path, help="write the table here as well")
     parser.add_argument("--serve", help=argparse.SUPPRESS)
     chosen = parser.parse_args()
     if chosen.serve is not None:
         serve(chosen.serve, chosen.n, chosen.eta, chosen.contacts)
         return
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
-    rows = measure(chosen.n, chosen.eta, chosen.contacts, chosen.repeats)
-    for row in rows:
-        print(f"{row['without']!s:40} {row['ratio']:7} ({row['lowest']} to {row['highest']})  {row['rate_median']:>10}/s")
-    if chosen.csv is not None:
-        with chosen.csv.open("w", newline="") as stream:
-            writer = csv.DictWriter(stream, [*COLUMNS, "n", "eta", "contacts", "commit"])
-            writer.writeheader()
-            extra = {"n": chosen.n, "eta": chosen.eta, "contacts": chosen.contacts, "commit": commit}
-            writer.writerows({**row, **extra} for row in rows)
+    table = Table(COLUMNS, 40)
+    gas = {"n": chosen.n, "eta": chosen.eta, "contacts": chosen.contacts}
+    for row in measure(chosen.n, chosen.eta, chosen.contacts, chosen.repeats):
+        table.add({**row, **gas})
+    table.write(chosen.csv)
 
 
 if __name__ == "__main__":
