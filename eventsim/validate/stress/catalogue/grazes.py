@@ -11,9 +11,14 @@ from eventsim.validate.stress.catalogue.scenes import exact_delay, in_box, on_pl
 ULP = 2.0**-52
 
 
+def passing(dy: float) -> Scene:
+    """A disk flies past another one at rest; their centres pass at a distance dy, in diameters."""
+    return on_plane([[-3.0, dy], [0.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]])
+
+
 def _graze(bench: Bench) -> float:
     dy = 1.0 - 2.0**-53
-    run = bench.run(on_plane([[-3.0, dy], [0.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]]), until=10.0)
+    run = bench.run(passing(dy), until=10.0)
     across = dy * math.sqrt((1.0 - dy) * (1.0 + dy))
     return off(run.state.velocity, [[dy * dy, across], [1.0 - dy * dy, -across]])
 
@@ -21,7 +26,7 @@ def _graze(bench: Bench) -> float:
 def _miss(bench: Bench) -> float:
     worst = 0.0
     for dy in (1.0, 1.0 + 2.0**-52):
-        run = bench.run(on_plane([[-3.0, dy], [0.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]]), until=10.0)
+        run = bench.run(passing(dy), until=10.0)
         worst = max(worst, run.counters.events, off(run.state.velocity, [[1.0, 0.0], [0.0, 0.0]]))
     return worst
 

@@ -1,0 +1,45 @@
+"""What an engine is asked for: when to stop, and from where to go on."""
+
+import math
+
+import pytest
+
+import eventsim as es
+from eventsim.validate.stress.catalogue.scenes import on_plane
+from tests.engines.scenes import lattice_gas
+
+
+@pytest.mark.parametrize(
+    ("wrong", "word"),
+    [
+        ({"until": math.inf}, "finite"),
+        ({"until": -1.0}, "before the start"),
+        ({"until": "4"}, "must be a number"),
+        ({"events": 2.5}, "whole number"),
+        ({"events": True}, "whole number"),
+        ({"events": -3}, "at least 0"),
+        ({}, "nothing says when to stop"),
+    ],
+)
+def test_a_stop_that_makes_no_sense_is_refused(wrong, word):
+    with pytest.raises(es.SceneError, match=word):
+        es.simulate(on_plane([[0.0, 0.0]], [[1.0, 0.0]]), **wrong)
+    with pytest.raises(es.SceneError, match="not a scene"):
+        es.simulate("break")
+
+
+def test_a_time_that_the_clock_cannot_count_is_refused():
+    with pytest.raises(es.EventsimError, match="the clock of this scene ends at"):
+        es.simulate(on_plane([[0.0, 0.0]], [[1.0, 0.0]]), until=1e300)
+
+
+def test_a_snapshot_of_another_scene_is_refused():
+    saved = es.Simulation(lattice_gas(5, 0.1)).snapshot()
+    with pytest.raises(es.EventsimError, match="same scene"):
+        es.Simulation(lattice_gas(6, 0.1)).restore(saved)
+
+
+def test_every_engine_of_the_list_takes_a_scene_and_a_stop():
+    run = es.ENGINES["reference"].run(lattice_gas(5, 0.1), es.Stop(events=3))
+    assert run.counters.events == 3
+    assert es.ENGINES["reference"].run(lattice_gas(5, 0.1), 0.5).time == 0.5
