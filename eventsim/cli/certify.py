@@ -55,8 +55,8 @@ def command(
     Keys of --json:
       scene, name              as typed; the name inside the scene (null without)
       proven, time             events whose order is certain; the scene's clock after them
-      bits, traced             of the last attempt; whether numbers were traced to decide ties
-      attempts                 the ones before: [{bits, traced, events}]
+      bits, traced             of the attempt that came farthest; whether its numbers were traced, for ties
+      attempts                 the other ones: [{bits, traced, events}]
       enclosures               of the end: [{x, y, vx, vy, x_error, y_error, vx_error, vy_error}], one a disk;
                                the true number lies within its error
       difference               {event, time}: the first event that float64 has otherwise (null: none)
@@ -155,7 +155,7 @@ def _attempts(proof: Proof) -> str:
     from eventsim.cli.words import plural
 
     parts = [f"{a.bits}{' traced' if a.traced else ''}: {plural(a.events, 'event')}" for a in proof.attempts]
-    return f" (before: {'; '.join(parts)})" if parts else ""
+    return f" (other attempts: {'; '.join(parts)})" if parts else ""
 
 
 def _float64(proof: Proof) -> str:

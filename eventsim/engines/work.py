@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from time import perf_counter
 from types import FrameType
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -43,6 +43,14 @@ class Sink(Protocol):
 
     def abandon(self) -> None:
         """Leave nothing behind."""
+
+
+@runtime_checkable
+class Provisional(Protocol):
+    """A session that holds rows back, because it may begin again."""
+
+    def break_off(self) -> None:
+        """End here; all rows can be taken."""
 
 
 @dataclass(slots=True)
@@ -92,6 +100,9 @@ class Work:
                     stopped = None
                 if stopped is None and interrupted():
                     stopped = "interrupted"
+                    if isinstance(session, Provisional):
+                        session.break_off()
+                        self._pass_on(session.take_rows())
                 self._keep(stopped)
                 if self.progress is not None:
                     _tell(self.progress, session, self.stop)

@@ -1,6 +1,7 @@
 """Proofs on balls: how many events a bit buys, ties, and what float64 has right."""
 
 import math
+import signal
 from dataclasses import fields, replace
 from fractions import Fraction
 from time import process_time
@@ -15,6 +16,7 @@ from eventsim.engines.base import Stop
 from eventsim.engines.certified import CertifiedSession
 from eventsim.engines.certified.ball import Undecided, ball, traced
 from eventsim.engines.certified.proof import prove
+from eventsim.engines.drive import Wishes, drive
 from eventsim.errors import EventsimError
 from eventsim.record.compare import agreement, deviations
 from eventsim.scene.gallery import gallery
@@ -119,6 +121,38 @@ def test_precision_rises_until_the_digits_are_there():
     assert session.radii().max() < 1e-17
     rows = session.take_rows()
     assert rows["event"].tolist() == list(range(len(rows)))
+
+
+def test_a_proof_that_is_broken_off_is_that_of_the_attempt_that_came_farthest():
+    session = CertifiedSession(stage_of(lattice_gas(8, 0.3, seed=2)), bits=128)
+    rows = []
+    while len(session.attempts) < 2 or session.counters.events > 100:
+        assert session.advance(Stop(None, 10_000), 200) is None
+        rows.append(session.take_rows())
+    farthest, present = session.attempts[-1], session.counters.events
+    assert present < farthest.events
+    session.break_off()
+    rows.append(session.take_rows())
+    assert (session.bits, session.proven, session.counters.events) == (farthest.bits, farthest.events, farthest.events)
+    assert np.concatenate(rows)["event"].tolist() == list(range(farthest.events))
+    assert session.attempts[-1] == (2 * farthest.bits, False, present)
+    assert farthest not in session.attempts
+    assert np.isfinite(session.distances()).all()
+
+
+def test_an_interrupted_run_takes_the_rows_that_were_held_back():
+    scene = lattice_gas(8, 0.3, seed=2)
+    session = CertifiedSession(stage_of(scene), bits=128)
+
+    def interrupt(share, events, time):
+        if session.attempts and not interrupted:
+            interrupted.append(session.attempts[0].events)
+            signal.raise_signal(signal.SIGINT)
+
+    interrupted = []
+    run = drive(session, "certified", scene, Stop(None, 10_000), Wishes(log=True, progress=interrupt))
+    assert run.stopped == "interrupted"
+    assert len(run.log) == run.counters.events >= interrupted[0]
 
 
 def first_difference(scene, events=600):

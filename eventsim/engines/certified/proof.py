@@ -28,7 +28,7 @@ class Proof:
     Attributes:
         run: the certified run; its log and state are the floats nearest to the balls.
         proven: events whose order is certain.
-        bits, traced: of the last attempt; attempts: those before it.
+        bits, traced: of the attempt that came farthest; attempts: the other ones.
         enclosures: (n, 4); how far the true x, y, vx, vy may be from those of the final state; length, length / time.
         difference: the first proven event that float64 has otherwise, None where it has none.
         difference_time: its time on the scene's clock.

@@ -30,12 +30,21 @@ class Attempt(NamedTuple):
     events: int
 
 
+class _Ended(NamedTuple):
+    """An attempt that could not go on, its loop, and those of its rows that nobody has taken."""
+
+    attempt: Attempt
+    loop: CertifiedLoop
+    held: list[Rows]
+
+
 class CertifiedSession:
     """The certified engine in the middle of a run.
 
     bits: of the first attempt.  most_bits: of the last one.  What two attempts in a row, the second one with twice the bits,
     cannot decide is taken for a tie: then numbers are traced, which decides ties of rational numbers and of equal
-    expressions; where this does not help either the run stops as `undecided tie`.
+    expressions; where this does not help either the run stops as `undecided tie`.  A run that stops there, or is broken off,
+    is the attempt that came farthest; `attempts` are the other ones.
     """
 
     name = "certified"
@@ -52,6 +61,7 @@ class CertifiedSession:
         self._first_bits, self._most_bits = bits, max(bits, most_bits)
         self._stopped: str | None = None
         self._emitted = 0
+        self._farthest: _Ended | None = None
         self._begin(bits, False)
 
     def _begin(self, bits: int, trace: bool) -> None:
@@ -91,21 +101,40 @@ class CertifiedSession:
         return self._stopped
 
     def _note_attempt(self, events: int) -> None:
-        self.attempts.append(Attempt(self.bits, self.traced, events))
+        attempt = Attempt(self.bits, self.traced, events)
+        self.attempts.append(attempt)
+        if self._farthest is None or events > self._farthest.attempt.events:
+            self._farthest = _Ended(attempt, self._loop, [*self._held, self._loop.take_rows()])
+
+    def break_off(self) -> None:
+        """End here: what any attempt has proven is kept."""
+        self._stopped = "interrupted"
+        self._go_back_to_the_farthest()
+
+    def _go_back_to_the_farthest(self) -> None:
+        """Be the attempt that came farthest, if that is an earlier one."""
+        events, farthest = self._loop.counters.events, self._farthest
+        if farthest is not None and farthest.attempt.events > events:
+            self.attempts.append(Attempt(self.bits, self.traced, events))
+            self.attempts.remove(farthest.attempt)
+            self.bits, self.traced, _ = farthest.attempt
+            self._loop, self._held = farthest.loop, farthest.held
 
     def _go_on_from(self, undecided: Undecided, events: int) -> str | None:
         """Begin again in a way that may decide; the reason to stop where there is none left."""
         before = [attempt.events for attempt in self.attempts if attempt.traced == self.traced]
         farther = not before or events > max(before)
-        self._note_attempt(events)
         if farther and 2 * self.bits <= self._most_bits:
+            self._note_attempt(events)
             self._begin(2 * self.bits, self.traced)
             return None
         if not farther and not self.traced:
+            self._note_attempt(events)
             self._begin(self._first_bits, True)
             return None
         cause = "more bits do not help" if not farther else f"{self.bits} bits are the most allowed"
-        self.reason = f"after {events} proven events a comparison has no answer, and {cause}: {str(undecided)[:120]}"
+        self._go_back_to_the_farthest()
+        self.reason = f"after {self.proven} proven events a comparison has no answer, and {cause}: {str(undecided)[:120]}"
         return "undecided tie"
 
     def take_rows(self) -> Rows:
