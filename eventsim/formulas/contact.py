@@ -9,8 +9,13 @@ DOUBT = math.nan
 """The delay of a contact that the plain formula cannot tell: `digits.careful_pair_delay` can."""
 
 DIGITS_LOST = 2.0**-12
-"""A part of reach^2 or of a reach^2 below which c or D have lost so many bits that they are not to be trusted: at this one the
-plain formula is right to 1e-12, and one prediction in some thousands is done again."""
+"""A part of reach^2 or of a reach^2 below which c or D have lost so many bits that they are not to be trusted.
+
+Just outside of it, half of 2**-12 of a reach before contact, a delay is right to about 1e-12; ten times as far away ten times
+better, and inside of it to the last bit.  So an error in time is at most about a last bit of the time that a disk takes for its
+own length, near contact or not.  At 2**-10 that 1e-12 would be a quarter, and a contact of a dense gas (packing fraction .7) cost
+8 % more; at 2**-8 40 %.
+"""
 
 SMALLEST = 1e-290
 """What underflow may have taken from D."""
