@@ -11,7 +11,7 @@ from typing import Any
 from eventsim.errors import LogError, SceneError
 from eventsim.record.events import Kind, Rows
 from eventsim.scene import Scene
-from eventsim.scene.files import scene_from_dict, scene_to_dict
+from eventsim.scene.files import scene_from_dict, scene_to_json
 
 FORMAT = 1
 """Version of the file format; a reader refuses versions it does not know."""
@@ -65,11 +65,13 @@ def kicks_of(rows: Rows) -> list[Kick]:
     return list(zip(chosen["event"].tolist(), chosen["vxa"].tolist(), chosen["vya"].tolist(), strict=True))
 
 
-def provenance_text(provenance: Provenance) -> str:
-    """Return the provenance as one line of JSON (ASCII only, so that characters are bytes)."""
+def provenance_text(provenance: Provenance, scene: str | None = None) -> str:
+    """Return the provenance as one line of JSON (ASCII only, so that characters are bytes).
+
+    scene: its scene as JSON, where that is known: of many disks it takes a while.
+    """
     ending = provenance.ending
     data = {
-        "scene": scene_to_dict(provenance.scene),
         "format": FORMAT,
         "version": provenance.version,
         "engine": provenance.engine,
@@ -88,7 +90,7 @@ def provenance_text(provenance: Provenance) -> str:
         },
         "rows": provenance.rows,
     }
-    return json.dumps(data)
+    return f'{{"scene": {scene or scene_to_json(provenance.scene)}, {json.dumps(data)[1:]}'
 
 
 def provenance_from_text(text: str, source: str) -> Provenance:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,15 @@ from eventsim.scene.overrides import apply_overrides
 from eventsim.scene.scene import Scene
 from eventsim.scene.walls import Wall
 
-__all__ = ["apply_overrides", "draws_at_random", "load_scene", "scene_from_dict", "scene_to_dict", "scene_to_toml"]
+__all__ = [
+    "apply_overrides",
+    "draws_at_random",
+    "load_scene",
+    "scene_from_dict",
+    "scene_to_dict",
+    "scene_to_json",
+    "scene_to_toml",
+]
 
 
 def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
@@ -81,6 +89,20 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
 
     What has its default is left out. A mass of inf is written as "inf", so that the tables fit into JSON.
     """
+    data = _tables(scene)
+    data["disk"] = _disk_tables(scene.disks)
+    return data
+
+
+def scene_to_json(scene: Scene) -> str:
+    """The same as one line of JSON, several times as fast as by way of tables."""
+    texts = {key: json.dumps(table) for key, table in _tables(scene).items()}
+    texts["disk"] = f"[{', '.join(_disk_texts(scene.disks))}]"
+    return f"{{{', '.join(f'{json.dumps(key)}: {text}' for key, text in texts.items())}}}"
+
+
+def _tables(scene: Scene) -> dict[str, Any]:
+    """The tables of a scene in their order, that of the disks still empty."""
     data: dict[str, Any] = {}
     for key in ("name", "until", "events", "contact_duration", "equilibration"):
         value = getattr(scene, key)
@@ -93,7 +115,7 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
     if scene.restitution is not None:
         data["restitution"] = {"pair": scene.restitution.pair, "wall": scene.restitution.wall}
     data["domain"] = _domain_table(scene.domain)
-    data["disk"] = _disk_tables(scene.disks)
+    data["disk"] = []
     if scene.walls:
         data["wall"] = [_wall_table(wall) for wall in scene.walls]
     return data
@@ -154,6 +176,16 @@ def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
             table["mass"] = "inf" if math.isinf(mass) else mass
         tables.append(table)
     return tables
+
+
+def _disk_texts(disks: Disks) -> Iterator[str]:
+    """The tables of disks as JSON."""
+    columns = (*disks.position.T, *disks.velocity.T, disks.radius, disks.mass)
+    for x, y, vx, vy, radius, mass in zip(*(column.tolist() for column in columns), strict=True):
+        moves = not (_is_default(vx, 0.0) and _is_default(vy, 0.0))
+        velocity = f', "velocity": [{vx!r}, {vy!r}]' if moves else ""
+        weight = "" if mass == 1.0 else f', "mass": {repr(mass) if mass < math.inf else json.dumps("inf")}'
+        yield f'{{"position": [{x!r}, {y!r}]{velocity}, "radius": {radius!r}{weight}}}'
 
 
 def _wall_table(wall: Wall) -> dict[str, Any]:

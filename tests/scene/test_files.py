@@ -12,7 +12,14 @@ from hypothesis import strategies as st
 
 from eventsim.errors import SceneError
 from eventsim.scene import Arc, Box, Channel, Circle, Disks, Open, Periodic, Polygon, Polyline, Scene, Segment
-from eventsim.scene.files import apply_overrides, load_scene, scene_from_dict, scene_to_dict, scene_to_toml
+from eventsim.scene.files import (
+    apply_overrides,
+    load_scene,
+    scene_from_dict,
+    scene_to_dict,
+    scene_to_json,
+    scene_to_toml,
+)
 
 finite = st.floats(-1e6, 1e6)
 points = st.tuples(finite, finite)
@@ -81,6 +88,7 @@ def test_a_scene_comes_back_in_every_bit(scene):
     assert bits(scene_from_dict(json.loads(json.dumps(tables, allow_nan=False)))) == bits(scene)
     assert bits(scene_from_dict(tomllib.loads(scene_to_toml(scene)))) == bits(scene)
     assert scene_to_dict(scene_from_dict(tables)) == tables
+    assert scene_to_json(scene) == json.dumps(tables)
 
 
 def test_a_file_with_every_key_gives_the_scene_it_describes(tmp_path):

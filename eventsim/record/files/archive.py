@@ -10,11 +10,15 @@ from __future__ import annotations
 import shutil
 import struct
 import zlib
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from pathlib import Path
-from typing import IO
+from typing import IO, NamedTuple
 
-STORED, DEFLATED = 0, 8
+import numpy as np
+
+from eventsim.record.events import Column
+
 VERSION = 45
 """Of the specification: the first with zip64."""
 
@@ -27,51 +31,49 @@ COPY = 1 << 20
 STORED_BLOCK = 65535
 """The longest stored block of the deflate format."""
 
+END_OF_DEFLATED = b"\x03\x00"
+"""An empty last block: it ends a text in the deflate format."""
 
-class Entry:
-    """An entry that grows; `head`, which is known last, goes before what was written.
+PIECE = 1 << 13
+"""Numbers that are deflated together."""
 
-    deflated: its bytes are, into the file `path`; else somebody else writes them there, as they are.
-    """
 
-    def __init__(self, name: str, path: Path, deflated: bool) -> None:
+class Entry(ABC):
+    """An entry that grows at `path`; `head`, which is known last, goes before what was written."""
+
+    method: int
+
+    def __init__(self, name: str, path: Path) -> None:
         self.name = name.encode("ascii")
         self.path = path
-        self._file: IO[bytes] | None = path.open("wb") if deflated else None
         self.head = b""
-        self._size = self._crc = 0
-        self._deflate = zlib.compressobj(FASTEST, zlib.DEFLATED, -zlib.MAX_WBITS) if deflated else None
+        self.size = self.crc = 0
 
-    def write(self, data: bytes) -> None:
-        """Append bytes, or take note of them where they are written by somebody else."""
-        self._size += len(data)
-        self._crc = zlib.crc32(data, self._crc)
-        if self._file is not None and self._deflate is not None:
-            self._file.write(self._deflate.compress(data))
+    @abstractmethod
+    def write(self, column: Column) -> None:
+        """Append the numbers of a contiguous array (n,)."""
 
     def finish(self, head: bytes) -> None:
-        """All bytes have come; `head`, shorter than 64 kB, is put before them."""
+        """All has come; `head`, shorter than 64 kB, is put before it."""
         assert len(head) <= STORED_BLOCK
-        if self._file is not None and self._deflate is not None:
-            self._file.write(self._deflate.flush())
-        self.close()
         self.head = head
+        self.close()
 
+    @abstractmethod
     def close(self) -> None:
         """Let go of the file."""
-        if self._file is not None:
-            self._file.close()
+
+    @abstractmethod
+    def packed_head(self) -> bytes:
+        """The head as the archive holds it."""
 
     def copy_to(self, target: IO[bytes]) -> bytes:
         """Write the finished entry where `target` stands; the record of it for the directory of the archive."""
         offset = target.tell()
-        head = self.head
-        if self._deflate is not None:  # a block of deflate's that says what it is
-            head = struct.pack("<BHH", 0, len(head), len(head) ^ 0xFFFF) + head
-        crc = combined_crc(zlib.crc32(self.head), self._crc, self._size)
-        sizes = struct.pack("<QQ", len(self.head) + self._size, len(head) + self.path.stat().st_size)
-        method = STORED if self._deflate is None else DEFLATED
-        common = struct.pack("<HHHHHIIIH", VERSION, 0, method, 0, DATE, crc, IN_ZIP64, IN_ZIP64, len(self.name))
+        head = self.packed_head()
+        crc = combined_crc(zlib.crc32(self.head), self.crc, self.size)
+        sizes = struct.pack("<QQ", len(self.head) + self.size, len(head) + self.path.stat().st_size)
+        common = struct.pack("<HHHHHIIIH", VERSION, 0, self.method, 0, DATE, crc, IN_ZIP64, IN_ZIP64, len(self.name))
         target.write(b"PK\x03\x04" + common + struct.pack("<H", 4 + len(sizes)) + self.name)
         target.write(struct.pack("<HH", 1, len(sizes)) + sizes + head)
         with self.path.open("rb") as source:
@@ -80,6 +82,87 @@ class Entry:
         record = b"PK\x01\x02" + struct.pack("<H", VERSION) + common
         record += struct.pack("<HHHHII", 4 + len(sizes), 0, 0, 0, 0, IN_ZIP64)
         return record + self.name + struct.pack("<HH", 1, len(sizes)) + sizes
+
+
+class Stored(Entry):
+    """Bytes that somebody else writes at `path`, as they are; here they are only noted."""
+
+    method = 0
+
+    def write(self, column: Column) -> None:
+        """Take note of an array that is written at `path`."""
+        self.size += column.nbytes
+        self.crc = zlib.crc32(column.data, self.crc)
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+    def packed_head(self) -> bytes:
+        """The head itself."""
+        return self.head
+
+
+class Deflated(Entry):
+    """Bytes deflated piece by piece, each by itself, so that a piece like the one before it costs only a look.
+
+    labels: what the numbers stand for, in the archive; None: themselves.  Pieces are cut by the count of the numbers, so the
+    archive does not tell in which blocks they came.
+    """
+
+    method = 8
+
+    def __init__(self, name: str, path: Path, labels: Column | None = None) -> None:
+        super().__init__(name, path)
+        self._file = path.open("wb")
+        self._labels = labels
+        self._waiting: list[Column] = []
+        self._last = _Piece(b"", b"", 0, 0)
+
+    def write(self, column: Column) -> None:
+        """Append the numbers, or labels, of an array (n,)."""
+        self._waiting.append(column)
+        if sum(map(len, self._waiting)) >= PIECE:
+            waiting = np.concatenate(self._waiting)
+            *pieces, rest = np.split(waiting, range(PIECE, len(waiting) + 1, PIECE))
+            for piece in pieces:
+                self._deflate(piece)
+            self._waiting = [rest]
+
+    def finish(self, head: bytes) -> None:
+        """All has come: deflate the last piece too, and end the text."""
+        if self._waiting:
+            self._deflate(np.concatenate(self._waiting))
+        self._file.write(END_OF_DEFLATED)
+        super().finish(head)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def packed_head(self) -> bytes:
+        """A block of deflate's that is stored, and says so."""
+        return struct.pack("<BHH", 0, len(self.head), len(self.head) ^ 0xFFFF) + self.head
+
+    def _deflate(self, column: Column) -> None:
+        raw = column.tobytes()
+        if raw != self._last.raw:
+            data = raw if self._labels is None else self._labels[column].tobytes()
+            deflate = zlib.compressobj(FASTEST, zlib.DEFLATED, -zlib.MAX_WBITS)
+            deflated = deflate.compress(data) + deflate.flush(zlib.Z_FULL_FLUSH)
+            self._last = _Piece(raw, deflated, len(data), zlib.crc32(data), _power(8 * len(data)))
+        self._file.write(self._last.deflated)
+        self.crc = _product(self._last.shift, self.crc) ^ self._last.crc
+        self.size += self._last.size
+
+
+class _Piece(NamedTuple):
+    """A piece of an entry: its numbers; as it is in the archive; of its text: the length, the CRC, x^(8 length)."""
+
+    raw: bytes
+    deflated: bytes
+    size: int
+    crc: int
+    shift: int = 1 << 31
 
 
 def write_archive(path: Path, entries: Iterable[Entry]) -> None:
@@ -104,13 +187,18 @@ def combined_crc(first: int, second: int, length: int) -> int:
 
     A text moved by a bit is multiplied by x modulo the polynomial, so the first is multiplied by x^(8 length).
     """
-    power, factor = 8 * length, 1 << 30  # x
-    while power:
-        if power & 1:
-            first = _product(factor, first)
+    return _product(_power(8 * length), first) ^ second
+
+
+def _power(exponent: int) -> int:
+    """x^exponent modulo the polynomial."""
+    total, factor = 1 << 31, 1 << 30  # 1, x
+    while exponent:
+        if exponent & 1:
+            total = _product(factor, total)
         factor = _product(factor, factor)
-        power >>= 1
-    return first ^ second
+        exponent >>= 1
+    return total
 
 
 def _product(a: int, b: int) -> int:

@@ -11,15 +11,16 @@ import shutil
 from abc import abstractmethod
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
+from typing import IO, TypeAlias
 
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import ROW, Rows, blank_rows
+from eventsim.record.events import ROW, Column, Rows, blank_rows
 from eventsim.record.files.sink import FileSink, demand_same
 from eventsim.record.files.table import columns_kept
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
+from eventsim.scene.files import scene_to_json
 
 METADATA = "eventsim"
 """The file with the metadata beside the columns."""
@@ -30,23 +31,27 @@ WHOLE = "whole"
 GROUP = 1 << 17
 """Rows held at a time."""
 
+Columns: TypeAlias = dict[str, Column]
+"""The columns of a block of rows by their names, each (n,) and contiguous: taken apart once, for all that is done with them."""
+
 
 class JournalSink(FileSink):
     """Keeps a journal beside the format's own file, which a format supplies by `_begin`, `_put`, `_complete` and `_stop`."""
 
     _journal: dict[str, IO[bytes]]
+    _scene: str
 
     @abstractmethod
     def _begin(self) -> None:
         """Begin the format's own file."""
 
     @abstractmethod
-    def _put(self, rows: Rows) -> None:
+    def _put(self, columns: Columns) -> None:
         """Append to it a block that the journal has."""
 
     @abstractmethod
-    def _complete(self, provenance: Provenance) -> None:
-        """Have the whole file at `self.part / WHOLE`."""
+    def _complete(self, metadata: str) -> None:
+        """Have the whole file, with these metadata, at `self.part / WHOLE`."""
 
     @abstractmethod
     def _stop(self) -> None:
@@ -60,11 +65,12 @@ class JournalSink(FileSink):
         # A run may be killed at any moment: the journal comes in one piece, and goes in one.
         begun = self._beside()
         begun.mkdir()
-        (begun / METADATA).write_text(provenance_text(self.provenance), encoding="ascii")
+        self._scene = scene_to_json(self.provenance.scene)
+        (begun / METADATA).write_text(provenance_text(self.provenance, self._scene), encoding="ascii")
         for name in self.columns:
             (begun / name).touch()
         begun.replace(self.part)
-        self._journal = {name: (self.part / name).open("ab") for name in self.columns}
+        self._journal = {name: (self.part / name).open("ab", buffering=0) for name in self.columns}
         self._begin()
 
     def _reopen(self, rows: int) -> None:
@@ -75,23 +81,24 @@ class JournalSink(FileSink):
             raise LogError(f"{self.part}: holds {found} rows of {rows}")
         for name in self.columns:
             os.truncate(self.part / name, rows * ROW[name].itemsize)
-        self._journal = {name: (self.part / name).open("ab") for name in self.columns}
+        self._scene = scene_to_json(self.provenance.scene)
+        self._journal = {name: (self.part / name).open("ab", buffering=0) for name in self.columns}
         self._begin()
-        for block in blocks_of_journal(self.part, self.columns, rows):
-            self._put(block)
+        for columns in columns_of_journal(self.part, self.columns, rows):
+            self._put(columns)
 
     def _append(self, rows: Rows) -> None:
+        columns = {name: np.ascontiguousarray(rows[name]) for name in self.columns}
         for name, file in self._journal.items():
-            file.write(rows[name].tobytes())
-            file.flush()
-        self._put(rows)
+            _write_all(file, columns[name])
+        self._put(columns)
 
     def _sync(self) -> None:
         for file in self._journal.values():
             os.fsync(file.fileno())
 
     def _finish(self, provenance: Provenance) -> Path:
-        self._complete(provenance)
+        self._complete(provenance_text(provenance, self._scene))
         self._release()
         return self.part / WHOLE
 
@@ -113,6 +120,13 @@ class JournalSink(FileSink):
         return path
 
 
+def _write_all(file: IO[bytes], column: Column) -> None:
+    """Write a column to a file without a buffer, which may take less than it is given."""
+    left = column.data.cast("B")
+    while len(left):
+        left = left[file.write(left) :]
+
+
 def journal_provenance(part: Path) -> Provenance:
     """The metadata of a log that grows, or grew until its run was killed; LogError where there are none."""
     try:
@@ -130,14 +144,23 @@ def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
         raise LogError(f"{part}: not an event log that grows: {error.strerror}: {error.filename}") from None
 
 
-def blocks_of_journal(part: Path, columns: tuple[str, ...], count: int) -> Iterator[Rows]:
-    """The first `count` rows, in blocks."""
+def columns_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterator[Columns]:
+    """The columns of the first `count` rows, in blocks."""
     for first in range(0, count, GROUP):
-        rows = blank_rows(min(GROUP, count - first))
-        for name in columns:
+        found: Columns = {}
+        for name in names:
             with open(part / name, "rb") as source:
                 source.seek(first * ROW[name].itemsize)
-                rows[name] = np.frombuffer(source.read(len(rows) * ROW[name].itemsize), ROW[name])
+                found[name] = np.frombuffer(source.read(min(GROUP, count - first) * ROW[name].itemsize), ROW[name])
+        yield found
+
+
+def blocks_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterator[Rows]:
+    """The first `count` rows, in blocks."""
+    for columns in columns_of_journal(part, names, count):
+        rows = blank_rows(len(columns["event"]))
+        for name, column in columns.items():
+            rows[name] = column
         yield rows
 
 

@@ -1,7 +1,8 @@
 """NPZ logs: one array per column (kind and wall as text) and the array `eventsim` with the metadata as JSON.
 
 Columns grow as raw files in the directory NAME.npz.part (the journal) and are put together when the log is closed.  What hardly
-changes from row to row is deflated, in passing; the rest would shrink little and take more time than the simulation.
+changes from row to row is deflated, in passing, and what repeats itself only once; the rest would shrink little and take more
+time than the simulation.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from typing import Any
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import ROW, Column, Rows
-from eventsim.record.files.archive import Entry, write_archive
-from eventsim.record.files.journal import METADATA, WHOLE, JournalSink
+from eventsim.record.events import ROW, Column
+from eventsim.record.files.archive import Deflated, Entry, Stored, write_archive
+from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
-from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
+from eventsim.record.provenance import provenance_from_text
 
 DEFLATED = ("kind", "wall", "joint", "epoch")
 DEFLATED_FILE = ".deflated"
@@ -34,23 +35,21 @@ class NpzSink(JournalSink):
     _entries: Mapping[str, Entry] = MappingProxyType({})
 
     def _begin(self) -> None:
-        self._labels = {name: labels_of(name, self.provenance.wall_names) for name in self.columns}
         self._entries = {name: self._entry(name) for name in self.columns}
 
-    def _put(self, rows: Rows) -> None:
+    def _put(self, columns: Columns) -> None:
         for name, entry in self._entries.items():
-            labels = self._labels[name]
-            entry.write((rows[name] if labels is None else labels[rows[name]]).tobytes())
+            entry.write(columns[name])
 
-    def _complete(self, provenance: Provenance) -> None:
-        text = np.frombuffer(provenance_text(provenance).encode("ascii"), dtype=np.uint8)
-        metadata = Entry(f"{METADATA}.npy", self.part / (METADATA + DEFLATED_FILE), deflated=True)
-        metadata.write(text.tobytes())
-        metadata.finish(_header(text.dtype, len(text)))
+    def _complete(self, metadata: str) -> None:
+        text = np.frombuffer(metadata.encode("ascii"), dtype=np.uint8)
+        first = Deflated(f"{METADATA}.npy", self.part / (METADATA + DEFLATED_FILE))
+        first.write(text)
+        first.finish(_header(text.dtype, len(text)))
         for name, entry in self._entries.items():
-            labels = self._labels[name]
+            labels = labels_of(name, self.provenance.wall_names)
             entry.finish(_header(ROW[name] if labels is None else labels.dtype, self._count))
-        write_archive(self.part / WHOLE, [metadata, *self._entries.values()])
+        write_archive(self.part / WHOLE, [first, *self._entries.values()])
 
     def _stop(self) -> None:
         for entry in self._entries.values():
@@ -58,8 +57,10 @@ class NpzSink(JournalSink):
 
     def _entry(self, name: str) -> Entry:
         """What is stored as it is needs no other file than that of the journal."""
-        deflated = name in DEFLATED
-        return Entry(f"{name}.npy", self.part / (name + DEFLATED_FILE if deflated else name), deflated)
+        if name in DEFLATED:
+            labels = labels_of(name, self.provenance.wall_names)
+            return Deflated(f"{name}.npy", self.part / (name + DEFLATED_FILE), labels)
+        return Stored(f"{name}.npy", self.part / name)
 
 
 def read_npz(path: Path) -> EventLog:

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import ROW, Column, Rows, blank_rows
-from eventsim.record.files.journal import GROUP, METADATA, WHOLE, JournalSink
+from eventsim.record.events import ROW, Column, blank_rows
+from eventsim.record.files.journal import GROUP, METADATA, WHOLE, Columns, JournalSink
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
-from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
+from eventsim.record.provenance import Provenance, provenance_from_text
 
 try:
     import pyarrow as pa
@@ -35,32 +35,35 @@ class ParquetSink(JournalSink):
         whole = {name: "DELTA_BINARY_PACKED" for name in self.columns if name not in TEXTS and ROW[name].kind == "i"}
         schema = _schema(self.columns)
         self._writer = pq.ParquetWriter(self.part / WHOLE, schema, store_schema=False, column_encoding=whole, **LEAN)
-        self._waiting: list[Rows] = []
+        self._waiting: list[Columns] = []
+        self._count_waiting = 0
 
-    def _put(self, rows: Rows) -> None:
-        self._waiting.append(rows.copy())
-        if sum(map(len, self._waiting)) >= GROUP:
-            waiting = np.concatenate(self._waiting)
-            groups = len(waiting) // GROUP
-            for k in range(groups):
-                self._write_group(waiting[k * GROUP : (k + 1) * GROUP])
-            self._waiting = [waiting[groups * GROUP :]]
+    def _put(self, columns: Columns) -> None:
+        self._waiting.append(columns)
+        self._count_waiting += len(columns["event"])
+        if self._count_waiting >= GROUP:
+            self._write_waiting(self._count_waiting // GROUP * GROUP)
 
-    def _complete(self, provenance: Provenance) -> None:
-        rest = np.concatenate([blank_rows(0), *self._waiting])
-        if len(rest):
-            self._write_group(rest)
-        self._writer.add_key_value_metadata({METADATA: provenance_text(provenance)})
+    def _complete(self, metadata: str) -> None:
+        if self._waiting:
+            self._write_waiting(self._count_waiting)
+        self._writer.add_key_value_metadata({METADATA: metadata})
         self._stop()
+
+    def _write_waiting(self, count: int) -> None:
+        """Write the first `count` of the rows that wait, in groups."""
+        waiting = {name: np.concatenate([columns[name] for columns in self._waiting]) for name in self.columns}
+        for first in range(0, count, GROUP):
+            group = {name: column[first : min(first + GROUP, count)] for name, column in waiting.items()}
+            arrays = [_array(column, name, self.provenance) for name, column in group.items()]
+            self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
+        self._waiting = [{name: column[count:] for name, column in waiting.items()}]
+        self._count_waiting -= count
 
     def _stop(self) -> None:
         writer, self._writer = self._writer, None
         if writer is not None:
             writer.close()
-
-    def _write_group(self, rows: Rows) -> None:
-        arrays = [_array(rows, name, self.provenance) for name in self.columns]
-        self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
 
 
 def write_plain_table(path: Path, columns: dict[str, list[Any]], metadata: dict[str, str]) -> None:
@@ -98,8 +101,7 @@ def _schema(names: tuple[str, ...]) -> Any:
     return pa.schema([(name, text if name in TEXTS else pa.from_numpy_dtype(ROW[name])) for name in names])
 
 
-def _array(rows: Rows, name: str, provenance: Provenance) -> Any:
-    values = np.ascontiguousarray(rows[name])
+def _array(values: Column, name: str, provenance: Provenance) -> Any:
     labels = labels_of(name, provenance.wall_names)
     if labels is None:
         return pa.array(values, mask=np.isnan(values) if values.dtype.kind == "f" else None)
