@@ -11,9 +11,10 @@ import numpy as np
 
 from eventsim.engines import AUTO, ENGINES, Engine
 from eventsim.engines.base import Counters, OnEvent, Progress, Run, Snapshot, Stop
-from eventsim.engines.checkpoint import interval, load_checkpoint, place_for
+from eventsim.engines.checkpoint import Checkpoint, interval, load_checkpoint, place_for
 from eventsim.engines.drive import Wishes, diagnosed, memory_log, provenance_of, state_of
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
+from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, State
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Ending
@@ -96,7 +97,7 @@ def resume(
     are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of another scene.
 
     Returns a Run, whose counters and times include what was before.  Raises CheckpointError for a file that is no checkpoint,
-    of another version or of another scene, LogError where its log is lost.
+    of another version or of another scene, or that is past the stop, LogError where its log is lost.
     """
     saved = load_checkpoint(path)
     provenance = saved.provenance
@@ -107,6 +108,8 @@ def resume(
     if saved.log is not None and saved.log.mark.rows != saved.counters.events:
         raise CheckpointError(f"{path}: {saved.log.mark.rows} rows of a log do not fit {saved.counters.events} events")
     stop = saved.stop if until is None and events is None else stop_of(provenance.scene, until, events)
+    if stop != saved.stop:
+        _demand_ahead(stop, saved, path)
     wishes = Wishes(
         log=False if saved.log is None else saved.log.path if log is None else log,
         compact=saved.log is not None and saved.log.compact,
@@ -118,6 +121,17 @@ def resume(
         resumed=saved,
     )
     return engine_named(provenance.engine if engine is None else engine).run(provenance.scene, stop, wishes)
+
+
+def _demand_ahead(stop: Stop, saved: Checkpoint, path: str | PathLike[str]) -> None:
+    """Raise CheckpointError for a stop that the run has passed: a run does not go back, and its checkpoint would be lost."""
+    provenance = saved.provenance
+    time = clock_time(saved.snapshot.epoch, saved.snapshot.now, provenance.epoch_length, provenance.scene.start_time)
+    earlier = "" if saved.log is None else "; the log has the states before (eventsim state LOG --at TIME)"
+    if stop.until is not None and stop.until < time:
+        raise CheckpointError(f"{path}: the run has come to t = {time!r}, past until = {stop.until!r}{earlier}")
+    if stop.events is not None and stop.events < saved.counters.events:
+        raise CheckpointError(f"{path}: the run has {saved.counters.events} events, past events = {stop.events}{earlier}")
 
 
 def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:

@@ -66,6 +66,7 @@ def command(
       elapsed_s, log           seconds of the proof; the file written (null without)
 
     Exit codes: 0 proven; 2 bad usage, scene or file; 3 an undecided tie or a collapse; 130 interrupted.
+    1 is kept for comparisons that fail: where float64 differs from the proof is a result, not a failure.
     """
     path = writable(log, "--log", LOG_SUFFIXES)
 

@@ -118,8 +118,8 @@ def main(context: click.Context) -> None:
     A SCENE is a file (TOML or JSON) or the name of a built-in scene. Every verb explains itself:
     eventsim VERB --help.
 
-    Exit codes: 0 done; 2 bad usage, scene or file; 3 stopped early for a reason of physics or digits;
-    130 interrupted. What happened before an early stop is kept.
+    Exit codes: 0 done; 1 event-driven engines or a proof failed a comparison; 2 bad usage, scene or file;
+    3 stopped early for a reason of physics or digits; 130 interrupted. What happened before an early stop is kept.
     """
     if context.invoked_subcommand is None:
         click.echo(BEGIN)

@@ -84,7 +84,8 @@ def command(
     \b
     Keys of --json:
       scene, name              as typed; the name inside the scene (null without)
-      version, engine          of eventsim; the engine that simulated
+      version, engine          of eventsim; the engine that simulated (auto: the one that came last)
+      begun_by                 the engine that handed over to it (null: none)
       disks                    their number
       start_time, time         the scene's clock at the beginning and at the end
       events                   rows of the log: pair_contacts + wall_contacts + rests
@@ -102,6 +103,7 @@ def command(
       log, state, checkpoint   the files written (null without)
 
     Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse or digits; 130 interrupted.
+    1 is kept for comparisons that fail, in stress and validate.
     """
     files = Files(
         writable(log, "--log", LOG_SUFFIXES, source=scene),

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from eventsim.engines.horizon import Horizon
 
 
+WORTH_A_WORD = 0.01
+"""Of the time that simulating took: what takes less is left out of the text."""
+
+
 def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> dict[str, object]:
     """Return the keys that `eventsim run --help` documents."""
     return {
@@ -22,6 +26,7 @@ def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = N
         "name": run.scene.name,
         "version": __version__,
         "engine": run.engine,
+        "begun_by": run.begun_by,
         "disks": len(run.scene.disks),
         "start_time": run.start_time,
         "time": run.time,
@@ -46,7 +51,7 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
     """Return the summary as aligned lines."""
     counters, residuals = run.counters, run.residuals
     rows = [
-        ("engine", f"{run.engine}, {_seconds(run.elapsed_s)}{_apart(run)}"),
+        ("engine", _engine(run)),
         ("time", f"{short(run.start_time)} to {short(run.time)}"),
         ("events", _events(run)),
         ("energy", _energy(residuals.energy)),
@@ -101,10 +106,12 @@ def _seconds(seconds: float) -> str:
     return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
 
 
-def _apart(run: Run) -> str:
-    """The times that are not simulating, where they are worth a word."""
-    parts = [("compiling", run.compile_s), ("writing", run.write_s)]
-    return "".join(f" + {_seconds(seconds)} {what}" for what, seconds in parts if seconds > 0)
+def _engine(run: Run) -> str:
+    """Who simulated, and what that took; times that are not simulating where they are worth a word."""
+    name = run.engine if run.begun_by is None else f"{run.begun_by}, then {run.engine}"
+    apart = [("compiling", run.compile_s), ("writing", run.write_s)]
+    worth = [f" + {_seconds(seconds)} {what}" for what, seconds in apart if seconds > WORTH_A_WORD * run.elapsed_s]
+    return f"{name}: {_seconds(run.elapsed_s)} simulating{''.join(worth)}"
 
 
 def _energy(change: float | None) -> str:

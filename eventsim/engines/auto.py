@@ -43,7 +43,8 @@ def first_engine(stage: Stage) -> str:
 class AutoSession:
     """A session of the engine that suits, another one after the job has proved long.
 
-    stage: what is simulated.  keep_rows: whether the log is wanted.  at_work: the name of the engine in use.
+    stage: what is simulated.  keep_rows: whether the log is wanted.  at_work: the name of the engine in use; before: of the one
+    that handed over to it, if one did.
     """
 
     def __init__(self, stage: Stage, keep_rows: bool = True, **options: Any) -> None:
@@ -52,6 +53,7 @@ class AutoSession:
         self._spent = 0.0
         self._may_change = not options
         self.at_work = "reference" if options else first_engine(stage)
+        self.before: str | None = None
         self._session: Session
         if self.at_work == "fast":
             self._session = _fast(stage, keep_rows)
@@ -124,7 +126,7 @@ class AutoSession:
     def _hand_over(self) -> None:
         before = self._session
         self._rows.append(before.take_rows())
-        self.at_work = "fast"
+        self.before, self.at_work = self.at_work, "fast"
         self._session = _fast(self.stage, self._keep_rows, saved=before.snapshot())
         self._session.counters.copy_from(before.counters)
 

@@ -164,6 +164,7 @@ class Session(Protocol):
 class Run:
     """What a simulation gives: the state it ended in, the log if one was kept, how good it is and why it stopped.
 
+    begun_by: the engine that handed over to `engine`, where `auto` began with another one.
     log_path: where the log was streamed to.  measures: where they were asked for.  stopped: `until`, `events`, `quiet` (no
     event ahead), `collapse`, `digits`, `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s:
     simulating only; compile_s and write_s (waiting for rows to be written and measured) apart, seconds.  trajectory: samples,
@@ -181,6 +182,7 @@ class Run:
     elapsed_s: float
     write_s: float
     compile_s: float = 0.0
+    begun_by: str | None = None
     log_path: Path | None = None
     trajectory: Trajectory | None = None
     measures: Measures | None = None

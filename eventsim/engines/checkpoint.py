@@ -156,7 +156,9 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
     except LogError as error:
         raise CheckpointError(str(error)) from None
     except (*DAMAGE, zipfile.BadZipFile) as error:
-        raise CheckpointError(f"{file}: not a whole checkpoint ({type(error).__name__}: {error})") from None
+        # What these say is for a reader; the text of others, a bare key, is not.
+        why = f" ({error})" if isinstance(error, ValueError | zipfile.BadZipFile) else ""
+        raise CheckpointError(f"{file}: not a checkpoint, or cut short or damaged{why}") from None
 
 
 def place_for(path: str | PathLike[str]) -> Path:

@@ -112,6 +112,7 @@ def drive(session: Session, engine: str, scene: Scene, stop: Stop, wishes: Wishe
         digest=digest,
         elapsed_s=work.elapsed - (compiled - compiled_before),
         compile_s=compiled,
+        begun_by=getattr(session, "before", None),
         write_s=written,
         log_path=None if file is None else file.path,
         trajectory=getattr(session, "trajectory", None),  # stepped engines have one

@@ -112,7 +112,8 @@ def provenance_from_text(text: str, source: str) -> Provenance:
     try:
         return _provenance(data, scene)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise LogError(f"{source}: the metadata of the log are damaged ({type(error).__name__}: {error})") from None
+        why = f" ({error})" if isinstance(error, ValueError) else ""
+        raise LogError(f"{source}: the metadata of the log are damaged{why}") from None
 
 
 def _provenance(data: Mapping[str, Any], scene: Scene) -> Provenance:

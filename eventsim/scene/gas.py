@@ -79,7 +79,8 @@ def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -
     if gas.count > MOST_DISKS:
         yield f"{where}.count = {gas.count}: must be at most {MOST_DISKS}"
     if (gas.radius is None) == (gas.packing_fraction is None):
-        yield f"{where}: must have either radius or packing_fraction" + (", not both" if gas.radius else "")
+        wrong = "needs radius or packing_fraction" if gas.radius is None else "has both radius and packing_fraction"
+        yield f"{where}: {wrong}: give one of them"
     if gas.radius is not None and gas.radius != 0.0 and not is_length(gas.radius):
         yield f"{where}.radius = {gas.radius}: {RADII}"
     if gas.packing_fraction is not None and not 0.0 < gas.packing_fraction <= CLOSE_PACKING:
@@ -88,7 +89,7 @@ def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -
     if not gas.mass >= 0.0:
         yield f"{where}.mass = {gas.mass}: must be at least 0 (inf: cannot be deflected)"
     if gas.temperature is not None and gas.speed is not None:
-        yield f"{where}: must have temperature or speed, not both"
+        yield f"{where}: has both temperature and speed: give one of them"
     for key in ("temperature", "speed"):
         value = getattr(gas, key)
         if value is not None and not 0.0 <= value < math.inf:

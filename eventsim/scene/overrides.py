@@ -57,8 +57,9 @@ def _set(table: dict[str, Any], steps: list[str], value: Any) -> None:
         fresh = value if last else ([] if steps[depth + 1].isdigit() else {})
         if isinstance(place, list):
             if not step.isdigit() or int(step) > len(place):
+                known = f"ends at {here}.{len(place) - 1}" if place else "is empty"
                 raise SceneError(
-                    f"{here} is a list of {len(place)}: {step!r} is no index from 0 to {len(place)}"
+                    f"there is no {here}.{step}: the list {here} {known} ({here}.{len(place)} would add to it)"
                 )
             index = int(step)
             if index == len(place):

@@ -139,7 +139,7 @@ def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -
         sound &= kept
         broken = np.flatnonzero(~kept)
         value = getattr(disks, key)
-        problems += [f"{names.key(int(i), key)} = {value[i].tolist()}: {rule}" for i in broken[:WRITTEN_OUT]]
+        problems += [f"{names.key(int(i), key)} = {value[i].tolist()}: {rule}" for i in broken[: _written(len(broken))]]
         problems += _rest(len(broken), f"disks whose {key} {rule}")
     return problems
 
@@ -215,13 +215,13 @@ def _periodic_problems(disks: Disks, domain: Domain, names: DiskNames) -> tuple[
         problems += [
             f"{names.disk(int(i))}: center {_at(disks, int(i))}: {letter} must be at least {domain.origin[axis]}"
             f" and below {domain.origin[axis] + length} (the {domain.kind} domain repeats there)"
-            for i in np.flatnonzero(out)[:WRITTEN_OUT]
+            for i in np.flatnonzero(out)[: _written(int(out.sum()))]
         ]
         problems += _rest(int(out.sum()), f"disks whose center is outside the domain in {letter}")
         problems += [
             f"{names.key(int(i), 'radius')} = {disks.radius[i]}: the diameter must be at most the period {length},"
             " or the disk overlaps its own image"
-            for i in wide[:WRITTEN_OUT]
+            for i in wide[: _written(len(wide))]
         ]
         problems += _rest(len(wide), "disks that are wider than the period")
     return outside, problems
@@ -230,14 +230,20 @@ def _periodic_problems(disks: Disks, domain: Domain, names: DiskNames) -> tuple[
 def _summary(found: Found, kind: str, sentence: Callable[[int, int, float], str]) -> list[str]:
     """The first overlaps as sentences, the others counted."""
     columns = zip(found.disk.tolist(), found.other.tolist(), found.depth.tolist(), strict=True)
-    written = [sentence(*overlap) for overlap in islice(columns, WRITTEN_OUT)]
+    written = [sentence(*overlap) for overlap in islice(columns, _written(len(found)))]
     return written + _rest(len(found), kind)
 
 
 def _rest(count: int, kind: str) -> list[str]:
     """The line that counts what is not written out, if anything."""
     more = "at least " if count >= ENOUGH else ""
-    return [f"... and {more}{count - WRITTEN_OUT} more {kind}"] if count > WRITTEN_OUT else []
+    left = count - _written(count)
+    return [f"... and {more}{left} more {kind}"] if left else []
+
+
+def _written(count: int) -> int:
+    """How many of so many things are written out: a single one more is, so that those that are counted are several."""
+    return count if count <= WRITTEN_OUT + 1 else WRITTEN_OUT
 
 
 def _at(disks: Disks, index: int) -> str:

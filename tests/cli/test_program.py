@@ -1,5 +1,6 @@
 """The frame of the command line: help, misspelt verbs, failures, pipes."""
 
+import re
 import subprocess
 import sys
 
@@ -39,6 +40,12 @@ def test_each_verb_teaches_with_examples_and_json_keys(eventsim, verb):
     assert "Examples:" in result.stdout
     assert "Keys of --json:" in result.stdout
     assert "Exit codes:" in result.stdout
+
+
+@pytest.mark.parametrize("verb", [[], ["run"], ["certify"], ["validate"], ["stress"]])
+def test_help_says_what_exit_code_1_means(eventsim, verb):
+    page = eventsim(*verb, "--help").stdout
+    assert re.search(r"\b1 ", page.partition("Exit codes:")[2])
 
 
 def test_a_misspelt_verb_is_answered_with_the_nearest(eventsim):

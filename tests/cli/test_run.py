@@ -5,11 +5,14 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from eventsim import load_log
+from eventsim import gallery, load_log, simulate
+from eventsim.cli.summary import summary_text
+from eventsim.cli.target import Files
 
 JSON_KEYS = {
     "scene", "engine", "time", "events", "pair_contacts", "wall_contacts", "elapsed_s", "compile_s", "write_s",
@@ -41,6 +44,13 @@ def test_json_documents_each_of_its_keys(eventsim, scene_file):
     summary = json.loads(eventsim("run", scene_file, "--json").stdout)
     page = eventsim("run", "--help").stdout
     assert [key for key in summary if key not in page] == []
+
+
+def test_the_line_of_the_engine_names_both_of_auto_and_times_worth_a_word():
+    run = simulate(gallery("break"), events=5)
+    told = replace(run, engine="fast", begun_by="reference", elapsed_s=2.0, compile_s=4.0, write_s=1e-3)
+    line = summary_text("break", told, Files(None, None, None)).splitlines()[1]
+    assert " ".join(line.split()) == "engine reference, then fast: 2 s simulating + 4 s compiling"
 
 
 def test_without_a_scene_it_runs_the_break(eventsim):

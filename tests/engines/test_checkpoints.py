@@ -208,7 +208,7 @@ def put(name, index, value):
         (lambda data: data["every"].update(events=0), None, "no interval"),
         (lambda data: data["snapshot"].update(window={"value": 5000}), None, "clock"),
         (lambda data: data["snapshot"].update(now={"value": math.nan}), None, "after the present"),
-        (lambda data: data["snapshot"].update(x={"value": 1}), None, "not a whole checkpoint"),
+        (lambda data: data["snapshot"].update(x={"value": 1}), None, "cut short or damaged"),
         (None, put("x", 0, math.nan), "x has entries"),
         (None, put("x", 0, 1e9), "outside the domain"),
         (None, put("vx", 0, 1e12), "outside the domain"),
@@ -229,6 +229,16 @@ def test_a_checkpoint_that_cannot_be_one_is_refused_before_an_engine_sees_it(sav
     with pytest.raises(es.CheckpointError, match=words) as caught:
         es.resume(saved, events=200)
     assert str(caught.value).startswith(str(saved))
+
+
+def test_a_run_does_not_go_back_to_a_stop_that_it_has_passed(tmp_path):
+    path = tmp_path / "run.checkpoint"
+    run = es.simulate(es.gallery("break"), until=3.0, checkpoint=path)
+    for stop, words in (({"until": 2.0}, "has come to t = 3.0, past until = 2.0"), ({"events": 3}, "events, past events = 3")):
+        with pytest.raises(es.CheckpointError, match=words):
+            es.resume(path, **stop)
+    for again in (es.resume(path), es.resume(path, until=3.0)):
+        assert (again.time, again.counters.events, again.stopped) == (3.0, run.counters.events, "until")
 
 
 def at_rest():

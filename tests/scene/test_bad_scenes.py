@@ -77,7 +77,7 @@ BAD = {
     ),
     "gas with two radii and two speeds": (
         BOX + GAS + "packing_fraction = 0.1\ntemperature = 1\nspeed = 1\n",
-        [["gas[0]", "radius or packing_fraction, not both"], ["gas[0]", "temperature or speed, not both"]],
+        [["gas[0]: has both radius and packing_fraction", "give one"], ["gas[0]: has both temperature and speed", "give one"]],
     ),
     "gas too dense for random": (
         BOX + '[[gas]]\ncount = 300\npacking_fraction = 0.65\narrangement = "random"\nseed = 1\n',
@@ -221,6 +221,16 @@ def test_many_overlaps_are_counted_not_listed(tmp_path):
         load_scene(file)
     assert len(caught.value.problems) == 4
     assert "and 187 more pairs of disks that overlap" in caught.value.problems[-1]
+
+
+def test_a_single_problem_more_is_written_out(tmp_path):
+    file = tmp_path / "bad.toml"
+    outside = "".join(f"[[disk]]\nposition = [-3.0, 0.{k}]\nradius = 0.01\n" for k in range(1, 5))
+    file.write_text(BOX + outside)
+    with pytest.raises(SceneError) as caught:
+        load_scene(file)
+    assert len(caught.value.problems) == 4
+    assert "disk[3]" in caught.value.problems[-1]
 
 
 @pytest.mark.parametrize(
