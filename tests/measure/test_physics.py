@@ -64,12 +64,12 @@ def test_haffs_law_over_a_decade_of_temperature():
 def test_two_disks_on_a_torus():
     velocity = np.array([[0.8, 0.6], [-0.8, -0.6]])
     scene = es.Scene(es.Disks([[0.5, 0.5], [1.7, 1.6]], velocity, 0.5), es.Periodic((2.288228082, 2.288228082)))
-    measures = measured(scene, events=20_000_000)
-    # Flights along the corridors between the images make the bar of the rate jump from run to run; test_two_disks.py has
-    # the runs that reach a ten-thousandth.
-    for name, widest in (("Z", 3e-4), ("collision_rate", 2e-3)):
+    # Flights along the corridors between the images make the bar of the rate jump from run to run: so many events bring it to
+    # about half of its bound.  test_two_disks.py has the runs that reach a ten-thousandth.
+    measures = measured(scene, events=80_000_000)
+    for name in ("Z", "collision_rate"):
         quantity = measures[name]
-        assert quantity.error < widest * quantity.value
+        assert quantity.error < 3e-4 * quantity.value
         assert abs(quantity.deviation) < 3.0
 
 
