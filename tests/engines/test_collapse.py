@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.engines.reference.resolve import MOST_AT_ONCE, instant_of
+from eventsim.engines.reference.instants import MOST_AT_ONCE, instant_of
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
 

@@ -61,6 +61,7 @@ def test_haffs_law_over_a_decade_of_temperature():
     assert fall.value == pytest.approx(fall.theory, rel=2e-2)
 
 
+@pytest.mark.timeout(3600)
 def test_two_disks_on_a_torus():
     velocity = np.array([[0.8, 0.6], [-0.8, -0.6]])
     scene = es.Scene(es.Disks([[0.5, 0.5], [1.7, 1.6]], velocity, 0.5), es.Periodic((2.288228082, 2.288228082)))

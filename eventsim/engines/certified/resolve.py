@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from eventsim.engines.certified.ball import Ball, Undecided, of_rational
+from eventsim.engines.reference.ledger import Ledger
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.formulas.impulse import mass_fractions
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_exactly
@@ -19,27 +20,44 @@ two of them closer than 2**-18.  A collapse of theirs costs three bits a contact
 each, so a much smaller share would take minutes."""
 
 
+class CertifiedLedger(Ledger):
+    """Books the floats nearest to balls."""
+
+    def book(self, jx: Any, jy: Any) -> None:
+        """Note momentum that came from outside."""
+        super().book(float(jx), float(jy))
+
+    def book_wall(self, i: int, du: Any, dw: Any) -> Any:
+        """Note the momentum that a wall gave disk i; its magnitude."""
+        return super().book_wall(i, float(du), float(dw))
+
+    def note_overlap(self, a: int, b: int, distance: Any, reach: Any) -> None:
+        """Disks on balls do not overlap."""
+
+    def log(self, t: Any, kind: Kind, a: int, b: int, wall: int, impulse: Any, joint: int) -> None:
+        """Count an event, and keep its row if rows are kept."""
+        super().log(t, kind, a, b, wall, impulse, joint)
+        if self._keep_rows:
+            self.rows[-1] = tuple(float(value) if isinstance(value, Ball) else value for value in self.rows[-1])
+
+
 class CertifiedResolver(Resolver):
     """Resolves on balls; a cluster only while all its numbers are known to be rational."""
 
     at_once = AT_ONCE
-
-    def __init__(self, *args: Any) -> None:
-        super().__init__(*args)
-        self._number = self._state.number
-        self._radius = [self._number(radius) for radius in self._stage.radius.tolist()]
+    ledger = CertifiedLedger
 
     def _shares(self, a: int, b: int) -> tuple[Any, Any]:
-        if self._mass is None:
+        if self._stage.mass is None:
             return 0.5, 0.5
-        mass_a, mass_b = self._mass[a], self._mass[b]
+        number, mass_a, mass_b = self._state.number, self._masses.of(a), self._masses.of(b)
         if mass_a in (0.0, math.inf) or mass_b in (0.0, math.inf):
             return mass_fractions(mass_a, mass_b)
-        total = self._number(mass_a) + mass_b
+        total = number(mass_a) + mass_b
         return mass_a / total, mass_b / total
 
     def _restitution(self, restitution: float, t: Ball, a: int, b: int) -> Any:
-        return self._number(super()._restitution(restitution, t, a, b))
+        return self._state.number(super()._restitution(restitution, t, a, b))
 
     def _together(self, contacts: list[JointContact], before: list[tuple[Any, Any]], masses: list[float]) -> Outcome:
         exact = [
@@ -52,20 +70,6 @@ class CertifiedResolver(Resolver):
         after, impulses, active = resolve_exactly(exact, flights, masses)
         velocities: list[tuple[Any, Any]] = [(of_rational(u), of_rational(w)) for u, w in after]
         return Outcome(velocities, impulses, active)
-
-    def _note_overlap(self, a: int, b: int, distance: Ball) -> None:
-        """Disks on balls do not overlap."""
-
-    def _book(self, jx: Any, jy: Any) -> None:
-        super()._book(float(jx), float(jy))
-
-    def _book_wall(self, mass: float, du: Any, dw: Any) -> Any:
-        return super()._book_wall(mass, float(du), float(dw))
-
-    def _row(self, t: Ball, kind: Kind, a: int, b: int, wall: int, impulse: Any, joint: int) -> None:
-        super()._row(t, kind, a, b, wall, impulse, joint)
-        if self._keep_rows:
-            self.rows[-1] = tuple(float(value) if isinstance(value, Ball) else value for value in self.rows[-1])
 
 
 def _rational(number: Any) -> Any:

@@ -10,7 +10,7 @@ from eventsim.engines.fast.grids import FEW_DISKS
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
 from eventsim.engines.fast.plan import MANY_DISKS, classes_of
 from eventsim.engines.fast.shapes import KINDS, WIDTH
-from eventsim.engines.reference.resolve import instant_of
+from eventsim.engines.reference.instants import instant_of
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 

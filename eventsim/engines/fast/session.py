@@ -21,7 +21,8 @@ from eventsim.engines.fast.rules import features_of, kind_of, rules_of, supports
 from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.loop import components, endless, refused, row_order
-from eventsim.engines.reference.resolve import Resolver, TwoSupportsError
+from eventsim.engines.reference.resolve import Resolver
+from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, next_window, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.simultaneous import SqueezedError
@@ -240,7 +241,7 @@ class FastSession:
 
     def _keep(self, resolver: Resolver) -> None:
         """Take over what the resolver has counted and logged."""
-        rows, resolver.rows = resolver.rows, []
+        rows = resolver.take_rows()
         if rows:
             self._blocks.append(rows_from(rows, self.stage.epoch_length, self.stage.start_time))
         self._take_counters()

@@ -191,6 +191,7 @@ class FastState(EngineState):
         if n > MOST_DISKS:
             raise EventsimError(f"{n} disks: the fast engine has room for {MOST_DISKS}")
         self.n = n
+        self.number = float
         self._counts = counts
         self.memory: Floats = aligned((n + 1) * REALS + (days_of(n) + WAITING) // 2, np.float64)
         self.disks: Floats = self.memory[: (n + 1) * REALS].reshape(n + 1, REALS)

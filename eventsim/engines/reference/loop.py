@@ -13,7 +13,8 @@ from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calenda
 from eventsim.engines.reference.cells import Cells, Grid, plan
 from eventsim.engines.reference.invariants import check_invariants
 from eventsim.engines.reference.predict import Predictor
-from eventsim.engines.reference.resolve import Resolver, TwoSupportsError
+from eventsim.engines.reference.resolve import Resolver
+from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
 from eventsim.formulas.simultaneous import SqueezedError
@@ -215,8 +216,7 @@ class ReferenceSession:
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
-        rows, self._resolver.rows = self._resolver.rows, []
-        return rows_from(rows, self.stage.epoch_length, self.stage.start_time)
+        return rows_from(self._resolver.take_rows(), self.stage.epoch_length, self.stage.start_time)
 
     def snapshot(self) -> Snapshot:
         """All that the future depends on."""

@@ -79,6 +79,7 @@ class EngineState:
         """From here on the velocity of disk i is a float."""
         if self.low_parts:
             self.low_vx[i] = self.low_vy[i] = 0.0
+
     def meet(self, i: int, met: Met) -> None:
         """Let disk i remember whom it met; what it rests on takes a part of its gravity, and anything else frees it."""
         self.met[i] = met
