@@ -86,7 +86,7 @@ def task_of(
     scene: Scene, name: str, words: str = "", measure: str = "trajectory", contacts: float = CONTACTS
 ) -> Task:
     """The task on a scene after so many contacts a disk."""
-    truth, _, _ = truth_to_compare(scene, None)
+    truth = truth_to_compare(scene, None).truth
     return Task(name, scene, measure, scene.start_time + contacts * truth.mean_free_time, words)
 
 
@@ -107,7 +107,7 @@ def chart_of(
 def chaos(n: int = 100) -> Chaos:
     """Errors of the event-driven run and of located steps in a gas, contact by contact."""
     scene = gallery("gas", n=n)
-    free = truth_to_compare(scene, scene.until)[0].mean_free_time
+    free = truth_to_compare(scene, scene.until).truth.mean_free_time
     contacts = np.arange(1.0, CHAOS_CONTACTS + 1.0)
     truth = truth_of(scene, (contacts * free).tolist())
     errors = {"event-driven": truth.uncertainty}

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Stop
-from eventsim.engines.drive import Wishes
+from eventsim.engines.drive import state_of
 from eventsim.errors import EventsimError
 from eventsim.record.events import Rows
 from eventsim.scene import Scene
+from eventsim.scene.stage import stage_of
 from eventsim.validate.contacts import RESTARTS, Census, census, longest_stuck
 from eventsim.validate.entrants import Entrant, able
-from eventsim.validate.follow import Followed, follow, position_errors
+from eventsim.validate.follow import Followed, advanced, follow, position_errors
 from eventsim.validate.gauges import collision_rate, kinetic_energy, virial_pressure
 from eventsim.validate.order import fitted_order
 from eventsim.validate.truth import Truth, best_engine, truth_of
@@ -32,6 +34,9 @@ FITTED = 1
 
 PATIENCE_S = 5.0
 """Seconds that one run may take; finer steps of the same engine are left out then."""
+
+TRUTH_SHARE = 10.0
+"""How much longer the event-driven run may take, which all others are compared with; it ends there."""
 
 COMPARED_ROWS = 2000
 """Rows of the log that the reference engine has to confirm."""
@@ -98,8 +103,11 @@ def compare(
     Raises EventsimError where the scene has no contact to compare.
     """
     tell("event-driven run")
-    truth, checks, engine = truth_to_compare(scene, until)
+    truth, checks, engine, whole = truth_to_compare(scene, until, TRUTH_SHARE * patience_s)
     ready, left_out = able(entrants, truth.stage)
+    if not whole:
+        taken, end = f"{TRUTH_SHARE * patience_s:g} s", f"t = {truth.times[-1]:g}"
+        left_out.append(f"what comes after {end} is left out: the event-driven run took {taken} until there")
     flight = truth.radius / truth.speed
     sizes = sorted({step * flight for step in USUAL_STEPS} if steps is None else set(steps), reverse=True)
     exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks)
@@ -139,16 +147,33 @@ def engines_agree(truth: Truth) -> bool:
     return rows.tobytes() == truth.run.rows[:count].tobytes()
 
 
-def truth_to_compare(scene: Scene, until: float | None) -> tuple[Truth, tuple[float, ...], str]:
-    """(the event-driven run, the times of the checks, the engine that did it)."""
+class Compared(NamedTuple):
+    """What others are compared with: the event-driven run, the times of the checks, the engine that did it.
+
+    whole: it came to the stop that was asked for, or to its own end.
+    """
+
+    truth: Truth
+    checks: tuple[float, ...]
+    engine: str
+    whole: bool
+
+
+def truth_to_compare(scene: Scene, until: float | None, patience_s: float = math.inf) -> Compared:
+    """The event-driven run, as far as it comes in so many CPU seconds.
+
+    Raises EventsimError where it has no stop, or meets nothing.
+    """
     engine = best_engine(len(scene.disks))
     events = scene.events if until is None and scene.until is None else None
     stop = Stop(scene.until if until is None else until, events)
     if stop.until is None and stop.events is None:
         raise EventsimError("nothing says when to stop: give --until, or a key until or events in the scene")
-    probe = ENGINES[engine].run(scene, stop, Wishes(log=True))  # with rows, as all runs here: one kind of kernel to compile
-    begin, end = scene.start_time, probe.time
-    contacts = 2 * probe.counters.pair_contacts + probe.counters.wall_contacts
+    # with rows, as all runs here: one kind of kernel to compile
+    session = ENGINES[engine].open(stage_of(scene), keep_rows=True)
+    stopped = advanced(session, stop, patience_s)
+    begin, end = scene.start_time, state_of(session, stop, stopped).time
+    contacts = 2 * session.counters.pair_contacts + session.counters.wall_contacts
     if not contacts or not end > begin:
         raise EventsimError(f"nothing meets before {end:g}: there is nothing to compare")
     free = (end - begin) * len(scene.disks) / contacts
@@ -156,7 +181,7 @@ def truth_to_compare(scene: Scene, until: float | None) -> tuple[Truth, tuple[fl
     checks = tuple(begin + check * scale for check in CHECKS)
     restarts = np.linspace(begin, end, RESTARTS + 2)[1:-1]
     times = sorted({*checks, *restarts.tolist(), end})
-    return truth_of(scene, times, engine), checks, engine
+    return Compared(truth_of(scene, times, engine), checks, engine, stopped is not None)
 
 
 def _line(truth: Truth, label: str, dt: float, run: Followed, found: Census, checks: Sequence[float]) -> Line:

@@ -70,6 +70,18 @@ def follow(session: Session, times: Sequence[float], patience_s: float = float("
     )
 
 
+def advanced(session: Session, stop: Stop, patience_s: float) -> str | None:
+    """Let a session run to a stop, its rows dropped; why it stopped, None after about `patience_s` CPU seconds of simulating."""
+    spent = 0.0
+    while True:
+        began, compiled = thread_time(), _compiled(session)
+        reason = session.advance(stop, STINT)
+        spent += max(thread_time() - began - (_compiled(session) - compiled), 0.0)
+        session.take_rows()
+        if reason is not None or spent >= patience_s:
+            return reason
+
+
 def _compiled(session: Session) -> float:
     """Seconds that went into compiling so far; engines without a compiler have none."""
     return float(getattr(session, "compile_s", 0.0))

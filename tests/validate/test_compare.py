@@ -71,6 +71,16 @@ def test_the_table_has_a_row_for_each_run_and_plain_numbers(gas, tmp_path):
     assert float(read[1]["dt"]) == 0.02
 
 
+def test_patience_bounds_the_event_driven_run_too():
+    """A scene of years: what comes after the first seconds of computing is left out, and said to be."""
+    scene = es.gallery("gas", n=60)
+    whole = compare(scene, chosen_entrants(["stepped"]), steps=(0.02,), until=0.05)
+    assert not any("event-driven" in sentence for sentence in whole.left_out)
+    cut = compare(scene, chosen_entrants(["stepped"]), steps=(0.02,), until=1e9, patience_s=0.01)
+    assert cut.truth.times[-1] < 1e3
+    assert f"what comes after t = {cut.truth.times[-1]:g} is left out: the event-driven run took 0.1 s" in cut.left_out[0]
+
+
 def test_an_unknown_engine_is_named_with_those_that_there_are():
     with pytest.raises(es.EventsimError, match="no engine 'step' to compare with; there are frames"):
         chosen_entrants(["step"])
