@@ -106,8 +106,8 @@ def compare(
     truth, checks, engine, whole = truth_to_compare(scene, until, TRUTH_SHARE * patience_s)
     ready, left_out = able(entrants, truth.stage)
     if not whole:
-        taken, end = f"{TRUTH_SHARE * patience_s:g} s", f"t = {truth.times[-1]:g}"
-        left_out.append(f"what comes after {end} is left out: the event-driven run took {taken} until there")
+        spent, end = f"{TRUTH_SHARE * patience_s:g} s", f"t = {truth.times[-1]:g}"
+        left_out.append(f"what comes after {end} is left out: the event-driven run took {spent} until there")
     flight = truth.radius / truth.speed
     sizes = sorted({step * flight for step in USUAL_STEPS} if steps is None else set(steps), reverse=True)
     exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks)

@@ -13,7 +13,7 @@ from eventsim.record.replay import Replay
 from eventsim.show.animate import Film, animate
 from eventsim.show.colouring import Colouring
 from eventsim.show.frames import frames_at
-from eventsim.show.picture import Look, Picture
+from eventsim.show.picture import Look, Picture, _clock_format
 
 imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="the extra video is not installed")
 SMALL = Look(size=(320, 200))
@@ -223,3 +223,18 @@ def test_drawing_needs_neither_a_display_nor_pyplot(tmp_path):
         "run.animate('a.png', moments=1); assert 'matplotlib.pyplot' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={"HOME": str(tmp_path)}, check=True)
+
+
+@pytest.mark.parametrize(
+    ("times", "shown"),
+    [
+        ([0.0, 1.6, 3.2, 4.8], "4.8"),  # not 5, which would be elsewhere
+        ([0.0, 1.0, 2.0], "2"),
+        ([0.0, 5.0 / 3.0, 10.0 / 3.0], "3.3"),
+        ([0.0, 1.0 / 30.0, 2.0 / 30.0], "0.07"),
+        ([1e6, 1e6 + 1e-3], "1,000,000.001"),
+        ([2.5, 2.5], "2.500"),
+    ],
+)
+def test_the_clock_of_a_frame_is_not_rounded_to_another_place(times, shown):
+    assert f"{times[-1]:{_clock_format(np.array(times))}}" == shown

@@ -127,8 +127,23 @@ def test_no_text_is_cut_off_or_printed_over_another(fluid, kind):
 
 
 def sweep_row(eta, z, error, theory, accuracy):
-    given = {"packing_fraction": eta, "disks": 64, "Z": z, "Z_error": error, "equilibrated": True}
+    given = {"packing_fraction": eta, "replica": 0, "disks": 64, "Z": z, "Z_error": error, "equilibrated": True}
     return given | {"Z_theory": theory, "Z_accuracy": accuracy}
+
+
+def swept_row(count, eta, disks):
+    return {"packing_fraction": eta, "n": count, "replica": 0, **sweep_row(eta, 2.0, 0.1, None, None), "disks": disks}
+
+
+def test_a_second_key_of_a_sweep_has_its_own_series():
+    rows = [swept_row(n, eta, n) for eta in (0.1, 0.2) for n in (16, 64)]
+    assert [words for words, _ in equation_of_state.series_of(rows)] == ["n = 16", "n = 64"]
+    figure = Figure()
+    equation_of_state.draw(figure, rows)
+    above = figure.axes[0]
+    assert [text.get_text() for text in above.get_legend().get_texts()][1:] == ["n = 16", "n = 64"]
+    assert "the curve is that of the fluid without walls" in above.get_title(loc="left")
+    assert [words for words, _ in equation_of_state.series_of(rows[::2])] == [""]
 
 
 def test_replicas_are_averaged_and_theory_keeps_its_accuracy():

@@ -3,14 +3,18 @@
 import csv
 import json
 import math
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 import eventsim as es
 from eventsim.cli.program import main
 from eventsim.scene.stage import stage_of
+from eventsim.show.versus.losses import NONE, draw_missed
 from eventsim.validate.advantages import Advantage, advantages, cell, table
 from eventsim.validate.chart import Chaos, Chart
 from eventsim.validate.compare import compare
@@ -211,6 +215,29 @@ def test_figures_are_drawn(gas, tmp_path):
     assert (tmp_path / "gas.png").stat().st_size > 20_000
     assert (tmp_path / "chart.svg").read_text().startswith("<?xml")
     assert {row["panel"] for row in chart_rows(chart)} == {"precision", "losses", "chaos", "rate", "advantage"}
+
+
+def test_runs_that_miss_nothing_are_drawn_below_one_in_a_hundred(gas):
+    few = [replace(line, census=replace(line.census, exact=10, missed=0)) for line in gas.lines]
+    axes = Figure().subplots()
+    draw_missed(axes, replace(gas, lines=few))
+    (none,) = (tick for tick in axes.yaxis.get_minor_ticks() if tick.label1.get_text() == "none")
+    assert none.get_loc() == NONE < 1.0
+    assert axes.get_ylim()[0] < none.get_loc()
+
+
+def test_labels_of_steps_that_are_close_do_not_run_into_each_other(gas):
+    near = [replace(gas.lines[0], step=step) for step in (0.0080, 0.0089)]
+    figure = Figure(figsize=(3.4, 3.0))
+    axes = figure.subplots()
+    draw_missed(axes, replace(gas, lines=near))
+    figure.draw_without_rendering()
+    boxes = [label.get_window_extent() for label in axes.get_xticklabels(which="both") if label.get_text()]
+    low, high = axes.get_xlim()
+    assert len(boxes) >= 2
+    assert low < 0.0080 < 0.0089 < high
+    boxes.sort(key=lambda box: box.x0)
+    assert all(one.x1 < other.x0 for one, other in pairwise(boxes))
 
 
 def test_a_comparison_without_pairs_is_drawn(tmp_path):

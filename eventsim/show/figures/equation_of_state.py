@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import cycle, takewhile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.measure.theory import KOLAFA_ROTTNER_UP_TO, compressibility_factor
 from eventsim.record.events import Floats
-from eventsim.show.figures.style import BLUE, ORANGE, RED, label, name_of
+from eventsim.show.figures.style import BLUE, GREEN, ORANGE, PINK, RED, label, name_of
 from eventsim.show.figures.write import save_figure
+from eventsim.show.palette import LIGHT
 from eventsim.sweep.task import Row
+
+COLOURS = (BLUE, GREEN, PINK, RED)
+"""Of the series, in turn; theory is orange."""
+
+MARKS = ("o", "s", "^", "D", "v")
+"""Their marks: more than colours, by one, so that all pairs of both come up."""
 
 
 def write_equation_of_state(rows: Sequence[Row], path: Path, name: str | None = None) -> None:
@@ -25,25 +35,73 @@ def write_equation_of_state(rows: Sequence[Row], path: Path, name: str | None = 
 
 def draw(figure: Figure, rows: Sequence[Row], name: str | None = None) -> None:
     """Draw the mean Z of the replicas at each packing fraction, and its distance from theory in standard errors of both."""
-    eta, z, error, theory, accuracy, settled = averages(rows)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    offs = [off for _, members in series_of(rows) for off in _off(members)]
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1)) if offs else (figure.subplots(), None)
+    _draw_z(above, rows)
+    verdict = "no prediction for these states; the curve is that of the fluid without walls"
+    if offs:
+        verdict = f"{np.sqrt(np.mean(np.square(offs))):.1f} standard errors from theory, root mean square"
+    label(above, "" if below else "packing fraction", "Z = P V / N kT", f"{name_of(name)}: {verdict}")
+    if below is not None:
+        below.axhspan(-1.0, 1.0, color="#e3e6ea")
+        below.axhline(0.0, color=ORANGE, lw=1.5)
+        for (_, members), style in zip(series_of(rows), _styles(), strict=False):
+            eta, _, _, theory, accuracy, _ = averages(members)
+            below.plot(eta[np.isfinite(theory) & np.isfinite(accuracy)], _off(members), **style)
+        label(below, "packing fraction", "difference\n[std. errors]", "")
+
+
+def _draw_z(axes: Axes, rows: Sequence[Row]) -> None:
+    eta, *_ = averages(rows)
     x = np.linspace(0.0, min(KOLAFA_ROTTNER_UP_TO, max(1.1 * float(eta.max()), 0.05)), 200)
     curve = [compressibility_factor(value) for value in x.tolist()]
-    above.plot(x, curve, color=ORANGE, lw=1.5, label="Kolafa & Rottner 2006, fluid, N \N{RIGHTWARDS ARROW} \N{INFINITY}")
-    for chosen, colour, text in ((settled, BLUE, "measured"), (~settled, RED, "not known to be equilibrated")):
-        if chosen.any():
-            above.errorbar(eta[chosen], z[chosen], error[chosen], fmt="o", ms=4, color=colour, label=text)
+    axes.plot(x, curve, color=ORANGE, lw=1.5, label="Kolafa & Rottner 2006, fluid, N \N{RIGHTWARDS ARROW} \N{INFINITY}")
+    doubtful = False
+    for (words, members), style in zip(series_of(rows), _styles(), strict=False):
+        eta, z, error, _, _, settled = averages(members)
+        axes.errorbar(eta, z, error, fmt="none", color=style["color"])
+        axes.plot(eta[settled], z[settled], label=words or "measured", **style)
+        axes.plot(eta[~settled], z[~settled], mfc="white", **style)
+        doubtful |= bool((~settled).any())
+    if doubtful:
+        axes.plot([], [], "o", ms=4, color=LIGHT.faint, mfc="white", label="not known to be equilibrated")
+    axes.legend(frameon=False)
+
+
+def _styles() -> Iterator[dict[str, Any]]:
+    """How the series are drawn, one after the other."""
+    for mark, colour in zip(cycle(MARKS), cycle(COLOURS), strict=False):
+        yield {"marker": mark, "ls": "none", "ms": 4, "color": colour}
+
+
+def _off(rows: Sequence[Row]) -> list[float]:
+    """How far Z is from theory, in standard errors of both, where there is a prediction."""
+    _, z, error, theory, accuracy, _ = averages(rows)
     compared = np.isfinite(theory) & np.isfinite(accuracy)
-    off = (z - theory)[compared] / np.hypot(error, accuracy)[compared]
-    below.axhspan(-1.0, 1.0, color="#e3e6ea")
-    below.axhline(0.0, color=ORANGE, lw=1.5)
-    below.plot(eta[compared], off, "o", ms=4, color=BLUE)
-    verdict = "no theory for these states"
-    if compared.any():
-        verdict = f"{np.sqrt((off**2).mean()):.1f} standard errors from theory, root mean square"
-    label(above, "", "Z = P V / N kT", f"{name_of(name)}: {verdict}")
-    label(below, "packing fraction", "difference\n[std. errors]", "")
-    above.legend(frameon=False)
+    off: list[float] = ((z - theory)[compared] / np.hypot(error, accuracy)[compared]).tolist()
+    return off
+
+
+def series_of(rows: Sequence[Row]) -> list[tuple[str, list[Row]]]:
+    """(words, rows) for each setting of the keys that are swept besides the packing fraction, in the order of the table."""
+    settings = takewhile(lambda key: key != "replica", rows[0] if rows else ())
+    keys = [key for key in settings if len({row.get(key) for row in rows}) > 1]
+    along = next((key for key in keys if _moves_along(rows, key, keys)), None)
+    others = [key for key in keys if key != along]
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        found.setdefault(", ".join(f"{key} = {row.get(key)}" for key in others), []).append(row)
+    return [(words, members) for words, members in found.items() if any(map(_can_be_drawn, members))]
+
+
+def _moves_along(rows: Sequence[Row], key: str, keys: Sequence[str]) -> bool:
+    """Whether a key changes the packing fraction where the others stay as they are."""
+    etas: dict[tuple[object, ...], set[float]] = {}
+    for row in rows:
+        eta = row.get("packing_fraction")
+        if isinstance(eta, float):
+            etas.setdefault(tuple(row.get(other) for other in keys if other != key), set()).add(round(eta, 12))
+    return any(len(values) > 1 for values in etas.values())
 
 
 def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, Floats, NDArray[np.bool_]]:
@@ -54,15 +112,20 @@ def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, Float
     """
     groups: dict[tuple[float, object], list[Row]] = {}
     for row in rows:
-        eta, spread = row.get("packing_fraction"), row.get("Z_error")
-        if isinstance(eta, float) and isinstance(row.get("Z"), float) and isinstance(spread, float) and spread > 0.0:
+        if _can_be_drawn(row):
             # the same setting may differ in the last digit of what the disks cover
-            groups.setdefault((round(eta, 12), row.get("disks")), []).append(row)
+            groups.setdefault((round(float(row["packing_fraction"] or 0.0), 12), row.get("disks")), []).append(row)
     if not groups:
         raise EventsimError("there is nothing to draw: no run of the table has a packing fraction and a Z with an error bar")
     means = [_mean(group) for _, group in sorted(groups.items(), key=lambda item: item[0][0])]
     z, error, theory, accuracy, settled = (np.array([mean[k] for mean in means]) for k in range(5))
     return np.array(sorted(eta for eta, _ in groups)), z, error, theory, accuracy, settled.astype(np.bool_)
+
+
+def _can_be_drawn(row: Row) -> bool:
+    """Whether a row has a packing fraction and a Z with an error bar."""
+    eta, z, spread = row.get("packing_fraction"), row.get("Z"), row.get("Z_error")
+    return isinstance(eta, float) and isinstance(z, float) and isinstance(spread, float) and spread > 0.0
 
 
 def _mean(group: Sequence[Row]) -> tuple[float, float, float, float, bool]:

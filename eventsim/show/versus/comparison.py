@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import NAMES, look
-from eventsim.show.versus.losses import STEP, draw_energy, draw_missed
+from eventsim.show.versus.losses import STEP, draw_energy, draw_missed, scale_steps
 from eventsim.show.versus.notes import ACROSS, note
 from eventsim.show.versus.page import save_page
 from eventsim.validate.compare import FITTED, Comparison, Line
@@ -58,7 +58,7 @@ def _panel(
     for name in dict.fromkeys(line.label for line in comparison.lines):
         lines = [line for line in comparison.lines if line.label == name]
         axes.plot([line.step for line in lines], [value(line) for line in lines], label=NAMES[name], **look(name).drawn(5.5))
-    axes.set_xscale("log")
+    scale_steps(axes, comparison)
     if log and any(value(line) > 0.0 for line in comparison.lines):
         axes.set_yscale("log", nonpositive="mask")
     label(axes, STEP, y, title)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
@@ -16,10 +17,13 @@ from eventsim.validate.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
 
 STEP = "step: radii that a typical disk flies in it"
 
+NONE = 0.2
+"""Per cent: where runs that miss no contact are drawn, at most; half a contact may be more, and would lie above real losses."""
+
 
 def draw_missed(axes: Axes, comparison: Comparison) -> None:
     """Contacts missed, per cent of those ahead of exact states; runs that miss none lie on the lower edge."""
-    least = 50.0 / max([1, *(line.census.exact for line in comparison.lines)])  # half a contact
+    least = min(NONE, 50.0 / max([1, *(line.census.exact for line in comparison.lines)]))  # half a contact
     _draw(axes, comparison, lambda line: max(100.0 * line.census.share(line.census.missed), least))
     bound = 100.0 * (1.0 - ALL)
     axes.axhline(bound, color=LIGHT.ink, lw=0.9, ls=(0, (4, 3)))
@@ -51,5 +55,15 @@ def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) ->
         lines = [line for line in comparison.lines if line.label == name]
         style = look(name).drawn(5.5)
         axes.plot([line.step for line in lines], [value(line) for line in lines], lw=1.3, label=NAMES[name], **style)
-    axes.set_xscale("log")
+    scale_steps(axes, comparison)
     axes.set_yscale("log")
+
+
+def scale_steps(axes: Axes, comparison: Comparison) -> None:
+    """Make the axis of steps logarithmic; within a decade with few and plain numbers, which do not run into each other."""
+    axes.set_xscale("log")
+    steps = [line.step for line in comparison.lines]
+    if steps and max(steps) < 10.0 * min(steps):
+        axes.xaxis.set_major_locator(MaxNLocator(4))
+        axes.xaxis.set_major_formatter("{x:.3g}")
+        axes.xaxis.set_minor_locator(NullLocator())
