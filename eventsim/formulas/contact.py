@@ -1,4 +1,4 @@
-"""When two disks meet: the delay until the gap of a pair in straight relative flight closes."""
+"""When round things meet: the delay until the gap of a pair in straight relative flight closes, or that to a circle around it."""
 
 import math
 
@@ -66,6 +66,43 @@ def screened_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float
     return NEVER if discriminant < -slack or (du == 0.0 and dw == 0.0) else DOUBT
 
 
+def inner_delay(dx: Real, dy: Real, du: Real, dw: Real, radius: Real) -> Real:
+    """The delay until a straight flight reaches a circle of the given radius from inside; NEVER at rest.
+
+    c = radius^2 - d^2, b = d.v; outward (b > 0): c / (b + sqrt D), now if c <= 0; inward: (sqrt D - b) / a.
+    """
+    b = dx * du + dy * dw
+    a = du * du + dw * dw
+    if not a > 0.0:
+        return NEVER
+    radius2 = radius * radius
+    c = radius2 - (dx * dx + dy * dy)
+    cross = dx * dw - dy * du
+    discriminant = a * radius2 - cross * cross
+    root = sqrt(discriminant) if discriminant > 0.0 else 0.0
+    if b > 0.0:
+        if not c > 0.0:
+            return 0.0
+        return c / (b + root)
+    return (root - b) / a
+
+
+def screened_inner_delay(dx: float, dy: float, du: float, dw: float, radius: float) -> float:
+    """The same where floats can tell; DOUBT (nan) on the way out near the circle, along it, and where squares are no floats."""
+    b = dx * du + dy * dw
+    radius2 = radius * radius
+    c = radius2 - (dx * dx + dy * dy)
+    a = du * du + dw * dw
+    bound = a * radius2
+    cross = dx * dw - dy * du
+    discriminant = bound - cross * cross
+    if not discriminant > DIGITS_LOST * bound + SMALLEST:
+        return NEVER if du == 0.0 and dw == 0.0 else DOUBT
+    if b > 0.0:
+        return c / (b + math.sqrt(discriminant)) if c > DIGITS_LOST * radius2 else DOUBT
+    return (math.sqrt(discriminant) - b) / a
+
+
 def circle_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy: Real, circle: Real) -> Real:
     """The delay until a disk in straight flight meets a fixed circle around (cx, cy) from outside; floats to the last bit."""
     if not is_float(x):
@@ -74,3 +111,13 @@ def circle_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy:
     if delay == delay:
         return delay
     return careful_pair_delay(x, y, u, w, 0.0, radius, cx, cy, 0.0, 0.0, 0.0, circle, 0.0, 0.0)
+
+
+def leaving_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy: Real, circle: Real) -> Real:
+    """The delay until a disk in straight flight meets a fixed circle around (cx, cy) from inside; floats to the last bit."""
+    if not is_float(x):
+        return inner_delay(x - cx, y - cy, u, w, circle - radius)
+    delay = screened_inner_delay(x - cx, y - cy, u, w, circle - radius)
+    if delay == delay:
+        return delay
+    return careful_pair_delay(x, y, u, w, 0.0, -radius, cx, cy, 0.0, 0.0, 0.0, circle, 0.0, 0.0, -1.0)

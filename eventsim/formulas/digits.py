@@ -1,4 +1,4 @@
-"""When the plain formula has lost its digits: the contact of two disks by error-free arithmetic, right to the last bit.
+"""When the plain formula has lost its digits: the contact of round things by error-free arithmetic, right to the last bit.
 
 Near contact c = d^2 - reach^2 cancels, at a graze D = a reach^2 - (d x v)^2 does, far from the corner already x + v (t - t0) is
 rounded, and velocities of 1e-160 have no squares.  So lengths and velocities are scaled by powers of two, and everything is
@@ -42,12 +42,15 @@ def careful_pair_delay(
     rj: float,
     shift_x: float,
     shift_y: float,
+    side: float = 1.0,
 ) -> float:
     """The delay, counted from max(ti, tj), until two straight flights are ri + rj apart; NEVER where they miss or graze.
 
     (x, y), (u, w), t, r: anchor, velocity, local clock and radius of disks i and j; (shift_x, shift_y): the multiple of the
     periods that is taken off their distance.  The sum ri + rj is not rounded.  An approaching overlap, or contact, is due
     now.  Relative error below 2**-52; exchange of the disks (with the shift's sign) changes no bit.
+
+    side: -1.0 for a disk inside a circle, one radius of which is negative: how long it is less than ri + rj from the centre.
     """
     if ui == uj and wi == wj:
         return NEVER
@@ -70,19 +73,33 @@ def careful_pair_delay(
     reach = two_sum(ri, rj)
     dx, size_x = _apart(xi, ui, lag_i, rest_i, xj, uj, lag_j, rest_j, shift_x)
     dy, size_y = _apart(yi, wi, lag_i, rest_i, yj, wj, lag_j, rest_j, shift_y)
-    b, c, d, decided = _quadratic(dx, dy, du, dw, reach, size_x, size_y)
+    b, c, d, decided = _quadratic(dx, dy, du, dw, reach, size_x, size_y, side)
     if not decided:
         exact_x = _exactly_apart(xi, ui, lag_i, rest_i, xj, uj, lag_j, rest_j, shift_x)
         exact_y = _exactly_apart(yi, wi, lag_i, rest_i, yj, wj, lag_j, rest_j, shift_y)
         b, c, d = _exact_quadratic(exact_x, exact_y, du, dw, reach)
-    if not b[0] < 0.0:
-        return NEVER
-    if not c[0] > 0.0:
-        return 0.0
-    if not d[0] > 0.0:
-        return NEVER
-    mantissa, exponent = math.frexp(_quotient(c, _minus(_root(d), b)))
+    if side < 0.0:
+        scaled_delay = _until_outside(b, c, d, _square(du, dw))
+    else:
+        if not b[0] < 0.0:
+            return NEVER
+        if not c[0] > 0.0:
+            return 0.0
+        if not d[0] > 0.0:
+            return NEVER
+        scaled_delay = _quotient(c, _minus(_root(d), b))
+    mantissa, exponent = math.frexp(scaled_delay)
     return math.ldexp(mantissa, exponent + clock) if exponent + clock <= LARGEST else NEVER
+
+
+def _until_outside(b: Two, c: Two, d: Two, a: Two) -> float:
+    """The later root of a t^2 + 2 b t + c, now if it is past: where nothing cancels, on the way out and on the way in."""
+    root = _root(d) if d[0] > 0.0 else (0.0, 0.0)
+    if not b[0] > 0.0:
+        return _quotient(_minus(root, b), a)
+    if not c[0] < 0.0:
+        return 0.0
+    return _quotient((-c[0], -c[1]), _plus(b, root))
 
 
 def _exponent(size: float) -> int:
@@ -107,28 +124,30 @@ def _apart(
 
 
 def _quadratic(
-    dx: Two, dy: Two, du: Two, dw: Two, reach: Two, size_x: float, size_y: float
+    dx: Two, dy: Two, du: Two, dw: Two, reach: Two, size_x: float, size_y: float, side: float
 ) -> tuple[Two, Two, Two, bool]:
     """b = d.v, c = d^2 - reach^2, D = a reach^2 - (d x v)^2, and whether their signs and leading digits are certain.
 
-    size_x, size_y bound the terms that dx and dy are differences of, and so the error that these carry.
+    size_x, size_y bound the terms that dx and dy are differences of, and so the error that these carry.  Outside of a circle
+    only b < 0 matters, inside it the size of |b| + sqrt D.
     """
     b = _plus(_times(dx, du), _times(dy, dw))
     reach2 = _times(reach, reach)
     c = _minus(_plus(_times(dx, dx), _times(dy, dy)), reach2)
     cross = _minus(_times(dx, dw), _times(dy, du))
-    a_reach2 = _times(_plus(_times(du, du), _times(dw, dw)), reach2)
+    a_reach2 = _times(_square(du, dw), reach2)
     d = _minus(a_reach2, _times(cross, cross))
     u, w = abs(du[0]), abs(dw[0])
     error_b = ROUNDING * (size_x * u + size_y * w)
-    if b[0] > error_b:
+    if b[0] > error_b and side > 0.0:
         return b, c, d, True
     error_c = ROUNDING * ((size_x * size_x + size_y * size_y) + reach2[0])
-    if not (b[0] * ENOUGH < -error_b and error_c < ENOUGH * abs(c[0])):
+    least_b = -b[0] if side > 0.0 else abs(b[0])
+    if not (error_b < ENOUGH * least_b and error_c < ENOUGH * abs(c[0])):
         return b, c, d, False
     error_cross = ROUNDING * (size_x * w + size_y * u)
     error_d = ROUNDING * (a_reach2[0] + cross[0] * cross[0]) + 3.0 * (abs(cross[0]) + error_cross) * error_cross
-    return b, c, d, c[0] < 0.0 or error_d < ENOUGH * abs(d[0])
+    return b, c, d, (c[0] < 0.0 and side > 0.0) or error_d < ENOUGH * abs(d[0])
 
 
 def _exactly_apart(
@@ -149,6 +168,11 @@ def _exact_quadratic(dx: list[float], dy: list[float], du: Two, dw: Two, reach: 
     a = added(multiplied(u, u), multiplied(w, w))
     d = added(multiplied(a, reach2), negated(multiplied(cross, cross)))
     return leading(b), leading(c), leading(d)
+
+
+def _square(u: Two, w: Two) -> Two:
+    """u^2 + w^2."""
+    return _plus(_times(u, u), _times(w, w))
 
 
 def _plus(p: Two, q: Two) -> Two:

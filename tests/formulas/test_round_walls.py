@@ -2,6 +2,7 @@
 
 import pytest
 
+from eventsim.formulas.contact import inner_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.walls.round import (
     Container,
@@ -10,7 +11,6 @@ from eventsim.formulas.walls.round import (
     arc_delay,
     arc_side,
     container_delay,
-    inner_delay,
     on_arc,
     post_delay,
     round_normal,

@@ -146,7 +146,7 @@ def name_apart(kept: Any) -> None:
 _FOLDER = cache_folder()
 _THIS_PROCESS = uuid4().hex[:8]
 
-_CAREFUL = types.float64(*[types.float64] * 14)
+_CAREFUL = types.float64(*[types.float64] * 15)
 _careful = types.ExternalFunction("eventsim_careful_pair_delay", _CAREFUL)
 
 
@@ -159,9 +159,9 @@ def link() -> Any:
 
 
 @overload(digits.careful_pair_delay)
-def _careful_pair_delay(xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y):
-    return lambda xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y: _careful(
-        xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y
+def _careful_pair_delay(xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side=1.0):
+    return lambda xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side=1.0: _careful(
+        xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side
     )
 
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from eventsim.formulas.contact import circle_delay
+from eventsim.formulas.contact import circle_delay, leaving_delay
 from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
 
@@ -90,31 +90,10 @@ def container_delay(
 ) -> tuple[Real, int]:
     """(delay, -1) of the next contact with the container from inside."""
     if gx is None:
-        return inner_delay(x - shape.x, y - shape.y, vx, vy, shape.radius - radius), -1
+        return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius), -1
     if gx == 0.0 and gy == 0.0:
-        return inner_delay(x - shape.x, y - shape.y, vx, vy, shape.radius - radius), -1
+        return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius), -1
     return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, shape.radius - radius, -1.0)[0], -1
-
-
-def inner_delay(dx: Real, dy: Real, du: Real, dw: Real, radius: Real) -> Real:
-    """The delay until a straight flight reaches a circle of the given radius from inside; NEVER at rest.
-
-    c = radius^2 - d^2, b = d.v; outward (b > 0): c / (b + sqrt D), now if c <= 0; inward: (sqrt D - b) / a.
-    """
-    b = dx * du + dy * dw
-    a = du * du + dw * dw
-    if not a > 0.0:
-        return NEVER
-    radius2 = radius * radius
-    c = radius2 - (dx * dx + dy * dy)
-    cross = dx * dw - dy * du
-    discriminant = a * radius2 - cross * cross
-    root = sqrt(discriminant) if discriminant > 0.0 else 0.0
-    if b > 0.0:
-        if not c > 0.0:
-            return 0.0
-        return c / (b + root)
-    return (root - b) / a
 
 
 def on_arc(shape: Arc, x: Real, y: Real) -> bool:
@@ -196,4 +175,4 @@ def _inner_from(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, 
         entered = circle_delay(x, y, vx, vy, -radius, shape.x, shape.y, shape.radius)
         if not entered < NEVER:
             return NEVER
-    return inner_delay(x - shape.x, y - shape.y, vx, vy, shape.radius - radius)
+    return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius)
