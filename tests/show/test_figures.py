@@ -8,13 +8,14 @@ from matplotlib.figure import Figure
 
 import eventsim as es
 from eventsim.errors import EventsimError
+from eventsim.measure.displacement import displacements
+from eventsim.measure.free_paths import free_paths, mean_free_path, path_density
+from eventsim.record.flights import flight_table
 from eventsim.record.replay import Replay
 from eventsim.scene.gallery import names
-from eventsim.show.figures import TITLES, equation_of_state, msd
-from eventsim.show.figures.free_paths import free_paths, mean_free_path, path_density
+from eventsim.show.figures import TITLES, equation_of_state
 from eventsim.show.figures.residuals import gaps_at_contact
 from eventsim.show.figures.write import write_figure
-from eventsim.show.flights import flight_table
 from eventsim.show.images import wrapped_pieces
 
 
@@ -71,7 +72,7 @@ def test_displacements_are_those_of_the_states(broken):
     times = np.linspace(*replay.span, 9)
     table = flight_table(replay)
     for disk in (0, 3, 15):
-        way = msd.displacements(table, disk, times)
+        way = displacements(table, disk, times)
         states = np.array([replay.state_at(time).position[disk] for time in times])
         assert np.abs(way - (states - states[0])).max() < 1e-12
 
@@ -94,7 +95,7 @@ def test_measured_free_paths_agree_with_kinetic_theory():
     paths = free_paths(flight_table(Replay(log)))
     error = paths.std() / np.sqrt(len(paths))
     # Enskog with Henderson's Z, good to about 1 % at this density; the sample adds 3 standard errors.
-    assert paths.mean() == pytest.approx(mean_free_path(log), abs=3 * error + 0.03 * paths.mean())
+    assert paths.mean() == pytest.approx(mean_free_path(log.scene), abs=3 * error + 0.03 * paths.mean())
 
 
 def test_gaps_at_contact_are_nought_to_rounding(fluid):

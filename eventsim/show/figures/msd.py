@@ -10,11 +10,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
-from eventsim.record.events import Floats
+from eventsim.measure.displacement import mean_square
+from eventsim.measure.theory import enskog_diffusion
+from eventsim.record.flights import flight_table
 from eventsim.record.log import EventLog
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of
-from eventsim.show.flights import FlightTable, flight_table
 
 SAMPLES, LAGS = 600, 40
 """Times at which displacements are read; lags shown, evenly spread on a logarithmic scale."""
@@ -28,15 +29,10 @@ def draw(figure: Figure, log: EventLog) -> None:
     start, end = replay.span
     times = np.linspace(start, end, SAMPLES)
     table = flight_table(replay)
-    way = np.stack([displacements(table, disk, times) for disk in moving.tolist()], axis=1)  # (T, M, 2)
     lags = np.unique(np.geomspace(1, SAMPLES // 2, LAGS).astype(int))
-    squared = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2) for lag in lags.tolist()]
-    mean = np.array([part.mean() for part in squared])
+    mean, error = mean_square(table, moving, times, lags)
     if not mean.any():
         raise LogError("msd: nothing moves in this run")
-    error = np.array([part.mean(axis=0).std(ddof=1) if len(moving) > 1 else 0.0 for part in squared]) / np.sqrt(
-        len(moving)
-    )
     tau = lags * (times[1] - times[0])
     axes = figure.add_subplot()
     axes.errorbar(tau, mean, error, fmt="o", ms=3.5, lw=1, color=BLUE, label="measured, standard error over disks")
@@ -47,7 +43,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     verdict = ""
     if pairs and len(np.unique(mass)) == 1 and log.scene.gravity is None:
         rate = 2.0 * pairs / (len(mass) * (end - start))
-        diffusion = 0.5 * velocity2 / rate
+        diffusion = enskog_diffusion(0.5 * velocity2, 1.0, rate)  # per mass
         axes.plot(
             tau,
             4.0 * diffusion * tau,
@@ -62,16 +58,3 @@ def draw(figure: Figure, log: EventLog) -> None:
         f"{name_of(log.scene.name)}: {len(moving):,} disks{verdict}",
     )  # fmt: skip
     axes.legend(frameon=False)
-
-
-def displacements(table: FlightTable, disk: int, times: Floats) -> Floats:
-    """Return how far a disk has come since the start (T, 2) at ascending times, wraps not taken back."""
-    low, high = np.searchsorted(table.disk, [disk, disk + 1])
-    time, duration = table.time[low:high], table.duration[low:high, None]
-    velocity, pull = table.velocity[low:high], table.pull[low:high]
-    gone = np.zeros_like(velocity)
-    gone[1:] = np.cumsum(duration * (velocity + 0.5 * duration * pull), axis=0)[:-1]
-    flight = np.maximum(np.searchsorted(time, times, side="right") - 1, 0)
-    lag = (times - time[flight])[:, None]
-    result: Floats = gone[flight] + lag * (velocity[flight] + 0.5 * lag * pull[flight])
-    return result

@@ -7,11 +7,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Kind
+from eventsim.record.flights import flight_table
 from eventsim.record.log import EventLog
 from eventsim.show import outlines
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label, name_of, shades_of
-from eventsim.show.flights import flight_table
 from eventsim.show.images import wrapped_pieces
 
 MOST_VECTORS = 20_000

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
+from eventsim.measure.speeds import maxwell_density, maxwell_survival
 from eventsim.record.events import Floats
 from eventsim.record.log import EventLog
 from eventsim.show.figures.demands import replay_with_time
@@ -48,10 +49,9 @@ def draw(figure: Figure, log: EventLog) -> None:
         axes.errorbar(middle, heights, errors, fmt="o", ms=3, lw=1, color=colour, label=name)
         if moving.sum() >= FEWEST:
             v = np.linspace(0.0, edges[-1], 300)
-            curve = value * v / temperature * np.exp(-value * v**2 / (2.0 * temperature))
+            curve = maxwell_density(v, temperature, value)
             axes.plot(v, curve, color=colour, lw=1.4, label=None if place else f"Maxwell, kT = {temperature:.4g}")
-            survive = np.exp(-value * edges**2 / (2.0 * temperature))
-            expected = -np.diff(survive) / np.diff(edges)
+            expected = -np.diff(maxwell_survival(edges, temperature, value)) / np.diff(edges)
             good = errors > 0.0
             chi2 += float((((heights - expected)[good] / errors[good]) ** 2).sum())
             points += int(good.sum())

@@ -8,11 +8,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
 
+from eventsim.record.flights import flight_table
 from eventsim.record.log import EventLog
 from eventsim.show import outlines
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import LENGTH, SIZE, label, name_of, shades_of
-from eventsim.show.flights import flight_table
 from eventsim.show.images import lines_with_images, wrapped_pieces
 from eventsim.show.palette import LIGHT
 

@@ -1,0 +1,57 @@
+"""Free paths: how far a disk flies between contacts with other disks, and what kinetic theory says of it.
+
+A disk of speed v meets others at a rate nu(v) proportional to the mean of |v - v'| over Maxwell's v'; its free paths are
+exponential with the mean v / nu(v), so the paths of all are a mixture of exponentials. Its mean is 1 / (2 sqrt 2 rho d g).
+Source: S. Chapman, T. G. Cowling, The Mathematical Theory of Non-uniform Gases (1970), 5.2.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventsim.measure.theory import compressibility_factor, contact_value
+from eventsim.record.events import Floats
+from eventsim.record.flights import FlightTable
+from eventsim.scene.scene import Scene
+
+MANY = 20
+"""Disks from which on kinetic theory is worth a comparison."""
+
+
+def free_paths(table: FlightTable) -> Floats:
+    """Return the length of every way from one pair contact of a disk to its next."""
+    gone = np.cumsum(table.lengths()) - table.lengths()  # length flown before each flight, all disks in a row
+    at = np.flatnonzero(table.pair)
+    same = table.disk[at[1:]] == table.disk[at[:-1]]
+    paths = np.diff(gone[at])[same]
+    result: Floats = paths[paths > 0.0]  # contacts of one instant have no path between them
+    return result
+
+
+def mean_free_path(scene: Scene) -> float | None:
+    """Return Enskog's mean free path; None where the scene is no gas of equal disks in a rectangle."""
+    disks = scene.disks
+    equal = len(np.unique(disks.radius)) == 1 == len(np.unique(disks.mass)) and disks.radius[0] > 0.0
+    if scene.domain.size is None or not equal or scene.gravity is not None or scene.walls or len(disks) < MANY:
+        return None
+    area, diameter = scene.domain.size[0] * scene.domain.size[1], 2.0 * float(disks.radius[0])
+    density = len(disks) / area
+    eta = density * np.pi * diameter**2 / 4.0
+    return float(1.0 / (2.0 * np.sqrt(2.0) * density * diameter * contact_value(eta, compressibility_factor(eta))))
+
+
+def path_density(x: Floats) -> Floats:
+    """Return the density of free paths x (K,), measured in mean free paths."""
+    v, dv = np.linspace(1e-3, 7.0, 350, retstep=True)
+    angle = np.linspace(0.0, np.pi, 181)
+    other = v[:, None] * np.exp(-(v[:, None] ** 2) / 2.0)  # Maxwell's density of the other speed
+    relative = np.array(
+        [np.sqrt(v[:, None] ** 2 + w * w - 2.0 * v[:, None] * w * np.cos(angle)).mean(axis=1) for w in v]
+    )
+    rate = (relative * other * dv).sum(axis=0)  # proportional to nu(v)
+    share = rate * v * np.exp(-(v**2) / 2.0)
+    share /= share.sum()
+    free = v / rate
+    free /= (share * free).sum()
+    density: Floats = (share / free * np.exp(-x[:, None] / free)).sum(axis=1)
+    return density
