@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from eventsim.measure.blocking import ErrorBar, block_average
 from eventsim.measure.ensemble import Ensemble
@@ -13,6 +14,9 @@ BATCHES = 64
 
 DRIFT = 3.5
 """Standard errors between the two halves that chance hardly explains: 1 in 2000."""
+
+FAR = 5.0
+"""Standard errors from theory that chance does not explain, with few blocks and a dozen quantities either: 1 in 1000."""
 
 DENSE = 0.5
 """Packing fraction from which disks may stay in the cages that they started in."""
@@ -62,6 +66,20 @@ def doubts(ensemble: Ensemble, virial: Floats, bar: ErrorBar, late: bool, moved:
         found.append(f"the pressure drifts: its halves differ by {away:.1f} standard errors")
     found += _caged(ensemble, moved)
     return found
+
+
+def strangers(deviations: Iterable[tuple[str, float | None, str | None]]) -> list[str]:
+    """A clause on the quantity that is furthest from what holds in equilibrium, if one is too far for chance.
+
+    deviations: (name, measured less theory in standard errors or None, where the theory comes from) each.
+    """
+    far = [(abs(off), name, source) for name, off, source in deviations if off is not None and abs(off) > FAR]
+    if not far:
+        return []
+    off, name, source = max(far, key=lambda one: one[0])
+    apart = f"{off:.3g} standard errors" if math.isfinite(off) else "further than any error bar"
+    others = f", and {len(far) - 1} more are far off" if len(far) > 1 else ""
+    return [f"{name} is {apart} from equilibrium ({source}){others}: the disks do not mix, or have not yet"]
 
 
 def _caged(ensemble: Ensemble, moved: float) -> list[str]:

@@ -14,7 +14,7 @@ from eventsim.measure.blocking import ErrorBar, block_average, ratio_average
 from eventsim.measure.cooling import Cooling
 from eventsim.measure.correlation import Correlations
 from eventsim.measure.ensemble import Ensemble
-from eventsim.measure.equilibration import doubts, transient
+from eventsim.measure.equilibration import doubts, strangers, transient
 from eventsim.measure.expected import Expected, expected_of
 from eventsim.measure.speeds import SpeedHistogram, speed_histograms
 from eventsim.measure.tally import Tally
@@ -140,6 +140,8 @@ def results_of(records: Records) -> Measures:
     virial = records.channel(tally.VIRIAL)
     late = not records.discard_given and transient(records.discarded, records.duration)
     found = doubts(ensemble, virial, block_average(virial), late, records.moved) if ensemble.steady else []
+    if ensemble.steady:
+        found += strangers((quantity.name, quantity.deviation, quantity.source) for quantity in quantities)
     return Measures(
         disks=ensemble.n,
         packing_fraction=ensemble.packing_fraction,

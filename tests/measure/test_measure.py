@@ -7,6 +7,7 @@ import pytest
 
 import eventsim as es
 from eventsim.measure import Meter, measure
+from eventsim.measure.equilibration import strangers
 from tests.engines.scenes import lattice_gas
 
 
@@ -154,3 +155,19 @@ def test_posts_alone_are_nothing_to_measure():
     scene = es.Scene(es.Disks([[1.0, 1.0]], radius=0.5, mass=math.inf), es.Box((2.0, 2.0)))
     with pytest.raises(es.EventsimError, match="nothing to measure"):
         Meter(scene)
+
+
+def test_what_is_far_from_equilibrium_is_not_called_equilibrated():
+    """Two disks that come back by the same way: error bars are small, and every closed form is far off."""
+    measures = es.simulate(es.gallery("two-disks"), events=2000, measure=True).measures
+    assert abs(measures["mean_speed"].deviation) > 100.0
+    assert not measures.equilibrated
+    assert "the disks do not mix" in measures.doubts[-1]
+
+
+def test_the_quantity_that_is_furthest_off_is_named():
+    off = [("Z", 7.5, "a closed form"), ("force", -math.inf, "equipartition"), ("rate", None, None), ("speed", 4.9, "Maxwell")]
+    assert strangers(off[2:]) == []
+    (clause,) = strangers(off[:1])
+    assert clause == "Z is 7.5 standard errors from equilibrium (a closed form): the disks do not mix, or have not yet"
+    assert strangers(off)[0].startswith("force is further than any error bar from equilibrium (equipartition), and 1 more")
