@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim.cli.options import json_option, quiet_option
-from eventsim.cli.target import writable
+from eventsim.cli.target import FIGURE_SUFFIXES, writable
 
 if TYPE_CHECKING:
     from eventsim.validate.chart import Chart
 
-FIGURES = (".png", ".svg", ".pdf")
 
 TABLE = (
     "Against the event-driven engine: times the time for the error in the head (>: not reached in so much) | times the error "
@@ -56,7 +55,7 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
 
     Exit codes: 0 done; 2 bad usage or scene.
     """
-    figure = writable(out, "--out", FIGURES)
+    figure = writable(out, "--out", FIGURE_SUFFIXES)
     assert figure is not None
     table = writable(csv if csv is not None else str(figure.with_suffix(".csv")), "--csv", (".csv",))
     assert table is not None

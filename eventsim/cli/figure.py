@@ -6,9 +6,8 @@ import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.source import stop_options
-from eventsim.cli.target import writable
+from eventsim.cli.target import FIGURE_SUFFIXES, writable
 
-FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 KINDS = ("trajectories", "raster", "speeds", "msd", "free-paths", "residuals", "space-time")
 
 

@@ -8,12 +8,11 @@ import click
 
 from eventsim.cli.exits import FAILED, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
-from eventsim.cli.target import writable
+from eventsim.cli.target import FIGURE_SUFFIXES, writable
 
 if TYPE_CHECKING:
     from eventsim.validate.stress.soak import Finding
 
-FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 
 
 @click.command()

@@ -9,13 +9,12 @@ import click
 
 from eventsim.cli.exits import BAD_INPUT, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
-from eventsim.cli.target import writable
+from eventsim.cli.target import FIGURE_SUFFIXES, writable
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
 
 TABLE_SUFFIXES = (".csv", ".parquet")
-FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 
 SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given several times: every combination."
 

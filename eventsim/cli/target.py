@@ -11,6 +11,7 @@ import click
 
 LOG_SUFFIXES = (".csv", ".jsonl", ".npz", ".parquet")
 STATE_SUFFIXES = (".csv", ".npz", ".xyz", ".gsd")
+FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 
 
 class Files(NamedTuple):

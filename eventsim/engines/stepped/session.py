@@ -8,6 +8,7 @@ bits: so a run also has a sampled trajectory, and `Run.state_at` reads that.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ VAIN_STEPS = 1_000_000
 """Steps without an event after which a run without a stop time is called quiet: a stepped engine cannot know that."""
 
 
-class SteppedSession:
+class SteppedSession(ABC):
     """A stepped engine in the middle of a run; engines add `_run`.
 
     dt: the step size, time; left out, a twentieth of the time in which a typical disk flies its radius.
@@ -53,9 +54,9 @@ class SteppedSession:
         self._blocks: list[Rows] = []
         self._sample()
 
+    @abstractmethod
     def _run(self, steps: int, most_events: int) -> int:
         """Do at most so many steps, until so many events in all; how many were done, fewer where a list gets old."""
-        raise NotImplementedError
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
@@ -144,7 +145,7 @@ class SteppedSession:
             self._blocks.append(self.clock_of_steps.place(row))
         self._kicked()
 
-    def _kicked(self) -> None:
+    def _kicked(self) -> None:  # noqa: B027 - most engines have nothing to do
         """A disk has got another velocity."""
 
     def snapshot(self) -> Snapshot:
@@ -179,5 +180,5 @@ class SteppedSession:
         """What an engine remembers of contacts."""
         return ()
 
-    def _remember(self, memory: tuple[Any, ...]) -> None:
+    def _remember(self, memory: tuple[Any, ...]) -> None:  # noqa: B027 - nor anything to remember
         """Take back what `_memory` gave."""
