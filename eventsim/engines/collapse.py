@@ -31,6 +31,13 @@ LAST_ROUNDS = 4
 """The ratio is that of so many rounds at the end, where it has settled."""
 
 
+LIES_STILL = (
+    "what lies still on another disk, on several walls or on a round one is not modelled; begin with gaps, and with a "
+    "contact_duration, which keeps bounces up"
+)
+"""What is left to do about a pile without any motion, which no contact duration can keep up."""
+
+
 def remedy(stage: Stage) -> str:
     """What is left to do about contacts that pile up."""
     if stage.contact_duration is None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
-from eventsim.engines.collapse import named, remedy
+from eventsim.engines.collapse import LIES_STILL, named, remedy
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
@@ -232,15 +232,19 @@ def endless(state: EngineState, stage: Stage, i: int) -> tuple[str, str]:
     """An instant that does not end: why a run stops there, and a sentence on disk i, those around it and what is known."""
     inelastic = stage.pair_restitution < 1.0 or stage.wall_restitution < 1.0
     what = "collapse" if inelastic or stage.gravity is not None else "digits"
-    cause = (
-        "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
-        f"on a round one); {remedy(stage)}"
-        if what == "collapse"
-        else "at this instant do not end"
-    )
+    pile = _pile(state, i)
+    if what == "digits":
+        cause = "at this instant do not end"
+    elif all(state.vx[j] == state.vy[j] == 0.0 for j in pile):
+        cause = f"have no bounce: {LIES_STILL}"
+    else:
+        cause = (
+            "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
+            f"on a round one); {remedy(stage)}"
+        )
     x, y = (float(at) for at in state.place(i, state.now))
     x, y = x + stage.corner[0], y + stage.corner[1]
-    return what, f"the contacts of {named(_pile(state, i))} at ({x:g}, {y:g}) {cause}"
+    return what, f"the contacts of {named(pile)} at ({x:g}, {y:g}) {cause}"
 
 
 def _pile(state: EngineState, i: int) -> list[int]:
