@@ -21,7 +21,8 @@ from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.round import Post
-from eventsim.scene.stage import Boundary, Stage
+from eventsim.scene.features import Boundary
+from eventsim.scene.stage import Stage
 
 MISSING = "the engine pymunk needs the Chipmunk engine, which is not installed: pip install 'eventsim-disks[pymunk]'"
 SLOP = 0.01

@@ -12,7 +12,8 @@ from eventsim.engines.stepped.compiled import part
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.round import Arc, Container, Post
 from eventsim.record.events import Floats
-from eventsim.scene.stage import Feature, Stage
+from eventsim.scene.features import Feature
+from eventsim.scene.stage import Stage
 
 BOUNDARY, FACE, POST, CONTAINER, ARC = range(5)
 
