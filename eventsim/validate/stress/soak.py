@@ -98,22 +98,21 @@ def _random_family(rng: np.random.Generator) -> tuple[Family, float]:
 def soak(seeds: range, engines: tuple[str, ...], workers: int = 1) -> Iterator[Finding | None]:
     """For each seed what is wrong, or None: a hang, a number that is none, a clock that steps back, engines that disagree.
 
-    workers: processes.  Seeds that share kernels go to one of them, so that each kernel is compiled, or loaded, only once; seeds
-    come in the order of their answers.
+    workers: processes at a time.  Seeds whose scenes share kernels have a process to themselves, so that each kernel is compiled,
+    or loaded, once and its memory is given back; seeds come in the order of their answers.
     """
-    jobs = _shared_out(seeds, workers)
-    for seed, answer in answers(partial(finding_of, engines=engines), jobs, workers, LIMIT + PATIENCE):
+    work = partial(finding_of, engines=engines)
+    for seed, answer in answers(work, by_kernels(seeds), workers, LIMIT + PATIENCE):
         yield Finding(seed, " or ".join(engines), str(answer)) if isinstance(answer, Silence) else answer
 
 
-def _shared_out(seeds: range, workers: int) -> list[list[int]]:
-    """The seeds of each worker: whole families, whose scenes share their kernels."""
-    families: dict[Hashable, list[int]] = defaultdict(list)
+def by_kernels(seeds: range) -> list[list[int]]:
+    """The seeds in groups whose scenes share most of their kernels, the largest first."""
+    groups: dict[Hashable, list[int]] = defaultdict(list)
     for seed in seeds:
         family, _ = _random_family(np.random.default_rng(seed))
-        families[type(family.domain), family.gravity, family.restitution is None, family.duration].append(seed)
-    by_size = sorted(families.values(), key=len, reverse=True)
-    return [[seed for members in by_size[k::workers] for seed in members] for k in range(workers)]
+        groups[type(family.domain), family.gravity, family.restitution is None, family.duration].append(seed)
+    return sorted(groups.values(), key=len, reverse=True)
 
 
 def finding_of(seed: int, engines: tuple[str, ...]) -> Finding | None:

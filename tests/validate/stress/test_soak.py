@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from eventsim.cli import main
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
-from eventsim.validate.stress.soak import Finding, _shared_out, finding_of, random_scene, soak
+from eventsim.validate.stress.soak import Finding, by_kernels, finding_of, random_scene, soak
 
 
 def test_the_reference_engine_survives_a_small_soak():
@@ -33,15 +33,16 @@ def test_the_engines_agree_on_random_scenes():
     assert list(soak(range(300), ("reference", "fast"), workers=2)) == [None] * 300
 
 
-def test_seeds_are_shared_out_by_what_kernels_they_need():
+def test_seeds_whose_scenes_share_kernels_are_together():
     seeds = range(200)
-    shares = _shared_out(seeds, 3)
-    assert sorted(seed for share in shares for seed in share) == list(seeds)
-    kinds = [
-        {(type(s.domain), s.gravity, s.contact_duration, s.restitution is None) for s in map(random_scene, share)}
-        for share in shares
-    ]
-    assert not kinds[0] & kinds[1] | kinds[0] & kinds[2] | kinds[1] & kinds[2]
+    groups = by_kernels(seeds)
+    assert sorted(seed for group in groups for seed in group) == list(seeds)
+    kinds = [{shared(random_scene(seed)) for seed in group} for group in groups]
+    assert [len(kind) for kind in kinds] == [1] * len(groups) == [1] * len(set.union(*kinds))
+
+
+def shared(scene):
+    return type(scene.domain), scene.gravity, scene.restitution is None, scene.contact_duration
 
 
 def test_an_engine_that_fails_is_a_finding(monkeypatch):
