@@ -122,9 +122,9 @@ def _is_finite(i, mass):
 
 
 @inline
-def _in_order(m, i, j, mass, rows):
+def _in_order(m, i, j, mass):
     """The disks of a pair, the smaller label first; where nobody can tell, as they come."""
-    if mass is None and rows is None:
+    if mass is None:
         return i, j
     swap = word(m.disks, j * WORDS + LABEL) < word(m.disks, i * WORDS + LABEL)
     return (j if swap else i), (i if swap else j)
@@ -155,7 +155,7 @@ def _image_due(m, rules, a, b, t):
 @inline
 def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     """Resolve the contact of disks i and j at time t; its overlap in reaches."""
-    a, b = _in_order(m, i, j, m.mass, m.rows)
+    a, b = _in_order(m, i, j, m.mass)
     xa, ya = place(m, rules, a, t)
     xb, yb = place(m, rules, b, t)
     dx, dy = xa - xb, ya - yb

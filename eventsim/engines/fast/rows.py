@@ -24,12 +24,14 @@ PAIR_KIND, WALL_KIND = int(Kind.PAIR), int(Kind.WALL)
 
 @inline
 def write_row(m, number, slot, a, b, wall, impulse, t, clock, rows):
-    """Write row `number` of the log, if rows are kept; a has the smaller label.
+    """Write row `number` of the log, if rows are kept.
 
     clock: the epoch, and as a sum of two numbers where it begins on the scene's clock.
     """
     if rows is None:
         return
+    if b >= 0 and word(m.disks, b * WORDS + LABEL) < word(m.disks, a * WORDS + LABEL):
+        a, b = b, a
     at = SIZE * slot
     put(rows, at + EVENT, np.int64(number))
     put(rows, at + KIND, np.int8(PAIR_KIND if b >= 0 else WALL_KIND))

@@ -9,6 +9,7 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.fast import layout
+from eventsim.engines.fast.buffers import ROOM, Buffers
 from eventsim.engines.fast.compiled import link, mark_warm, timed_compiling
 from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.instant import contacts_at, due_at
@@ -29,9 +30,6 @@ from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import two_sum
 from eventsim.scene.stage import Stage
-
-BUFFER = 1 << 13
-"""Rows in the buffer that kernels fill: a megabyte, which stays in the caches until it is drained."""
 
 COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
 """What a snapshot has one number of for every disk."""
@@ -83,8 +81,9 @@ class FastSession:
         self._features = features_of(stage)
         self._supports = supports_of(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
-        self._buffer = np.empty(BUFFER if keep_rows else 0, ROW)
-        self._counts[layout.ROOM] = BUFFER if keep_rows else 2 * FOREVER
+        self._buffers = Buffers()
+        self._buffer = self._buffers.blank() if keep_rows else np.empty(0, ROW)
+        self._counts[layout.ROOM] = ROOM if keep_rows else 2 * FOREVER
         self._blocks: list[Rows] = []
         self.compile_s = 0.0
         self._marked = False
@@ -272,7 +271,7 @@ class FastSession:
         self._counts[layout.ROW_COUNT] = 0
         if count and self._keep_rows:
             self._blocks.append(self._buffer[:count])
-            self._buffer = np.empty(BUFFER, ROW)
+            self._buffer = self._buffers.blank()
             self._arrays = self._arrays._replace(rows=self._buffer.view(np.uint8))
 
     def _turn_over(self) -> None:
