@@ -1,24 +1,29 @@
 """Which contact a row of a log stands for: the image of a pair, the shape and side of a wall.
 
 A row does not say. But a contact time is a pure function of the flights, so the contact is the one whose
-time has the bits of the row.
+time has the bits of the row; of several, and of those of a cluster, whose float times may differ in the last bits, the exact
+times decide.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cmp_to_key
 from itertools import product
 from typing import NamedTuple
 
 from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import STRUCK, border_contact, shape_contact
+from eventsim.formulas.roots import Moment, order_of
 from eventsim.formulas.walls.delays import DELAYS
 from eventsim.formulas.walls.face import Face, face_normal
 from eventsim.formulas.walls.round import round_normal
 from eventsim.record.disk_flight import DiskFlight
+from eventsim.record.moments import Flight, Moments
 from eventsim.scene.stage import Stage
 
 
@@ -26,12 +31,13 @@ class Contact(NamedTuple):
     """A contact of disk a, in the order in which the engine resolves those of one time.
 
     b: the other disk, or -1 - place of the wall shape. image: of b as seen from a, (kx, ky); of a wall the side, and
-    STRUCK, SUPPORTED or LEFT.
+    STRUCK, SUPPORTED or LEFT. time: the float time.
     """
 
     a: int
     b: int
     image: tuple[int, int]
+    time: float
 
 
 class Contacts:
@@ -40,6 +46,7 @@ class Contacts:
     def __init__(self, stage: Stage, disks: Mapping[int, DiskFlight]) -> None:
         self._stage = stage
         self._disks = disks
+        self._moments = Moments(stage, self._flight)
         self._boundaries = len(stage.boundaries)
         along_x, along_y = ((0,) if length is None else (-1, 0, 1) for length in stage.period)
         self._images = list(product(along_x, along_y))
@@ -48,24 +55,33 @@ class Contacts:
         for place, wall in enumerate(self._wall):
             self._places.setdefault(wall, []).append(place)
 
-    def of_pair(self, a: int, b: int, t: float) -> list[Contact]:
-        """Return the contacts of two disks at remainder t; several where a disk is as wide as the domain."""
-        return [Contact(a, b, image) for image in self._images if self._pair_time(a, b, image) == t]
+    def of_pair(self, a: int, b: int, first: float, latest: float) -> list[Contact]:
+        """Return the contacts of two disks in a span of remainders; several where a disk is as wide as the domain."""
+        found = [Contact(a, b, image, self._pair_time(a, b, image)) for image in self._images]
+        return [contact for contact in found if first <= contact.time <= latest]
 
-    def of_wall(self, a: int, wall: int, t: float) -> list[Contact]:
-        """Return the contacts of a disk with the shapes of a wall at remainder t."""
-        found = []
-        for place in self._places.get(wall, ()):
-            time, side, how = self._wall_time(a, place)
-            if time == t:
-                found.append(Contact(a, -1 - place, (side, how)))
-        return found
+    def of_wall(self, a: int, wall: int, first: float, latest: float) -> list[Contact]:
+        """Return the contacts of a disk with the shapes of a wall in a span of remainders."""
+        found = [self._of_shape(a, place) for place in self._places.get(wall, ())]
+        return [contact for contact in found if first <= contact.time <= latest]
+
+    def by_exact_time(self, contacts: list[Contact]) -> list[list[Contact]]:
+        """Return contacts in groups that have exactly one time, the earliest first."""
+        timed = [(self._moments.of(*contact), contact) for contact in contacts]
+        timed.sort(key=cmp_to_key(_order))
+        groups: list[list[Contact]] = []
+        for k, (moment, contact) in enumerate(timed):
+            if k and order_of(timed[k - 1][0], moment) == 0:
+                groups[-1].append(contact)
+            else:
+                groups.append([contact])
+        return groups
 
     def apart(
-        self, contact: Contact, place_a: tuple[float, float], place_b: tuple[float, float]
+        self, image: tuple[int, int], place_a: tuple[float, float], place_b: tuple[float, float]
     ) -> tuple[float, float]:
         """Return the vector from b (its image) to a."""
-        return self._less(place_a[0] - place_b[0], contact, 0), self._less(place_a[1] - place_b[1], contact, 1)
+        return self._less(place_a[0] - place_b[0], image, 0), self._less(place_a[1] - place_b[1], image, 1)
 
     def normal(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
         """Return the normal, of any length, of a wall towards a disk at `place`."""
@@ -103,37 +119,46 @@ class Contacts:
         kx, ky = self._unwrapped(contact.a, contact.b, contact.image)
         return (contact.b, kx, ky) if i == contact.a else (contact.a, -kx, -ky)
 
-    def _less(self, d: float, contact: Contact, axis: int) -> float:
-        k, length = contact.image[axis], self._stage.period[axis]
+    def _less(self, d: float, image: tuple[int, int], axis: int) -> float:
+        k, length = image[axis], self._stage.period[axis]
         return d - k * length if k and length is not None else d
 
     def _unwrapped(self, a: int, b: int, image: tuple[int, int]) -> tuple[int, int]:
         one, other = self._disks[a].wraps, self._disks[b].wraps
         return image[0] + one[0] - other[0], image[1] + one[1] - other[1]
 
-    def _pair_time(self, a: int, b: int, image: tuple[int, int]) -> float | None:
-        """Return the remainder at which two disks meet in an image; None where they just met."""
+    def _pair_time(self, a: int, b: int, image: tuple[int, int]) -> float:
+        """Return the remainder at which two disks meet in an image; NEVER where they just met."""
         one, other = self._disks[a], self._disks[b]
         t = max(one.t, other.t)
         (ua, wa), (ub, wb) = one.speed(t), other.speed(t)
-        dx, dy = self.apart(Contact(a, b, image), one.place(t), other.place(t))
+        dx, dy = self.apart(image, one.place(t), other.place(t))
         du, dw, reach = ua - ub, wa - wb, one.radius + other.radius
         if one.gx != other.gx or one.gy != other.gy:
             first, _ = circle_delays(dx, dy, du, dw, one.gx - other.gx, one.gy - other.gy, reach, 1.0)
             return float(t + first)
         kx, ky = self._unwrapped(a, b, image)
         if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
-            return None
+            return NEVER
         delay = screened_pair_delay(dx, dy, du, dw, reach)
         if math.isnan(delay):
             if one.gx is None:
-                shift_x, shift_y = (-self._less(0.0, Contact(a, b, image), axis) for axis in (0, 1))
+                shift_x, shift_y = (-self._less(0.0, image, axis) for axis in (0, 1))
                 delay = careful_pair_delay(*one.anchored(), *other.anchored(), shift_x, shift_y)
             else:
                 delay = careful_pair_delay(
                     *(dx, dy, du, dw, 0.0, one.radius), *(0.0, 0.0, 0.0, 0.0, 0.0, other.radius), 0.0, 0.0
                 )
         return float(t + delay)
+
+    def _of_shape(self, a: int, place: int) -> Contact:
+        """Return the next contact of a disk with a shape."""
+        time, side, how = self._wall_time(a, place)
+        return Contact(a, -1 - place, (side, how), time)
+
+    def _flight(self, i: int) -> Flight:
+        disk = self._disks[i]
+        return disk.t, disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy
 
     def _wall_time(self, a: int, place: int) -> tuple[float, int, int]:
         """Return (remainder, side, how) of the next contact of a disk with a shape."""
@@ -158,3 +183,7 @@ class Contacts:
             stage.supports, disk.held, place, shape, delay_to, flight, disk.radius, met, e, disk.t
         )
         return disk.t + delay, side, how
+
+
+def _order(one: tuple[Moment, Contact], other: tuple[Moment, Contact]) -> int:
+    return order_of(one[0], other[0])

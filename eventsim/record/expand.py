@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from importlib.util import find_spec
 from itertools import groupby, islice
@@ -21,6 +22,7 @@ from eventsim.formulas.impulse import (
     wall_update,
 )
 from eventsim.formulas.rest import STRUCK, SUPPORTED, resting_place, slope
+from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import JointContact, resolve_together
 from eventsim.record.contacts import Contact, Contacts
 from eventsim.record.disk_flight import DiskFlight
@@ -184,10 +186,10 @@ class Expansion:
 
     def _resolve_pair(self, entry: Entry) -> float:
         t, a, b = entry.remainder, entry.a, entry.b
-        contact = self._only(entry, self._contacts.of_pair(a, b, t))
+        contact = self._only(entry, self._contacts.of_pair(a, b, t, t))
         one, other = self.disks[a], self.disks[b]
         place_a, place_b = one.place(t), other.place(t)
-        dx, dy = self._contacts.apart(contact, place_a, place_b)
+        dx, dy = self._contacts.apart(contact.image, place_a, place_b)
         shares, reduced = self._shares(a, b)
         if self.stage.low_parts:
             speeds, masses = (one.vx, one.vy, other.vx, other.vy), (self._mass[a], self._mass[b])
@@ -202,9 +204,9 @@ class Expansion:
 
     def _resolve_wall(self, entry: Entry) -> float:
         t, a = entry.remainder, entry.a
-        found = self._contacts.of_wall(a, entry.wall, t)
+        found = self._contacts.of_wall(a, entry.wall, t, t)
         of_kind = [one for one in found if (one.image[1] == SUPPORTED) == (entry.kind == Kind.REST)]
-        contact = self._only(entry, of_kind[:1])  # several that came to nothing together are met one by one
+        contact = self._only(entry, of_kind)
         disk = self.disks[a]
         place, before = disk.place(t), disk.speed(t)
         if contact.image[1] != STRUCK:
@@ -242,13 +244,7 @@ class Expansion:
     def _resolve_cluster(self, cluster: list[Entry]) -> list[float]:
         """Resolve all contacts that the disks of the rows have at their time; rows stand for those with an impulse."""
         t = cluster[0].remainder
-        partners = sorted({(entry.a, entry.b, entry.wall) for entry in cluster})
-        found = [
-            contact
-            for a, b, wall in partners
-            for contact in (self._contacts.of_pair(a, b, t) if b >= 0 else self._contacts.of_wall(a, wall, t))
-            if b >= 0 or contact.image[1] == STRUCK
-        ]
+        found = self._together(cluster)
         disks = sorted({i for contact in found for i in (contact.a, contact.b) if i >= 0})
         number = {disk: k for k, disk in enumerate(disks)}
         places = {i: self.disks[i].place(t) for i in disks}
@@ -270,12 +266,33 @@ class Expansion:
         impulse = {found[k]: outcome.impulses[k] for k in active}
         return [impulse[contact] for contact in rows]
 
+    def _together(self, cluster: list[Entry]) -> list[Contact]:
+        """Return the contacts, at exactly one time, of the pairs and walls that the rows of a cluster name."""
+        t = cluster[0].remainder
+        latest = t * NEARLY
+        wanted = Counter((entry.a, entry.b, entry.wall) for entry in cluster)
+        near: list[Contact] = []
+        for a, b, wall in sorted(wanted):
+            if b >= 0:
+                near += self._contacts.of_pair(a, b, t, latest)
+            else:
+                near += [one for one in self._contacts.of_wall(a, wall, t, latest) if one.image[1] == STRUCK]
+        if len(near) == len(cluster):
+            return near
+        for group in self._contacts.by_exact_time(near):
+            if wanted <= Counter(map(self._key, group)):
+                return sorted(group, key=near.index)
+        raise self._unfit(cluster[0], "its cluster of simultaneous contacts has other members")
+
+    def _key(self, contact: Contact) -> tuple[int, int, int]:
+        """Return what the row of a contact says: (a, b, wall)."""
+        return contact.a, max(contact.b, -1), self._contacts.wall_of(contact) if contact.b < 0 else -1
+
     def _matched(self, cluster: list[Entry], active: list[Contact]) -> list[Contact]:
         """Return the contact that each row stands for; those of the same pair or wall by image or shape."""
         waiting: dict[tuple[int, int, int], list[Contact]] = {}
         for contact in sorted(active, key=lambda contact: (-contact.b, contact.image), reverse=True):
-            key = (contact.a, max(contact.b, -1), self._contacts.wall_of(contact) if contact.b < 0 else -1)
-            waiting.setdefault(key, []).append(contact)
+            waiting.setdefault(self._key(contact), []).append(contact)
         rows = [waiting[key].pop() for entry in cluster if waiting.get(key := (entry.a, entry.b, entry.wall))]
         if len(rows) != len(cluster) or any(waiting.values()):
             raise self._unfit(cluster[0], "its cluster of simultaneous contacts has other members")
@@ -286,7 +303,7 @@ class Expansion:
     ) -> JointContact:
         a, b = contact.a, contact.b
         if b >= 0:
-            dx, dy = self._contacts.apart(contact, places[a], places[b])
+            dx, dy = self._contacts.apart(contact.image, places[a], places[b])
             e = self._restitution(self.stage.pair_restitution, t, a, b)
             return JointContact(number[a], number[b], dx, dy, e)
         nx, ny = self._contacts.normal(contact, places[a])
@@ -311,9 +328,11 @@ class Expansion:
         return float(contact_restitution(restitution, self.stage.contact_duration, *since))
 
     def _only(self, entry: Entry, found: list[Contact]) -> Contact:
-        if len(found) != 1:
-            raise self._unfit(entry, f"at its time there are {len(found)} such contacts")
-        return found[0]
+        if not found:
+            raise self._unfit(entry, "at its time there is no such contact")
+        if len(found) == 1:
+            return found[0]
+        return self._contacts.by_exact_time(found)[0][0]  # several that came to nothing together are met one by one
 
     def _unfit(self, entry: Entry, why: str) -> LogError:
         return LogError(f"the log does not fit its scene at event {entry.event}: {why}")

@@ -292,7 +292,7 @@ def test_random_pits_end_in_order_and_replay_to_the_same_bits(seed):
         again.advance_to(run.time, 2000)
     except es.CollapseError:
         return
-    rows = again.log.rows
+    rows = again.log.rows[: len(run.log)]  # of contacts at the time where the first run had enough events, it may have more
     assert rows.tobytes() == run.log.rows[: len(rows)].tobytes()
 
 

@@ -12,6 +12,8 @@ from eventsim.engines.certified.ball import Ball, deviation, radius_of
 from eventsim.engines.certified.calendar import CertifiedCalendar
 from eventsim.engines.certified.predict import CertifiedPredictor
 from eventsim.engines.certified.resolve import CertifiedResolver
+from eventsim.engines.reference.calendar import CONTACT, Event
+from eventsim.engines.reference.generation import row_order
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
@@ -45,6 +47,19 @@ class CertifiedLoop(ReferenceSession):
 
     def _new_calendar(self) -> Any:
         return CertifiedCalendar(self.is_stale)
+
+    def _pop_generation(self) -> list[Event]:
+        """Take out all contacts of the earliest time, which is proven to be theirs, that are not stale."""
+        first = self.calendar.pop()
+        generation = [first]
+        while (event := self.calendar.first()) is not None and event.time == first.time and event.rank == CONTACT:
+            self.calendar.pop()
+            if self.is_stale(event):
+                self.counters.stale += 1
+            elif event != generation[-1]:
+                generation.append(event)
+        generation.sort(key=row_order)
+        return generation
 
     @property
     def clock(self) -> tuple[int, float]:

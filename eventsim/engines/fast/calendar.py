@@ -25,6 +25,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.levels import home_of
 from eventsim.engines.fast.memory import prefetch, real, store, word
+from eventsim.formulas.roots import NEARLY
 
 NO_DAY = 1 << 62
 """A deadline that does not come."""
@@ -120,8 +121,10 @@ def empty_room(m, grid, day, look_ahead):
 
 @inline
 def first(m, grid, day, limit, deadline):
-    """(disk, day, others, deadline): the earliest event, which stays in the calendar, and how many others have its time.
+    """(disk, day, others, deadline): the earliest event, which stays in the calendar, and how many others are nearly at its time.
 
+    They are counted from event to event, so they may seem more than they are, but never none.  The end of the day counts as
+    an event: what follows on the next day may be near.
     disk -1: nothing is due up to `limit`; -2: many days without any event.  deadline: see `push_later`.
     """
     quiet = 0
@@ -132,7 +135,8 @@ def first(m, grid, day, limit, deadline):
         while i != grid.n:
             due = real(m.disks, i * REALS + DUE)
             sooner = due < time
-            others = 0 if sooner else others + (due == time)
+            near = (due <= time * NEARLY) & (time <= due * NEARLY)
+            others = (0 if sooner & ~near else others) + near
             earliest = i if sooner else earliest
             time = due if sooner else time
             i = word(m.disks, i * WORDS + NEXT)
@@ -179,13 +183,14 @@ def is_stale(m, i):
 
 @inline
 def unsettled(m, grid, i, day):
-    """Among the events that have the time of disk i's, one that comes before contacts: a wrap, a crossing, a stale one; or n."""
+    """What comes before the contact of disk i: a stale event nearly at its time, a wrap or a crossing exactly at it; or n."""
     time = real(m.disks, i * REALS + DUE)
     k = word(m.disks, bucket(grid, day))
     while k != grid.n:
-        if real(m.disks, k * REALS + DUE) == time:
+        due = real(m.disks, k * REALS + DUE)
+        if due <= time * NEARLY:
             code = word(m.disks, k * WORDS + PARTNER)
-            if NOTHING <= code < 0 or is_stale(m, k):
+            if is_stale(m, k) or (due == time and NOTHING <= code < 0):
                 return k
         k = word(m.disks, k * WORDS + NEXT)
     return k

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.compiled import inline
 from eventsim.engines.fast.layout import WALL
-from eventsim.formulas.real import NEVER
+from eventsim.formulas.roots import NEARLY
 
 
 @inline
@@ -15,11 +15,12 @@ def is_contact(code):
 
 @inline
 def earlier(time, code, shared, new_time, new_code):
-    """The earlier of two events; at one time wraps and crossings come first, and two contacts are noted as `shared`."""
+    """The earlier of two events; at one time wraps and crossings come first.
+
+    shared: whether another contact may be nearly at the time of the earlier one, so that it is not for kernels.
+    """
     if new_time < time:
-        return new_time, new_code, 0
-    if new_time == time and new_time < NEVER and is_contact(code):
-        if is_contact(new_code):
-            return time, code, 1
-        return new_time, new_code, 0
-    return time, code, shared
+        return new_time, new_code, 1 if time <= new_time * NEARLY else 0
+    if new_time == time and not is_contact(new_code):
+        return new_time, new_code, 1
+    return time, code, 1 if new_time <= time * NEARLY else shared

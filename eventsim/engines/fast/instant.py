@@ -1,4 +1,4 @@
-"""Contacts of equal time: found here, all of them, for the reference engine's law of simultaneous contacts."""
+"""Contacts of one time, or nearly so: found here, all of them, for the reference engine's law of simultaneous contacts."""
 
 from __future__ import annotations
 
@@ -33,20 +33,23 @@ from eventsim.formulas.rest import STRUCK
 
 
 @kernel
-def contacts_at(arrays, grid, rules, counts, now, found):
-    """Write all contacts at exactly the time `now` to `found` (M, 4): disk, partner (walls: -1 - place), image or side.
+def contacts_between(arrays, grid, rules, counts, first, latest, found, times):
+    """Write all contacts due at first, ..., latest to `found` (M, 4), their times to `times` (M,).
 
-    Returns how many there are, also where `found` is too short.  A contact of two disks may come twice.
+    found: disk, partner (walls: -1 - place), image or (side, how).  Returns how many there are, also where there is no room
+    for them.  A contact of two disks may come twice.
     """
     m = pointers(arrays)
+    span = first, latest
     count = 0
-    i = word(m.disks, bucket(grid, counts[DAY]))
-    while i != grid.n:
-        if real(m.disks, i * REALS + DUE) == now:
-            count = _pairs_at(m, grid, rules, i, now, found, count, m.slots, grid.levels)
-            count = _shapes_at(m, rules, i, now, found, count, rules.features)
-            count = _walls_at(m, grid, rules, i, now, found, count)
-        i = word(m.disks, i * WORDS + NEXT)
+    for day in range(counts[DAY], counts[DAY] + 2):  # the next one may have begun in between
+        i = word(m.disks, bucket(grid, day))
+        while i != grid.n:
+            if first <= real(m.disks, i * REALS + DUE) <= latest:
+                count = _pairs_between(m, grid, rules, i, span, found, times, count, m.slots, grid.levels)
+                count = _shapes_between(m, rules, i, span, found, times, count, rules.features)
+                count = _walls_between(m, grid, rules, i, span, found, times, count)
+            i = word(m.disks, i * WORDS + NEXT)
     return count
 
 
@@ -58,93 +61,94 @@ def due_at(arrays, grid, counts, now, found):
     i = word(m.disks, bucket(grid, counts[DAY]))
     while i != grid.n:
         if real(m.disks, i * REALS + DUE) == now:
-            count = _add(found, count, i, 0, 0, 0)
+            if count < len(found):
+                found[count, 0] = i
+            count += 1
         i = word(m.disks, i * WORDS + NEXT)
     return count
 
 
 @inline
-def _add(found, count, i, partner, kx, ky):
+def _add(span, found, times, count, time, i, partner, kx, ky):
+    """Note a contact if its time is within the span; how many there are."""
+    if not span[0] <= time <= span[1]:
+        return count
     if count < len(found):
         found[count, 0], found[count, 1], found[count, 2], found[count, 3] = i, partner, kx, ky
+        times[count] = time
     return count + 1
 
 
 @inline
-def _pairs_at(m, grid, rules, i, now, found, count, slots, levels):
+def _pairs_between(m, grid, rules, i, span, found, times, count, slots, levels):
     if slots is None:
-        return _pairs_of_everyone(m, grid, rules, i, now, found, count)
-    x, y = place(m, rules, i, now)
+        return _pairs_of_everyone(m, grid, rules, i, span, found, times, count)
+    x, y = place(m, rules, i, span[0])
     if levels is not None:
         for k in range(gather_near(m, grid, rules, i, x, y, -1)):
-            count = _pair_at(m, rules, i, word(m.near, k), now, x, y, found, count)
+            count = _pair_between(m, rules, i, word(m.near, k), span, x, y, found, times, count)
         return count
     start, depth = corner_slot(m, grid, i), depth_of(grid, grid.deep)
     for _ in range(3):
         for k in range(3 * depth):
             j = word(m.slots, start + k)
             if j != grid.n and j != i:
-                count = _pair_at(m, rules, i, j, now, x, y, found, count)
+                count = _pair_between(m, rules, i, j, span, x, y, found, times, count)
         start += depth * (grid.columns + 2)
     return count
 
 
 @inline
-def _pair_at(m, rules, i, j, now, x, y, found, count):
-    kx, ky = images(m, rules, i, j, now, x, y)
-    if pair_is_due(m, rules, i, j, kx, ky) == now:
-        count = _add(found, count, i, j, kx, ky)
-    return count
+def _pair_between(m, rules, i, j, span, x, y, found, times, count):
+    kx, ky = images(m, rules, i, j, span[0], x, y)
+    return _add(span, found, times, count, pair_is_due(m, rules, i, j, kx, ky), i, j, kx, ky)
 
 
 @inline
-def _pairs_of_everyone(m, grid, rules, i, now, found, count):
+def _pairs_of_everyone(m, grid, rules, i, span, found, times, count):
     span_x = 0 if rules.length_x is None else 1
     span_y = 0 if rules.length_y is None else 1
     for j in range(grid.n):
         for kx in range(-span_x, span_x + 1):
             for ky in range(-span_y, span_y + 1):
-                if j != i and pair_is_due(m, rules, i, j, kx, ky) == now:
-                    count = _add(found, count, i, j, kx, ky)
+                if j != i:
+                    count = _add(span, found, times, count, pair_is_due(m, rules, i, j, kx, ky), i, j, kx, ky)
     return count
 
 
 @inline
-def _shapes_at(m, rules, i, now, found, count, features):
+def _shapes_between(m, rules, i, span, found, times, count, features):
     if features is None:
         return count
     for k in range(features):
         time, side, how = shape_time(m, rules, i, k, m.supports)
-        if time == now:
-            count = _add(found, count, i, -1 - (rules.first_feature + k), side, how)
+        count = _add(span, found, times, count, time, i, -1 - (rules.first_feature + k), side, how)
     return count
 
 
 @inline
-def _walls_at(m, grid, rules, i, now, found, count):
+def _walls_between(m, grid, rules, i, span, found, times, count):
     f = i * REALS
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     gx, gy = pulls(m, rules, i)
     x, u, y, w = real(m.disks, f + X), real(m.disks, f + VX), real(m.disks, f + Y), real(m.disks, f + VY)
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     home = home_of(m, grid, i)
-    across = m, rules, i, now, found
+    across = m, rules, i, span, found, times
     count = _walls_across(*across, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count, m.supports)
     return _walls_across(*across, y, w, t, r, gy, rules.height, row, home.rows, rules.wall_y, count, m.supports)
 
 
 @inline
-def _walls_across(m, rules, i, now, found, x, v, t, r, g, length, k, last, wall, count, supports):
+def _walls_across(m, rules, i, span, found, times, x, v, t, r, g, length, k, last, wall, count, supports):
     if wall is None:
         return count
     if k == 1:
         time, how = _wall_time(m, rules, i, wall, 1.0, r, x, v, t, g, supports)
-        if time == now:
-            count = _add(found, count, i, -1 - wall, 1, how)
+        count = _add(span, found, times, count, time, i, -1 - wall, 1, how)
     if k == last:
         time, how = _wall_time(m, rules, i, wall + 1, -1.0, length - r, x, v, t, g, supports)
-        if time == now:
-            count = _add(found, count, i, -2 - wall, -1, how)
+        count = _add(span, found, times, count, time, i, -2 - wall, -1, how)
     return count
 
 

@@ -19,7 +19,6 @@ from eventsim.engines.fast.layout import (
     USUAL_DEPTH,
     VX,
     VY,
-    WALL,
     WORDS,
     T,
     X,
@@ -30,6 +29,7 @@ from eventsim.engines.fast.memory import either, real, store, word
 from eventsim.engines.fast.met import partner_just_met
 from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.formulas.real import NEVER
+from eventsim.formulas.roots import NEARLY
 
 
 @inline
@@ -146,8 +146,8 @@ def _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, 
                 m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 0
             )
         sooner = new < time  # no branches: they could not be foreseen
-        also = (new == time) & ((code >= 0) | (code <= WALL))
-        shared = many if sooner else shared | also
+        also = (new <= time * NEARLY) & (time <= new * NEARLY)
+        shared = (many if sooner else shared) | also
         code = j if sooner else code
         time = new if sooner else time
         lane = first

@@ -12,7 +12,7 @@ from eventsim.engines.fast import layout
 from eventsim.engines.fast.buffers import ROOM, Buffers
 from eventsim.engines.fast.compiled import link, mark_warm, timed_compiling
 from eventsim.engines.fast.grids import Grids
-from eventsim.engines.fast.instant import contacts_at, due_at
+from eventsim.engines.fast.instant import contacts_between, due_at
 from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
@@ -21,11 +21,13 @@ from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortes
 from eventsim.engines.fast.rules import features_of, kind_of, rules_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.calendar import CONTACT, Event
-from eventsim.engines.reference.loop import components, endless, refused, row_order
+from eventsim.engines.reference.generation import Ties, components, disks_of, row_order
+from eventsim.engines.reference.loop import endless, refused
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, next_window, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
+from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import two_sum
@@ -89,7 +91,9 @@ class FastSession:
         self._marked = False
         self._days = self._steps = 0
         self._remade = 0, 0, 0.0
-        self._found = np.empty((64, 4), np.int64)
+        self._found, self._times = np.empty((64, 4), np.int64), np.empty(64)
+        self._ties = Ties(stage, self.state)
+        self._spent: set[Event] = set()
         self._resolver: Resolver | None = None
         self._grid: Grid
         self._arrays: Any
@@ -181,15 +185,16 @@ class FastSession:
         return self.state.disks[: self.state.n, layout.DUE]
 
     def _resolve_instant(self) -> str | None:
-        """Resolve all contacts of the present time that are predicted by now, by the reference engine's rules.
+        """Resolve the contacts of the present instant that are predicted by now, by the reference engine's rules.
 
         Returns why the run stops here, None where it goes on.
         """
         state, now = self.state, self.state.now
         self._flush()
-        generation = self._generation()
+        near = self._contacts_until(now * NEARLY)
+        generation = self._ties.settle(near) if any(event.time == now for event in near) else []
         resolver = self._opened_resolver()
-        waiting = [int(i) for i in self._find(due_at)[:, 0]]
+        waiting = [int(state.labels[i]) for i in self._find(due_at, self._counts, now)[:, 0]]
         changed: list[int] = []
         for component in components(generation):
             try:
@@ -201,35 +206,47 @@ class FastSession:
                 return stopped
         self._keep(resolver)
         self._arrays = self._arrays._replace(several=state.several.reshape(-1))
-        places = {int(state.place_of[i]) for i in changed}
-        for i in places:
-            self._predict(i, i + 1, now)
-        for i in waiting:
-            if i not in places:  # its contact came to nothing: it flies on, unless gravity closes the gap
-                self._predict(i, i + 1, now if self.stage.gravity is not None else math.nextafter(now, math.inf))
+        for i in set(changed):
+            self._predict_one(i, now)
+        self._fly_on(near, generation, set(changed), waiting)
         stuck = next((i for i in changed if state.at_once[i] >= resolver.at_once_limit), None)
         return None if stuck is None else self._give_up(stuck)
 
-    def _generation(self) -> list[Event]:
-        """All contacts of the present time, each once, in the order of rows."""
-        labels = self.state.labels
-        now = self.state.now
+    def _fly_on(self, near: list[Event], resolved: list[Event], changed: set[int], waiting: list[int]) -> None:
+        """Predict disks anew whose contacts at the present time, resolved or not, came to nothing.
+
+        Under gravity, which closes the gap, such a contact is still due.
+        """
+        now, falls = self.state.now, self.stage.gravity is not None
+        if not falls:
+            self._spent = {event for event in self._spent if event.time >= now}
+            self._spent.update(event for event in resolved if changed.isdisjoint(disks_of(event)))
+        left = {i for event in set(near).difference(resolved) if event.time == now for i in disks_of(event)}
+        for i in waiting:
+            if i not in changed:
+                self._predict_one(i, now if falls or i in left else math.nextafter(now, math.inf))
+
+    def _contacts_until(self, latest: float) -> list[Event]:
+        """All contacts from the present time on that have not come to nothing, each once, in the order of rows."""
+        labels, count = self.state.labels, self.state.count
         events = set()
-        for i, partner, kx, ky in self._find(contacts_at, self._rules).tolist():
+        found = self._find(contacts_between, self._rules, self._counts, self.state.now, latest)
+        for (i, partner, kx, ky), time in zip(found.tolist(), self._times.tolist(), strict=False):
             a = int(labels[i])
             b = int(labels[partner]) if partner >= 0 else partner
             if b >= 0 and b < a:
                 a, b, kx, ky = b, a, -kx, -ky
-            events.add(Event(now, CONTACT, a, b, (kx, ky), 0, 0))
-        return sorted(events, key=lambda event: (row_order(event), event.image))
+            events.add(Event(time, CONTACT, a, b, (kx, ky), count[a], count[b] if b >= 0 else 0))
+        return sorted(events - self._spent, key=lambda event: (row_order(event), event.image))
 
-    def _find(self, search: Any, *rules: Any) -> np.ndarray[Any, Any]:
+    def _find(self, search: Any, *where: Any) -> np.ndarray[Any, Any]:
         """What a search finds, with as much room as it needs."""
         while True:
-            count = search(self._arrays, self._grid, *rules, self._counts, self.state.now, self._found)
+            times = (self._times,) if search is contacts_between else ()
+            count = search(self._arrays, self._grid, *where, self._found, *times)
             if count <= len(self._found):
                 return self._found[:count].copy()
-            self._found = np.empty((2 * count, 4), np.int64)
+            self._found, self._times = np.empty((2 * count, 4), np.int64), np.empty(2 * count)
 
     def _opened_resolver(self) -> Resolver:
         """The reference engine's resolver on these records; it keeps its own lists, so only who needs it opens it."""
@@ -290,6 +307,7 @@ class FastSession:
         self._predict(0, state.n, 0.0)
 
     def _set_epoch(self, epoch: int) -> None:
+        self._spent.clear()
         self.state.epoch = self._counts[layout.EPOCH] = epoch
         begin = two_sum(epoch * self.stage.epoch_length, self.stage.start_time)
         self._sums[layout.EPOCH_BEGIN], self._sums[layout.EPOCH_ERROR] = begin
@@ -343,6 +361,11 @@ class FastSession:
     def _predict(self, begin: int, end: int, floor: float) -> None:
         """Predict the disks in these places anew; what is before `floor` does not count."""
         predict_some(self._arrays, self._grid, self._rules, self._counts, begin, end, self.state.now, floor)
+
+    def _predict_one(self, i: int, floor: float) -> None:
+        """Predict disk i anew; what is before `floor` does not count."""
+        place = int(self.state.place_of[i])
+        self._predict(place, place + 1, floor)
 
     def _choose_days(self) -> None:
         """Choose a fitting length of the days, for a calendar that is to be made anew."""
@@ -413,8 +436,7 @@ class FastSession:
         resolver = self._opened_resolver()
         resolver.kick(i, vx, vy)
         self._keep(resolver)
-        place = int(self.state.place_of[i])
-        self._predict(place, place + 1, self.state.now)
+        self._predict_one(i, self.state.now)
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""

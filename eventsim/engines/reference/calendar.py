@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from itertools import takewhile
 from typing import NamedTuple
 
 from sortedcontainers import SortedList
@@ -53,6 +54,15 @@ class Calendar:
         """Take out the earliest event."""
         event: Event = self._events.pop(0)
         return event
+
+    def until(self, latest: Real) -> list[Event]:
+        """All events up to a time, which stay in the calendar."""
+        return list(takewhile(lambda event: event.time <= latest, self._events))
+
+    def remove(self, event: Event) -> None:
+        """Take out an event, which may have been predicted from both sides."""
+        while event in self._events:
+            self._events.remove(event)
 
     def clear(self) -> None:
         """Forget all predictions."""

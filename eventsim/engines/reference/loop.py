@@ -11,12 +11,14 @@ from eventsim.engines.collapse import LIES_STILL, named, remedy
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
+from eventsim.engines.reference.generation import Ties, components
 from eventsim.engines.reference.invariants import check_invariants
 from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
+from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
@@ -56,6 +58,7 @@ class ReferenceSession:
         self._wraps_in_vain = 0
         self._predictor = self.predictor(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
+        self._ties = Ties(stage, self.state)
         self._predict_afresh()
 
     def _new_calendar(self) -> Calendar:
@@ -111,7 +114,7 @@ class ReferenceSession:
         return None
 
     def _resolve_instant(self) -> str | None:
-        """Resolve all contacts of the earliest time that are predicted by now, then predict their disks anew."""
+        """Resolve the contacts of the earliest instant that are predicted by now, then predict their disks anew."""
         self._wraps_in_vain = 0
         generation = self._pop_generation()
         changed: list[int] = []
@@ -135,17 +138,18 @@ class ReferenceSession:
         return None
 
     def _pop_generation(self) -> list[Event]:
-        """Take out all contacts of the earliest time that are not stale."""
+        """Take out the contacts of one instant, the earliest one."""
         calendar = self.calendar
         first = calendar.pop()
-        generation = [first]
-        while (event := calendar.first()) is not None and event.time == first.time and event.rank == CONTACT:
-            calendar.pop()
-            if self.is_stale(event):
-                self.counters.stale += 1
-            elif event != generation[-1]:
-                generation.append(event)
-        generation.sort(key=row_order)
+        latest = first.time * NEARLY
+        second = calendar.first()
+        if second is None or second.time > latest:
+            return [first]
+        calendar.push(first)
+        near = dict.fromkeys(e for e in calendar.until(latest) if e.rank == CONTACT and not self.is_stale(e))
+        generation = self._ties.settle(list(near))
+        for event in generation:
+            calendar.remove(event)
         return generation
 
     def is_stale(self, event: Event) -> bool:
@@ -266,29 +270,3 @@ def refused(error: SqueezedError | TwoSupportsError, component: list[Event]) -> 
     disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
     names = ", ".join(map(str, disks))
     return "collapse", f"of disks {names} one is squeezed between others, or walls, that it cannot deflect"
-
-
-def row_order(event: Event) -> tuple[int, int, int]:
-    """The order of rows of equal time: by (a, b, wall), where b is -1 for a wall."""
-    return event.a, max(event.b, -1), -event.b
-
-
-def components(generation: list[Event]) -> list[list[Event]]:
-    """The groups of contacts that are connected through shared disks, in the order of their first contacts."""
-    if len(generation) == 1:
-        return [generation]
-    parent: dict[int, int] = {}
-
-    def root(i: int) -> int:
-        while parent.setdefault(i, i) != i:
-            i = parent[i]
-        return i
-
-    for event in generation:
-        if event.b >= 0:
-            one, other = root(event.a), root(event.b)
-            parent[max(one, other)] = min(one, other)
-    groups: dict[int, list[Event]] = {}
-    for event in generation:
-        groups.setdefault(root(event.a), []).append(event)
-    return list(groups.values())

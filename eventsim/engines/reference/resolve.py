@@ -49,7 +49,7 @@ class Resolver:
         return rows
 
     def resolve(self, component: list[Event]) -> list[int]:
-        """Resolve contacts of one time that are connected through shared disks; the disks that it changed."""
+        """Resolve contacts of one instant that are connected through shared disks; the disks that it changed."""
         if self._state.supports is not None:
             rests = [event for event in component if event.b < 0 and event.image[1]]
             if rests:
@@ -165,9 +165,12 @@ class Resolver:
         return u, w
 
     def _joint(self, component: list[Event]) -> list[int]:
-        """A cluster: the velocities after it from the law of simultaneous contacts; disks that get no impulse fly on."""
+        """A cluster: the velocities after it from the law of simultaneous contacts; disks that get no impulse fly on.
+
+        Its exact times are equal; it is resolved at the first of the float ones.
+        """
         state, stage = self._state, self._stage
-        t = component[0].time
+        t = min(event.time for event in component)
         disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
         number = {disk: k for k, disk in enumerate(disks)}
         at = [state.place(i, t) for i in disks]
@@ -201,7 +204,7 @@ class Resolver:
             self._instants.note(i, t, False, still)
         first = self._counters.events
         for k in active:
-            self._note_joint(component[k], contacts[k], outcome.impulses[k], first)
+            self._note_joint(t, component[k], contacts[k], outcome.impulses[k], first)
         self._counters.clusters += 1
         return changed
 
@@ -209,7 +212,7 @@ class Resolver:
         """The law of simultaneous contacts in the engine's numbers."""
         return resolve_together(contacts, before, masses)
 
-    def _note_joint(self, event: Event, contact: JointContact, impulse: float, first: int) -> None:
+    def _note_joint(self, t: Real, event: Event, contact: JointContact, impulse: float, first: int) -> None:
         """Book and log one contact of a cluster that is resolved."""
         a, b = event.a, event.b
         distance = math.hypot(contact.dx, contact.dy)
@@ -218,11 +221,11 @@ class Resolver:
             self._ledger.note_overlap(a, b, distance, self._radius[a] + self._radius[b])
             self._ledger.book_pair(a, b, jx, jy)
             self._counters.pair_contacts += 1
-            self._ledger.log(event.time, Kind.PAIR, a, b, -1, impulse, first)
+            self._ledger.log(t, Kind.PAIR, a, b, -1, impulse, first)
         else:
             self._ledger.book(jx, jy)
             self._counters.wall_contacts += 1
-            self._ledger.log(event.time, Kind.WALL, a, -1, self._surfaces.number(-1 - b), impulse, first)
+            self._ledger.log(t, Kind.WALL, a, -1, self._surfaces.number(-1 - b), impulse, first)
 
     def _met(self, event: Event, i: int) -> tuple[int, int, int]:
         """What disk i remembers of a contact."""

@@ -1,0 +1,90 @@
+"""The contacts of one instant: which of those that come nearly at once are resolved now, and which of these together."""
+
+from __future__ import annotations
+
+from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.state import EngineState
+from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.real import NEVER
+from eventsim.formulas.roots import order_of
+from eventsim.record.moments import Flight, Moments
+from eventsim.scene.stage import Stage
+
+
+class Ties:
+    """Decides the order of contacts so close in time that floats cannot: from the flights of one run, exactly.
+
+    Contacts that only share a float time are no cluster; those whose exact times are equal are one.
+    """
+
+    def __init__(self, stage: Stage, state: EngineState) -> None:
+        self._stage = stage
+        self._state = state
+        self._moments = Moments(stage, self._flight)
+
+    def settle(self, near: list[Event]) -> list[Event]:
+        """Of contacts within NEARLY of the earliest: those that are to be resolved in one instant, in the order of rows.
+
+        Of each component whose earliest float time is the first of all: those that come first.
+        """
+        first = min(event.time for event in near)
+        chosen: list[Event] = []
+        for component in components([event for event in near if event.time == first or not self._is_cut_short(event)]):
+            if min(event.time for event in component) == first:
+                chosen += component if len(component) == 1 else self._earliest(component)
+        return sorted(chosen, key=lambda event: (row_order(event), event.image))
+
+    def _earliest(self, component: list[Event]) -> list[Event]:
+        moments = [self._moments.of(event.a, event.b, event.image, event.time) for event in component]
+        first = moments[0]
+        for moment in moments:
+            if order_of(moment, first) < 0:
+                first = moment
+        return [event for event, moment in zip(component, moments, strict=True) if order_of(moment, first) == 0]
+
+    def _is_cut_short(self, event: Event) -> bool:
+        """Whether one of the disks passes a periodic boundary before the contact, which is then predicted anew."""
+        return any(self._next_wrap(i) <= event.time for i in disks_of(event))
+
+    def _next_wrap(self, i: int) -> float:
+        t, x, y, u, w, gx, gy = self._flight(i)
+        due = NEVER
+        for (at, v, g), length in zip(((x, u, gx), (y, w, gy)), self._stage.period, strict=True):
+            if length is not None:
+                due = min(due, crossing_delay(at, v, g, 0.0, 1.0), crossing_delay(at, v, g, length, -1.0))
+        return t + due
+
+    def _flight(self, i: int) -> Flight:
+        s = self._state
+        return s.t[i], s.x[i], s.y[i], s.vx[i], s.vy[i], s.gravity_x[i], s.gravity_y[i]
+
+
+def disks_of(event: Event) -> list[int]:
+    """The disks of a contact."""
+    return [event.a] if event.b < 0 else [event.a, event.b]
+
+
+def row_order(event: Event) -> tuple[int, int, int]:
+    """The order of rows of equal time: by (a, b, wall), where b is -1 for a wall."""
+    return event.a, max(event.b, -1), -event.b
+
+
+def components(generation: list[Event]) -> list[list[Event]]:
+    """The groups of contacts that are connected through shared disks, in the order of their first contacts."""
+    if len(generation) == 1:
+        return [generation]
+    parent: dict[int, int] = {}
+
+    def root(i: int) -> int:
+        while parent.setdefault(i, i) != i:
+            i = parent[i]
+        return i
+
+    for event in generation:
+        if event.b >= 0:
+            one, other = root(event.a), root(event.b)
+            parent[max(one, other)] = min(one, other)
+    groups: dict[int, list[Event]] = {}
+    for event in generation:
+        groups.setdefault(root(event.a), []).append(event)
+    return list(groups.values())

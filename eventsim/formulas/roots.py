@@ -1,0 +1,60 @@
+"""Which of two moments comes first, where each is a root of a quadratic with rational coefficients: decided exactly."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import NamedTuple
+
+NEARLY = 1.0 + 2.0**-50
+"""Contacts within a factor of this, 4 to 8 units in the last place of their times, may be in the other order: each time is right
+to about two."""
+
+
+class Moment(NamedTuple):
+    """The number place + side * sqrt(square); side is +1 or -1, square >= 0."""
+
+    place: Fraction
+    side: int = 1
+    square: Fraction = Fraction(0)
+
+
+def rational(t: float) -> Moment:
+    """A float as a moment."""
+    return Moment(Fraction(t))
+
+
+def quadratic_root(a: Fraction, b: Fraction, c: Fraction, side: int) -> Moment | None:
+    """(-b + side sqrt(b^2 - a c)) / a, a root of a t^2 + 2 b t + c; of a linear equation its only one; None without roots."""
+    if a == 0:
+        return None if b == 0 else Moment(-c / (2 * b))
+    discriminant = b * b - a * c
+    if discriminant < 0:
+        return None
+    return Moment(-b / a, side if a > 0 else -side, discriminant / (a * a))
+
+
+def order_of(one: Moment, other: Moment) -> int:
+    """-1 if one moment is before the other, 0 if they are the same, +1 if it is after it.
+
+    With p = p1 - p2 and u = s1 sqrt q1 - s2 sqrt q2: the sign of p + u; where those of p and u differ, that of the larger,
+    and u^2 = q1 + q2 - 2 s1 s2 sqrt(q1 q2).
+    """
+    p = one.place - other.place
+    product = one.side * other.side
+    u = one.side * (_sign(one.square - other.square) if product > 0 else _sign(one.square + other.square))
+    if _sign(p) * u >= 0:
+        return _sign(p) or u
+    return _sign(p) * _sign_with_root(p * p - one.square - other.square, product, 4 * one.square * other.square)
+
+
+def _sign_with_root(p: Fraction, side: int, square: Fraction) -> int:
+    """The sign of p + side sqrt(square)."""
+    u = side * _sign(square)
+    if _sign(p) * u >= 0:
+        return _sign(p) or u
+    return _sign(p) * _sign(p * p - square)
+
+
+def _sign(x: Fraction) -> int:
+    return int(math.copysign(1, x.numerator)) if x else 0
