@@ -2,7 +2,7 @@
 
 import math
 
-from eventsim.formulas.real import Real
+from eventsim.formulas.real import Real, sqrt
 
 
 def mass_fractions(mass_a: float, mass_b: float) -> tuple[float, float]:
@@ -81,3 +81,13 @@ def contact_restitution(restitution: Real, duration: float | None, since_a: Real
     if duration is None:
         return restitution
     return 1.0 if since_a < duration or since_b < duration else restitution
+
+
+def wall_impulse(mass: float, du: Real, dw: Real) -> Real:
+    """The magnitude of the momentum that a wall gave a disk by changing its velocity by (du, dw); nan for an immovable one.
+
+    Along an axis it is exact.
+    """
+    if math.isinf(mass):
+        return math.nan
+    return mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))

@@ -286,3 +286,15 @@ def test_a_slanted_face_is_met_at_its_distance():
     distance = (-3.0 * 0.5 + 4.0 * 4.5) / 5.0
     assert side == 1
     assert delay == pytest.approx((distance - 0.5) / 5.0, rel=2.0**-50)
+
+
+@pytest.mark.parametrize(
+    ("mass", "du", "dw", "expected"),
+    [(2.0, 3.0, -4.0, 10.0), (2.0, -0.1, 0.0, 0.2), (2.0, 0.0, 1e-200, 2e-200), (0.0, 1.0, 1.0, 0.0), (3.0, 0.0, 0.0, 0.0)],
+)
+def test_a_wall_gives_the_mass_times_the_change_of_velocity(mass, du, dw, expected):
+    assert impulse.wall_impulse(mass, du, dw) == expected
+
+
+def test_what_a_wall_gives_an_immovable_disk_is_not_known():
+    assert math.isnan(impulse.wall_impulse(INF, 1.0, 0.0))

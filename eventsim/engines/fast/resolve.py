@@ -36,6 +36,7 @@ from eventsim.formulas.impulse import (
     mass_fractions,
     pair_update,
     reduced_mass,
+    wall_impulse,
     wall_update,
 )
 from eventsim.formulas.real import sqrt
@@ -232,13 +233,10 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     remember(m, i, -2 - place_, side, 0)
     _note_time(m, rules, i, t, u == u0 and w == w0, still)
     mass = mass_of(i, m.mass, rules.common_mass)
-    impulse = math.nan
     if not math.isinf(mass):
-        du, dw = u - u0, w - w0
-        sums[OUTER_X] += mass * du
-        sums[OUTER_Y] += mass * dw
-        impulse = mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))
-    write_row(m, number, slot, i, -1, wall, impulse, t, clock, m.rows)
+        sums[OUTER_X] += mass * (u - u0)
+        sums[OUTER_Y] += mass * (w - w0)
+    write_row(m, number, slot, i, -1, wall, wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
 
 
 @inline

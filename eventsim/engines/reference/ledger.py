@@ -8,7 +8,8 @@ from typing import Any, TypeAlias
 from eventsim.engines.base import Counters
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.state import EngineState
-from eventsim.formulas.real import Real, sqrt
+from eventsim.formulas.impulse import wall_impulse
+from eventsim.formulas.real import Real
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
 
@@ -43,10 +44,9 @@ class Ledger:
     def book_wall(self, i: int, du: Real, dw: Real) -> Real:
         """Note the momentum that a wall gave disk i; its magnitude.  An immovable disk has none to speak of."""
         mass = self._masses.of(i)
-        if math.isinf(mass):
-            return MISSING
-        self.book(mass * du, mass * dw)
-        return mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))
+        if not math.isinf(mass):
+            self.book(mass * du, mass * dw)
+        return wall_impulse(mass, du, dw)
 
     def book_kick(self, i: int, du: float, dw: float) -> float:
         """Note the momentum that a kick gave disk i; its magnitude."""
