@@ -1,7 +1,7 @@
 """The kernels driven by the rows of a log instead of a calendar: so a compact log becomes a full one.
 
 Each contact is checked to be due at its time and resolved again; nothing is predicted, which makes it faster than the run.
-Contacts of equal time, and velocities that were set, are left to `eventsim.record.expand`.
+Contacts of equal time, and velocities that were set, are left to `eventsim.record.compact`.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class Retracer:
             low=self.state.low.reshape(-1) if self.state.low_parts else None,
             features=self._features,
             levels=None,
-            supports=None,  # scenes in which disks come to rest are left to `eventsim.record.expand`
+            supports=None,  # scenes in which disks come to rest are left to `eventsim.record.compact`
             rows=self._rows,
         )
         crowd = Crowd(self.state.n)
