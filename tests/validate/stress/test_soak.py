@@ -1,6 +1,7 @@
 """Random scenes near every degenerate surface: nothing hangs, steps back or is no number, and the engines agree."""
 
 import json
+import signal
 
 import pytest
 from click.testing import CliRunner
@@ -53,11 +54,13 @@ def test_an_engine_that_fails_is_a_finding(monkeypatch):
     assert finding_of(3, ("reference",)) == Finding(3, "reference", "failed: ZeroDivisionError: division by zero")
 
 
-def test_an_interrupted_soak_tells_what_it_found_so_far(monkeypatch):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_soak_tells_what_it_found_so_far(monkeypatch, number):
     def broken_off(seeds, engines, workers):
         yield None
         yield Finding(seeds[1], engines[0], "took 6.0 s")
-        raise KeyboardInterrupt
+        signal.raise_signal(number)
+        yield None
 
     monkeypatch.setattr("eventsim.validate.stress.soak.soak", broken_off)
     result = CliRunner().invoke(main, ["stress", "--soak", "50", "--seed", "7", "--engine", "reference", "--json"])
