@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eventsim.engines.auto import first_engine
+from eventsim.engines.base import Stop
 from eventsim.engines.near_ties import NearTie, near_ties
 from eventsim.engines.reference.cells import images_of, plan
 from eventsim.scene.disks import Disks
@@ -148,7 +149,7 @@ def needs_of(scene: Scene) -> Needs:
         near_ties=near_ties(scene),
         until=scene.until,
         events=scene.events,
-        engine=first_engine(stage),
+        engine=first_engine(stage, Stop(scene.until, scene.events)),
     )
 
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import sys
 from importlib.util import find_spec
-from time import thread_time
+from time import perf_counter, thread_time
 from typing import Any
 
 import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Session, Snapshot, Stop
+from eventsim.engines.forecast import reference_seconds
 from eventsim.engines.reference import ReferenceSession
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows
@@ -24,8 +25,14 @@ LARGE = 10_000
 COLD, WARM = 10.0, 0.6
 """CPU seconds that it takes until the fast engine runs: with kernels to compile, with compiled ones on disk."""
 
-PATIENCE = 0.1
-"""CPU seconds of the reference engine before its rate is trusted; with it and `WARM` no guess costs more than a fifth."""
+PATIENCE, SAMPLE = 0.1, 0.02
+"""CPU seconds of the reference engine with its beginning, and of its stints alone, before its rate is trusted."""
+
+SURE = 0.8
+"""CPU seconds that are foreseen for the reference engine: with more it is not begun with where compiled kernels are on disk.
+
+With these numbers no guess costs more than a fifth of the better engine's time, a forecast that is twice the truth a third.
+"""
 
 MISSING = "the fast engine needs numba, which is not installed: pip install 'eventsim-disks[fast]'"
 
@@ -35,9 +42,13 @@ def has_compiler() -> bool:
     return find_spec("numba") is not None
 
 
-def first_engine(stage: Stage) -> str:
-    """The engine that a run of this stage begins with."""
-    return "fast" if stage.n >= LARGE and has_compiler() else "reference"
+def first_engine(stage: Stage, stop: Stop, keep_rows: bool = True) -> str:
+    """The engine that a run of this stage to this stop begins with."""
+    if not has_compiler():
+        return "reference"
+    seconds = reference_seconds(stage, stop)
+    large = stage.n >= LARGE or seconds > COLD
+    return "fast" if large or (seconds > SURE and _is_warm(stage, _at_start(stage), keep_rows)) else "reference"
 
 
 class AutoSession:
@@ -50,21 +61,47 @@ class AutoSession:
     def __init__(self, stage: Stage, keep_rows: bool = True, **options: Any) -> None:
         self.stage = stage
         self._keep_rows = keep_rows
-        self._spent = 0.0
+        self._options = options
+        self._spent = self._sampled = 0.0
+        self._begun = 0, 0.0
         self._may_change = not options
-        self.at_work = "reference" if options else first_engine(stage)
+        self._opened: Session | None = None
+        self._is_cold = False
+        self._loading = 0.0
+        self.at_work = "reference"
         self.before: str | None = None
-        self._session: Session
-        if self.at_work == "fast":
-            self._session = _fast(stage, keep_rows)
-        else:
-            self._session = ReferenceSession(stage, keep_rows, **options)
         self._rows: list[Rows] = []
 
     @property
+    def _session(self) -> Session:
+        """The engine's session; opened here where somebody asks for it before it is known what the job is."""
+        return self._opened if self._opened is not None else self._open(Stop())
+
+    def _open(self, stop: Stop) -> Session:
+        began = perf_counter()
+        if self._may_change:
+            self.at_work = first_engine(self.stage, stop, self._keep_rows)
+        if self.at_work == "fast":
+            self._opened = self._opened_fast(began)
+        else:
+            self._loading += perf_counter() - began
+            began = thread_time()
+            self._opened = ReferenceSession(self.stage, self._keep_rows, **self._options)
+            self._spent = thread_time() - began
+        return self._opened
+
+    def _opened_fast(self, began: float, saved: Snapshot | None = None) -> Session:
+        """A session of the fast engine; all since `began` went into loading and compiling it."""
+        from eventsim.engines.fast import FastSession
+
+        session = FastSession(self.stage, self._keep_rows, saved=saved)
+        self._loading += perf_counter() - began - session.compile_s
+        return session
+
+    @property
     def compile_s(self) -> float:
-        """Seconds spent on compiling."""
-        return float(getattr(self._session, "compile_s", 0.0))
+        """Seconds spent on loading the compiler and on compiling."""
+        return self._loading + float(getattr(self._opened, "compile_s", 0.0))
 
     @property
     def counters(self) -> Counters:
@@ -88,12 +125,21 @@ class AutoSession:
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
+        session = self._open(stop) if self._opened is None else self._opened
+        if self._sampled == 0.0:
+            self._begun = self.counters.events, self._time
         began = thread_time()
-        stopped = self._session.advance(stop, budget)
-        self._spent += thread_time() - began
-        if stopped is None and self._may_change and self.at_work == "reference" and self._spent > PATIENCE:
+        stopped = session.advance(stop, budget)
+        taken = thread_time() - began
+        self._spent, self._sampled = self._spent + taken, self._sampled + taken
+        knows = self._spent > PATIENCE and self._sampled > SAMPLE
+        if stopped is None and self._may_change and self.at_work == "reference" and knows:
             self._reconsider(stop)
         return stopped
+
+    @property
+    def _time(self) -> float:
+        return clock_time(*self.clock, self.stage.epoch_length, self.stage.start_time)
 
     def _reconsider(self, stop: Stop) -> None:
         """Hand over if the reference engine would take longer than it takes to begin with the fast one."""
@@ -101,34 +147,32 @@ class AutoSession:
             self._may_change = False
             print(f"note: {MISSING} (this run goes on with the reference engine)", file=sys.stderr)
             return
-        left = self._spent * self._share_left(stop)
-        if left < WARM:
+        left = self._sampled * self._share_left(stop)
+        if left < WARM or (self._is_cold and left < COLD):
             return
-        from eventsim.engines.fast.compiled import is_warm  # loads the compiler: worth it from here on
-        from eventsim.engines.fast.rules import kind_of
-
-        if left > (WARM if is_warm(kind_of(self.stage, self._keep_rows)) else COLD):
+        began = perf_counter()
+        self._is_cold = not _is_warm(self.stage, self.motion(), self._keep_rows)
+        self._loading += perf_counter() - began
+        if left > (COLD if self._is_cold else WARM):
             self._hand_over()
 
     def _share_left(self, stop: Stop) -> float:
-        """What is left of the job, in parts of what is done."""
+        """What is left of the job, in parts of what this session has done."""
         left = []
-        done = self._session.counters.events
+        events, time = self._begun
         if stop.events is not None:
-            left.append((stop.events - done) / max(done, 1))
+            left.append((stop.events - self.counters.events) / max(self.counters.events - events, 1))
         if stop.until is not None:
-            stage = self.stage
-            now = clock_time(*self._session.clock, stage.epoch_length, stage.start_time)
-            passed = now - stage.start_time
-            left.append((stop.until - now) / passed if passed > 0.0 else float("inf"))
+            passed = self._time - time
+            left.append((stop.until - self._time) / passed if passed > 0.0 else float("inf"))
         return min(left, default=0.0)
 
     def _hand_over(self) -> None:
         before = self._session
         self._rows.append(before.take_rows())
         self.before, self.at_work = self.at_work, "fast"
-        self._session = _fast(self.stage, self._keep_rows, saved=before.snapshot())
-        self._session.counters.copy_from(before.counters)
+        self._opened = self._opened_fast(perf_counter(), saved=before.snapshot())
+        self._opened.counters.copy_from(before.counters)
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
@@ -153,7 +197,17 @@ class AutoSession:
         self._session.restore(saved)
 
 
-def _fast(stage: Stage, keep_rows: bool, saved: Snapshot | None = None) -> Session:
-    from eventsim.engines.fast import FastSession
+def _at_start(stage: Stage) -> Motion:
+    still = np.zeros(stage.n, np.int64)
+    return Motion(stage.x, stage.y, stage.vx, stage.vy, still, still)
 
-    return FastSession(stage, keep_rows, saved=saved)
+
+def _is_warm(stage: Stage, motion: Motion, keep_rows: bool) -> bool:
+    """Whether the kernels for a scene are on disk; this loads the compiler, so it is asked when that is worth it anyway."""
+    from eventsim.engines.fast.compiled import is_warm
+    from eventsim.engines.fast.grids import Grids
+    from eventsim.engines.fast.rules import kind_of
+
+    grids = Grids(stage, "auto")
+    grids.choose(motion)
+    return is_warm(kind_of(stage, grids, keep_rows))

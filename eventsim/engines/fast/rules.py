@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
-from eventsim.engines.fast.grids import FEW_DISKS
+from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
-from eventsim.engines.fast.plan import MANY_DISKS, classes_of
 from eventsim.engines.fast.shapes import KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of
 from eventsim.record.events import Floats
@@ -48,11 +47,11 @@ def rules_of(stage: Stage) -> Rules:
     )
 
 
-def kind_of(stage: Stage, keep_rows: bool) -> str:
-    """A name for what the scene has: scenes of one kind share their kernels."""
-    levels = stage.n >= FEW_DISKS and len(classes_of(stage)) > 1
-    asked = [keep_rows, stage.low_parts, stage.n >= FEW_DISKS, stage.n >= MANY_DISKS, levels]
-    needs = [*rules_of(stage), stage.mass, stage.supports, *(True if wanted else None for wanted in asked)]
+def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
+    """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
+    asked = [keep_rows, stage.low_parts, grids.sizes is not None]
+    wanted = (True if want else None for want in asked)
+    needs = [*rules_of(stage), *grids.grid(None), stage.mass, stage.supports, *wanted]
     return "".join("0" if need is None else "1" for need in needs)
 
 

@@ -88,7 +88,7 @@ class FastSession:
         self._counts[layout.ROOM] = ROOM if keep_rows else 2 * FOREVER
         self._blocks: list[Rows] = []
         self.compile_s = 0.0
-        self._marked = False
+        self._marked: object = False
         self._days = self._steps = 0
         self._remade = 0, 0, 0.0
         self._found, self._times = np.empty((64, 4), np.int64), np.empty(64)
@@ -110,9 +110,9 @@ class FastSession:
         try:
             with timed_compiling(self._note_compiling):
                 stopped = self._advance(stop, budget)
-            if not self._marked:
-                mark_warm(kind_of(self.stage, self._keep_rows))
-                self._marked = True
+            if self._grid.deep != self._marked:  # the one thing in a kind that a run may change
+                mark_warm(kind_of(self.stage, self._grids, self._keep_rows))
+                self._marked = self._grid.deep
             return stopped
         finally:
             self._tell_counters()
