@@ -21,7 +21,7 @@ def reference_seconds(stage: Stage, stop: Stop) -> float:
     jobs = [] if stop.events is None else [float(stop.events)]
     if stop.until is not None and (rate := contact_rate(stage)) is not None:
         jobs.append(rate * max(stop.until - stage.start_time, 0.0))
-    return START * stage.n + EVENT * stage.n**GROWTH * min(jobs, default=0.0)
+    return START * stage.n + EVENT * math.pow(stage.n, GROWTH) * min(jobs, default=0.0)
 
 
 def contact_rate(stage: Stage) -> float | None:

@@ -197,9 +197,10 @@ def test_golden_digests_hold() -> None:
 def test_auto_hands_over_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None:
     from eventsim.engines import auto
 
-    monkeypatch.setattr(auto, "PATIENCE", 0.0)
-    monkeypatch.setattr(auto, "COLD", 0.0)
-    monkeypatch.setattr(auto, "WARM", 0.0)
+    for name in ("PATIENCE", "SAMPLE", "WARM"):
+        monkeypatch.setattr(auto, name, 0.0)
+    monkeypatch.setattr(auto, "SURE", math.inf)
+    monkeypatch.setattr(auto, "_is_warm", lambda *asked: True)
     scene = lattice_gas(9, 9, 1.1, np.random.default_rng(2), "box", False, 0.0)
     mixed = es.simulate(scene, until=20.0, log=True)
     pure = es.simulate(scene, until=20.0, log=True, engine="reference")
