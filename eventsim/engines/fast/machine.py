@@ -1,0 +1,200 @@
+"""The memory of a run and the kernels that work in it: cells, calendar, rows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from eventsim.engines.base import Motion
+from eventsim.engines.fast import layout
+from eventsim.engines.fast.buffers import ROOM, Buffers
+from eventsim.engines.fast.grids import Grids
+from eventsim.engines.fast.lanes import lanes_work
+from eventsim.engines.fast.layout import Arrays, Grid
+from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
+from eventsim.engines.fast.order import along_a_curve
+from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortest_day
+from eventsim.engines.fast.rules import features_of, rules_of, supports_of
+from eventsim.engines.fast.state import FastState
+from eventsim.formulas.clock import next_window, window_length
+from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.times import two_sum
+from eventsim.scene.stage import Stage
+
+FOREVER = 1 << 60
+FEW_STEPS = 256
+TOO_FEW_DAYS, TOO_MANY_DAYS = 0.5, 6.0
+"""Days that an event may take, on the average of so many steps; outside, the length of a day is chosen anew."""
+
+
+class Machine:
+    """The memory of one run; stage, keep_rows, lanes, sizes: see `FastSession`.  Empty until `predict_afresh`."""
+
+    def __init__(
+        self, stage: Stage, keep_rows: bool, lanes: bool | None, sizes: Sizes | tuple[Sizes, ...] | str | None
+    ) -> None:
+        self.stage = stage
+        self.counts = np.zeros(13, np.int64)
+        self.sums = np.zeros(6)
+        self.keep_rows = keep_rows
+        straight = stage.gravity is None
+        plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
+        wanted = lanes_work() if lanes is None else lanes
+        self._lanes = 8 if wanted and straight and plain else None
+        order = along_a_curve(stage.x, stage.y) if stage.n >= ORDERED_DISKS else np.arange(stage.n)
+        self.state = FastState(stage, order, self.counts)
+        self.rules = rules_of(stage)
+        self._features = features_of(stage)
+        self._supports = supports_of(stage)
+        self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
+        self._buffers = Buffers()
+        self._buffer = self._buffers.blank() if keep_rows else np.empty(0, ROW)
+        self.counts[layout.ROOM] = ROOM if keep_rows else 2 * FOREVER
+        self._blocks: list[Rows] = []
+        self.grids = Grids(stage, sizes)
+        self._days = self._steps = 0
+        self._remade = 0, 0, 0.0
+        self.grid: Grid
+        self.arrays: Any
+
+    def run(self, limit: float, target: int, budget: int) -> int:
+        """Let kernels handle events before `limit` until `target` rows in all, for `budget` steps; the status."""
+        counts = self.counts
+        day, steps = int(counts[layout.DAY]), int(counts[layout.STEPS])
+        status: int = run(self.arrays, self.grid, self.rules, counts, self.sums, limit, target, budget)
+        self.state.now = float(self.sums[layout.NOW])
+        self._days += int(counts[layout.DAY]) - day
+        self._steps += int(counts[layout.STEPS]) - steps
+        if self._steps > max(self.state.n, FEW_STEPS):
+            if not TOO_FEW_DAYS < self._days / self._steps < TOO_MANY_DAYS:
+                self.schedule()
+            self._days = self._steps = 0
+        return status
+
+    @property
+    def memory(self) -> int:
+        """Bytes of the arrays that kernels work in."""
+        arrays = [self.state.place_of, *(array for array in self.arrays if array is not None)]
+        return sum(int(array.nbytes) for array in arrays)
+
+    @property
+    def due(self) -> Floats:
+        """(n,) when the next events of disks are due, in the order of their places."""
+        return self.state.disks[: self.state.n, layout.DUE]
+
+    def set_epoch(self, epoch: int) -> None:
+        """Set the epoch of the clock."""
+        self.state.epoch = self.counts[layout.EPOCH] = epoch
+        begin = two_sum(epoch * self.stage.epoch_length, self.stage.start_time)
+        self.sums[layout.EPOCH_BEGIN], self.sums[layout.EPOCH_ERROR] = begin
+
+    def set_now(self, now: float) -> None:
+        """Set the remainder of the clock."""
+        self.state.now = now
+        self.sums[layout.NOW] = now
+
+    def turn_over(self) -> None:
+        """Let the clock turn over, at the end of its window."""
+        state = self.state
+        turn_over(self.arrays, self.grid, self.rules, state.window_end)
+        self.set_epoch(state.epoch + (1 << state.window))
+        state.window = next_window(state.window, state.window_rows, state.n, state.window_cap)
+        state.window_end = window_length(state.window, state.epoch_length)
+        state.window_rows = 0
+        self.set_now(0.0)
+        if self.grid.day_length < shortest_day(state.window_end):
+            self._choose_days()
+        schedule(self.arrays, self.grid, self.counts, 0.0)
+        self._predict(0, state.n, 0.0)
+
+    def choose_cells(self, motion: Motion) -> None:
+        """Choose cells for the disks where they are, and predict all of them anew."""
+        self.grids.choose(motion)
+        self.predict_afresh()
+
+    def give_up_cells(self) -> None:
+        """Do without cells from now on."""
+        self.grids = Grids(self.stage, None)
+        self.predict_afresh()
+
+    def make_room(self, place: int, motion: Motion, for_ever: bool) -> None:
+        """Make cells anew for the disks where they are, or deeper ones, because a cell was full that a disk was to enter.
+
+        On the open plane new cells follow disks that part or fall.  If no stop time makes an end of that (for_ever), they stay
+        where they are once nothing else happens, so that all disks come to rest in outer cells.
+        """
+        events, epoch, now = self._remade
+        same_time = (epoch, now) == (self.state.epoch, self.state.now)
+        if same_time or (for_ever and events == self.counts[layout.EVENTS]):
+            self.grids.deepen(int(self.state.words[place, layout.FLAGS]) // layout.FIRST_LEVEL)
+            self.predict_afresh()
+        else:
+            self.choose_cells(motion)
+
+    def predict_afresh(self) -> None:
+        """Fill cells and calendar anew, with more slots as long as a cell is full."""
+        state, now = self.state, self.state.now
+        self._remade = int(self.counts[layout.EVENTS]), state.epoch, now
+        while True:
+            self.grid = self.grids.grid(self._lanes)
+            state.set_levels(self.grids.level)
+            self.arrays = Arrays(
+                state.memory,
+                self.grids.slots(),
+                self.grids.near(),
+                state.several.reshape(-1),
+                self._mass,
+                state.low.reshape(-1) if state.low_parts else None,
+                self._features,
+                self.grids.table(),
+                self._supports,
+                self._buffer.view(np.uint8) if self.keep_rows else None,
+            )
+            full = fill(self.arrays, self.grid, self.rules, now)
+            if full < 0:
+                break
+            self.grids.deepen(full)
+        self.due[:] = now
+        schedule(self.arrays, self.grid, self.counts, now)
+        self._predict(0, state.n, now)
+        self.schedule()
+
+    def predict_one(self, i: int, floor: float) -> None:
+        """Predict disk i anew; what is before `floor` does not count."""
+        self.arrays = self.arrays._replace(several=self.state.several.reshape(-1))  # which may have grown
+        place = int(self.state.place_of[i])
+        self._predict(place, place + 1, floor)
+
+    def _predict(self, begin: int, end: int, floor: float) -> None:
+        predict_some(self.arrays, self.grid, self.rules, self.counts, begin, end, self.state.now, floor)
+
+    def schedule(self) -> None:
+        """Make the calendar anew, with days of a fitting length."""
+        self._choose_days()
+        schedule(self.arrays, self.grid, self.counts, self.state.now)
+
+    def _choose_days(self) -> None:
+        day = day_length(self.due, self.state.now, self.state.window_end, self.state.n)
+        self.grid = self.grid._replace(day_length=day, days_per_time=1.0 / day)
+
+    def flush(self) -> None:
+        """Take the rows out of the buffer; the kernels get another one."""
+        count = int(self.counts[layout.ROW_COUNT])
+        self.counts[layout.ROW_COUNT] = 0
+        if count and self.keep_rows:
+            self._blocks.append(self._buffer[:count])
+            self._buffer = self._buffers.blank()
+            self.arrays = self.arrays._replace(rows=self._buffer.view(np.uint8))
+
+    def add_rows(self, rows: Rows) -> None:
+        """Put rows that no kernel wrote behind those that have been flushed."""
+        self._blocks.append(rows)
+
+    def take_rows(self) -> Rows:
+        """The rows since the last call, an array of ROW."""
+        self.flush()
+        blocks, self._blocks = self._blocks, []
+        if len(blocks) == 1:
+            return blocks[0]
+        return np.concatenate(blocks) if blocks else np.empty(0, ROW)
