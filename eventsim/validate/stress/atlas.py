@@ -27,7 +27,8 @@ def atlas_of(
 
     limit: seconds for one engine on one case.  Verdicts are in the order of the cases, then of the engines.
     """
-    jobs = [[(engine, case.name) for case in cases] for engine in engines]
+    # What compiles most begins first, so that all others are done beside it.
+    jobs = [[(engine, case.name) for case in cases] for engine in sorted(engines, key=lambda name: name != "fast")]
     found: dict[tuple[str, str], Verdict] = {}
     for (engine, name), answer in answers(partial(judge_named, limit=limit), jobs, workers, limit + PATIENCE):
         verdict = hung(CASES[name], engine, answer) if isinstance(answer, Silence) else answer

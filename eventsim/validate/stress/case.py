@@ -17,6 +17,10 @@ GOES_ON = ("until", "events", "quiet")
 """Reasons to stop that are none of the engine's; with any other it says that it cannot go on."""
 
 
+LOOK, FAR = 0.1, 10.0
+"""In limits: after so long an engine's pace is looked at; if it would take so long, it is not waited for."""
+
+
 class GaveUpError(Exception):
     """An engine stopped early with a reason."""
 
@@ -26,21 +30,21 @@ class GaveUpError(Exception):
 
 
 class TimeUpError(Exception):
-    """An engine took longer than it was given."""
+    """An engine took longer than it was given, or would; the message says so."""
 
 
 class Bench:
     """One engine, ready for the runs of one case; keeps the worst change of energy that it saw.
 
     limit: seconds of computing that all runs together may take, whatever else the machine does; what comes before the first
-    events of a run, compiling, is not counted.
+    events of a run, compiling, is not counted.  What has far to go at its pace is not waited for.
     """
 
     def __init__(self, engine: str, limit: float) -> None:
         self.engine = engine
         self.energy = 0.0
-        self._left = limit
-        self._since: float | None = None
+        self._limit = self._left = limit
+        self._begun: tuple[float, float, float] | None = None
 
     def run(
         self,
@@ -51,7 +55,7 @@ class Bench:
         may_give_up: bool = False,
     ) -> Run:
         """Simulate a scene; raises GaveUpError where the engine stops early, unless that is what the case is about."""
-        self._since = None
+        self._begun = None
         run = simulate(scene, until, events, engine=self.engine, log=log, progress=self._watch)
         change = run.residuals.energy
         if change is not None and abs(change) > abs(self.energy):
@@ -60,14 +64,20 @@ class Bench:
             raise GaveUpError(run.stopped, run.reason)
         return run
 
-    def _watch(self, _share: float | None, _events: int, _time: float) -> None:
-        """Count the seconds since the last look; raises TimeUpError where none are left."""
-        now = process_time()
-        if self._since is not None:
-            self._left -= now - self._since
-        self._since = now
+    def _watch(self, share: float | None, _events: int, _time: float) -> None:
+        """Count the seconds since the last look; raises TimeUpError where none are left, or far too few.
+
+        share: what is done of the run.
+        """
+        now, share = process_time(), share or 0.0
+        if self._begun is None:
+            self._begun = now, share, self._left
+        spent, done = now - self._begun[0], share - self._begun[1]
+        self._left = self._begun[2] - spent
         if self._left < 0.0:
-            raise TimeUpError
+            raise TimeUpError(f"not done after {self._limit:g} s")
+        if spent > LOOK * self._limit and 0.0 < done < spent / (FAR * self._limit):
+            raise TimeUpError(f"not done before {spent / done:.2g} s, at its pace")
 
 
 @dataclass(frozen=True, slots=True)

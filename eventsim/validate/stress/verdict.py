@@ -62,8 +62,8 @@ def judge(case: Case, engine: str, limit: float) -> Verdict:
     except GaveUpError as stop:
         documented = stop.stopped in case.refusals
         word, sentence = Word.REFUSED, f"stopped by {stop.stopped}: {stop}"
-    except TimeUpError:
-        word, sentence = Word.SLOW, f"not done after {limit:g} s"
+    except TimeUpError as late:
+        word, sentence = Word.SLOW, str(late)
     except EventsimError as refusal:
         word, sentence = Word.REFUSED, str(refusal)
     except Exception as failure:

@@ -3,13 +3,16 @@
 import csv
 import json
 import math
+import re
 
 import pytest
 from click.testing import CliRunner
 
 from eventsim.cli import main
+from eventsim.validate.stress import case as stress_case
 from eventsim.validate.stress.case import Case, GaveUpError
 from eventsim.validate.stress.catalogue import CASES
+from eventsim.validate.stress.catalogue.clusters import diagonal
 from eventsim.validate.stress.verdict import Word, hung, judge
 from eventsim.validate.stress.workers import Silence
 
@@ -48,6 +51,23 @@ def test_a_documented_refusal_is_no_fault():
     verdict = judge(case(GaveUpError("digits", "spent"), ("digits",)), "reference", limit=1.0)
     assert (verdict.word, verdict.fault) == (Word.REFUSED, False)
     assert verdict.sentence == "stopped by digits: spent"
+
+
+def test_an_engine_with_far_to_go_is_not_waited_for():
+    """A flight of 1e8 diameters in frames of 1/60: 6e9 of them."""
+    verdict = judge(CASES["f12-far"], "frames", limit=1.0)
+    assert (verdict.word, verdict.fault) == (Word.SLOW, False)
+    assert re.fullmatch(r"not done before [0-9.e+]+ s, at its pace", verdict.sentence)
+
+
+def test_an_engine_that_has_no_time_left_is_not_done(monkeypatch):
+    clock = iter(range(100))
+    monkeypatch.setattr(stress_case, "process_time", lambda: float(next(clock)))
+    bench = stress_case.Bench("reference", 2.5)
+    bench.run(diagonal(), until=1.0)  # looked at once: nothing is known of its time
+    with pytest.raises(stress_case.TimeUpError, match=r"not done after 2\.5 s"):
+        for _ in range(5):
+            bench._watch(None, 0, 0.0)
 
 
 def test_an_engine_that_does_not_come_back_has_hung():
