@@ -104,11 +104,30 @@ class _Watcher(event.Listener):
             self._note(perf_counter() - self._began)
 
 
-inline = njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+def _once(compiler: Callable[..., Any], function: Callable[..., Any]) -> Any:
+    """A compiled part, one for all whole numbers: numba would compile it anew for each constant that is handed over."""
+    part = compiler(function)
+    template = part.get_call_template
+
+    def get_call_template(arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+        return template(tuple(map(_widened, arguments)), {name: _widened(kind) for name, kind in keywords.items()})
+
+    part.get_call_template = get_call_template
+    return part
+
+
+def _widened(kind: Any) -> Any:
+    """The type of a constant without its value."""
+    if isinstance(kind, types.Tuple):
+        return types.Tuple([_widened(item) for item in kind])
+    return types.unliteral(kind)
+
+
+inline = partial(_once, njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True))
 """A part of a kernel; without force a small helper stays a real call, which costs a fifth of the rate."""
 
 
-part = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+part = partial(_once, njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True))
 """A part that is rarely reached, and stays a call of its own."""
 
 
