@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import re
+from contextlib import nullcontext
 
 import pytest
 from click.testing import CliRunner
@@ -58,6 +59,16 @@ def test_an_engine_with_far_to_go_is_not_waited_for():
     verdict = judge(CASES["f12-far"], "frames", limit=1.0)
     assert (verdict.word, verdict.fault) == (Word.SLOW, False)
     assert re.fullmatch(r"not done before [0-9.e+]+ s, at its pace", verdict.sentence)
+
+
+@pytest.mark.parametrize(("engine", "steady"), [("stepped", True), ("reference", False), ("certified", False)])
+def test_only_steps_go_at_a_steady_pace(monkeypatch, engine, steady):
+    clock = iter([0.0, 2.0])
+    monkeypatch.setattr(stress_case, "process_time", lambda: next(clock))
+    bench = stress_case.Bench(engine, 10.0)
+    bench._watch(0.0, 0, 0.0)
+    with pytest.raises(stress_case.TimeUpError, match="at its pace") if steady else nullcontext():
+        bench._watch(1e-4, 0, 0.0)
 
 
 def test_an_engine_that_has_no_time_left_is_not_done(monkeypatch):
