@@ -20,6 +20,13 @@ own length, near contact or not.  At 2**-10 that 1e-12 would be a quarter, and a
 SMALLEST = 1e-290
 """What underflow may have taken from D."""
 
+USUAL_SPEEDS = 400
+"""Powers of two; up to these, and down to their inverse, squares of speeds and reaches that are not extreme themselves are floats
+that SMALLEST does not touch."""
+
+LARGEST_EXPONENT = 1024
+"""Of a float, as frexp counts."""
+
 
 def pair_delay(dx: Real, dy: Real, du: Real, dw: Real, reach: Real) -> Real:
     """The delay until two disks at relative position (dx, dy) with relative velocity (du, dw) are `reach` apart.
@@ -64,6 +71,22 @@ def screened_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float
     if discriminant > slack:
         return c / (math.sqrt(discriminant) - b)
     return NEVER if discriminant < -slack or (du == 0.0 and dw == 0.0) else DOUBT
+
+
+def rescaled_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float) -> float:
+    """The same for what is in doubt because squares of speeds leave the range of floats: at speeds of about 1.
+
+    They are scaled by a power of two, so that a scene whose velocities all are so has contact times of exactly its inverse.
+    DOUBT where that is no help.
+    """
+    exponent = math.frexp(max(abs(du), abs(dw)))[1]
+    if -USUAL_SPEEDS < exponent < USUAL_SPEEDS:
+        return DOUBT
+    delay = screened_pair_delay(dx, dy, math.ldexp(du, -exponent), math.ldexp(dw, -exponent), reach)
+    mantissa, power = math.frexp(delay)
+    if delay != delay:
+        return DOUBT
+    return math.ldexp(mantissa, power - exponent) if power - exponent <= LARGEST_EXPONENT else NEVER
 
 
 def inner_delay(dx: Real, dy: Real, du: Real, dw: Real, radius: Real) -> Real:

@@ -13,7 +13,7 @@ from functools import cmp_to_key
 from itertools import product
 from typing import NamedTuple
 
-from eventsim.formulas.contact import screened_pair_delay
+from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
@@ -141,6 +141,8 @@ class Contacts:
         if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
             return NEVER
         delay = screened_pair_delay(dx, dy, du, dw, reach)
+        if math.isnan(delay) and one.gx is None:
+            delay = rescaled_pair_delay(dx, dy, du, dw, reach)
         if math.isnan(delay):
             if one.gx is None:
                 shift_x, shift_y = (-self._less(0.0, image, axis) for axis in (0, 1))

@@ -36,6 +36,9 @@ EXTREME = 2.0**400
 LONGEST_WINDOW = 900
 """Without wraps nothing accumulates between contacts, so a quiet scene may have windows of any length."""
 
+SHORTEST_EPOCH, LONGEST_EPOCH = -1000, 960
+"""Exponents of the epoch's length; so MOST_EPOCHS of the longest ones, and a window more, are still a float."""
+
 
 @dataclass(frozen=True, slots=True)
 class Stage:
@@ -229,4 +232,4 @@ def _epoch_length(
         pull = max(abs(gravity[0]), abs(gravity[1]))
         speeds.append((math.frexp(pull)[1] + length) // 2)
     exponent = length - max(speeds, default=0)
-    return math.ldexp(1.0, max(-1000, min(exponent, 900)))
+    return math.ldexp(1.0, max(SHORTEST_EPOCH, min(exponent, LONGEST_EPOCH)))

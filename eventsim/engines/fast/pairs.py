@@ -19,7 +19,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.met import just_met
-from eventsim.formulas.contact import screened_pair_delay
+from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
@@ -87,12 +87,15 @@ def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, unlike):
         return delay
     if ax is not None:
         return careful_pair_delay(dx, dy, du, dw, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
-    return _careful_delay(m, rules, i, j, kx, ky)
+    return _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ri + rj)
 
 
 @part
-def _careful_delay(m, rules, i, j, kx, ky):
+def _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, reach):
     """The delay of a pair in straight flight from the two flights themselves, right to the last bit."""
+    delay = rescaled_pair_delay(dx, dy, du, dw, reach)
+    if delay == delay:
+        return delay
     f, g = i * REALS, j * REALS
     return careful_pair_delay(
         real(m.disks, f + X),

@@ -1,0 +1,130 @@
+"""Hard scenes from the first row to the last, in both engines; what `validate.stress.catalogue` asks of their end states is not
+asked again."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import eventsim as es
+from eventsim.engines.base import Stop
+from eventsim.engines.reference import ReferenceSession
+from eventsim.scene.stage import stage_of
+from eventsim.validate.stress.catalogue.long_runs import crystal
+from eventsim.validate.stress.catalogue.scenes import on_plane
+from tests.engines.scenes import lattice_gas
+
+ULP = 2.0**-52
+BOTH = ["reference", "fast"]
+
+
+def log_of(scene, engine, **stop):
+    if engine == "fast":
+        pytest.importorskip("numba")
+    return es.simulate(scene, engine=engine, log=True, **stop).log
+
+
+@pytest.mark.parametrize("engine", BOTH)
+def test_f10_an_overlap_by_rounding_is_due_now(engine):
+    scene = on_plane([[1e6, 0.0], [1e6 + 1.0 - 1e-9, 0.0]], [[1.0, 0.0], [0.0, 0.0]])
+    log = log_of(scene, engine, until=5.0)
+    assert log.time.tolist() == [0.0]
+    assert (log.vxa[0], log.vxb[0]) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("engine", "events"), [("reference", 20_000), pytest.param("fast", 1_000_000, marks=pytest.mark.slow)]
+)
+def test_f11_overlaps_do_not_grow_in_a_long_dense_run(engine, events):
+    """Of coordinates between 8 and 16, in diameters, this is six last bits."""
+    if engine == "fast":
+        pytest.importorskip("numba")
+    run = es.simulate(crystal(8, 1.1), events=events, engine=engine)
+    assert 0.0 <= run.residuals.max_overlap < 1e-14
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)  # two thousand million contacts, and a turn of the clock for every 32 of them
+def test_f16_after_1e9_periods_the_phase_has_no_error():
+    pytest.importorskip("numba")
+    scene = es.Scene(es.Disks([(1.0, 1.0)], [(2.0, 0.0)], 0.5), es.Box((2.0, 2.0)))
+    run = es.simulate(scene, until=1e9, engine="fast")
+    assert run.counters.events == 2 * 10**9
+    assert run.state.position.tolist() == [[1.0, 1.0]]
+    assert run.state.velocity.tolist() == [[2.0, 0.0]]
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_f18_one_large_disk_among_1e5_small_ones_has_one_log():
+    """The large one, a hundred times as wide, on a square lattice from which a disc was cut."""
+    pytest.importorskip("numba")
+    sites = np.stack(np.meshgrid(np.arange(-165, 165), np.arange(-165, 165)), axis=-1).reshape(-1, 2) * 2.0 + 1.0
+    small = sites[np.hypot(*sites.T) > 50.6]
+    assert len(small) > 100_000
+    velocity = np.vstack([[[0.0, 0.0]], np.random.default_rng(18).normal(size=small.shape)])
+    radius = np.array([50.0, *[0.5] * len(small)])
+    scene = es.Scene(
+        es.Disks(np.vstack([[[0.0, 0.0]], small]), velocity, radius, radius**2), es.Box((664.0, 664.0), (-332.0, -332.0))
+    )
+    runs = [es.simulate(scene, events=20_000, engine=engine, log=True) for engine in BOTH]
+    assert runs[0].log.digest() == runs[1].log.digest()
+    assert np.any(runs[0].log.a == 0)
+    assert runs[1].residuals.max_overlap < 8.0 * np.spacing(664.0)
+
+
+@pytest.mark.parametrize("engine", BOTH)
+def test_f21_the_slowest_disk_meets_the_nearest_one_in_time(engine):
+    """A subnormal speed and the smallest gap that the coordinate 1 takes."""
+    speed = 1e-310
+    log = log_of(on_plane([[0.0, 0.0], [1.0 + ULP, 0.0]], [[speed, 0.0], [0.0, 0.0]]), engine, events=1)
+    assert log.time.tolist() == [float(Fraction(ULP) / Fraction(speed))]
+    assert (log.vxa[0], log.vxb[0]) == (0.0, speed)
+
+
+@pytest.mark.parametrize("domain", [es.Box, es.Periodic])
+def test_f30_ties_with_cell_crossings_leave_the_log_of_all_pairs(domain):
+    """Disks along diagonals, which pass corners of cells of width 1 (and 2) at the times of contacts on their edges."""
+    sites = np.array([(i, j) for i in range(6) for j in range(6)], float)
+    signs = np.random.default_rng(30).choice([-1.0, 1.0], size=(36, 2))
+    scene = es.Scene(es.Disks(2.0 * sites + 0.5, signs, 0.5), domain((12.0, 12.0)))
+    session = ReferenceSession(stage_of(scene), grid=None)
+    session.advance(Stop(None, 2000), 10**9)
+    rows = session.take_rows()
+    for engine in BOTH:
+        assert log_of(scene, engine, events=2000).rows.tobytes() == rows.tobytes()
+
+
+def swapped(scene):
+    """The scene with its axes exchanged."""
+    disks = scene.disks
+    size = None if scene.domain.size is None else scene.domain.size[::-1]
+    domain = es.Open() if size is None else type(scene.domain)(size)
+    return es.Scene(es.Disks(disks.position[:, ::-1], disks.velocity[:, ::-1], disks.radius, disks.mass), domain)
+
+
+@pytest.mark.parametrize("engine", BOTH)
+@pytest.mark.parametrize("domain", [es.Open, es.Periodic])
+def test_f32_exchanged_axes_exchange_columns_of_the_log(engine, domain):
+    scene = lattice_gas(30, 0.5, domain, seed=32)
+    one, other = (log_of(each, engine, events=400) for each in (scene, swapped(scene)))
+    assert len(one) >= (20 if domain is es.Open else 400)
+    for name, mapped in (("a", "a"), ("b", "b"), ("remainder", "remainder"), ("impulse", "impulse")):
+        assert getattr(one, name).tolist() == getattr(other, mapped).tolist(), name
+    for x, y in (("xa", "ya"), ("vxa", "vya"), ("xb", "yb"), ("vxb", "vyb")):
+        assert getattr(one, x).tobytes() == getattr(other, y).tobytes(), x
+        assert getattr(one, y).tobytes() == getattr(other, x).tobytes(), y
+
+
+@pytest.mark.parametrize("engine", BOTH)
+def test_f32_a_mirror_image_has_the_same_contacts(engine):
+    """Its coordinates count from the other corner and round otherwise; while that is small, the order is the same."""
+    scene = lattice_gas(30, 0.5, es.Open, seed=9)
+    disks = scene.disks
+    mirrored = es.Disks(disks.position * [-1.0, 1.0], disks.velocity * [-1.0, 1.0], disks.radius, disks.mass)
+    one, other = (log_of(each, engine, until=3.0) for each in (scene, es.Scene(mirrored, es.Open())))
+    assert len(one) > 40
+    assert (one.a.tolist(), one.b.tolist()) == (other.a.tolist(), other.b.tolist())
+    # an ulp of coordinates below 8, doubled about ten times by chaos, and 2^6 for chance
+    np.testing.assert_allclose(other.vxa, -one.vxa, rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(other.vya, one.vya, rtol=0.0, atol=1e-10)
