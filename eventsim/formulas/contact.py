@@ -20,9 +20,8 @@ own length, near contact or not.  At 2**-10 that 1e-12 would be a quarter, and a
 SMALLEST = 1e-290
 """What underflow may have taken from D."""
 
-USUAL_SPEEDS = 400
-"""Powers of two; up to these, and down to their inverse, squares of speeds and reaches that are not extreme themselves are floats
-that SMALLEST does not touch."""
+SLOWEST, FASTEST = 2.0**-400, 2.0**400
+"""Between these, squares of speeds and of reaches that are not extreme themselves are floats that SMALLEST does not touch."""
 
 LARGEST_EXPONENT = 1024
 """Of a float, as frexp counts."""
@@ -79,9 +78,10 @@ def rescaled_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float
     They are scaled by a power of two, so that a scene whose velocities all are so has contact times of exactly its inverse.
     DOUBT where that is no help.
     """
-    exponent = math.frexp(max(abs(du), abs(dw)))[1]
-    if -USUAL_SPEEDS < exponent < USUAL_SPEEDS:
+    speed = max(abs(du), abs(dw))
+    if SLOWEST < speed < FASTEST:
         return DOUBT
+    exponent = math.frexp(speed)[1]
     delay = screened_pair_delay(dx, dy, math.ldexp(du, -exponent), math.ldexp(dw, -exponent), reach)
     mantissa, power = math.frexp(delay)
     if delay != delay:
