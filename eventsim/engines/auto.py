@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.engines.base import Counters, Motion, Session, Snapshot, Stop
+from eventsim.engines.base import BrokenOffError, Counters, Motion, Session, Snapshot, Stop
 from eventsim.engines.forecast import reference_seconds
 from eventsim.engines.reference import ReferenceSession
 from eventsim.formulas.clock import clock_time
@@ -68,6 +68,7 @@ class AutoSession:
         self._opened: Session | None = None
         self._is_cold = False
         self._loading = 0.0
+        self._changing = False
         self.at_work = "reference"
         self.before: str | None = None
         self._rows: list[Rows] = []
@@ -82,7 +83,10 @@ class AutoSession:
         if self._may_change:
             self.at_work = first_engine(self.stage, stop, self._keep_rows)
         if self.at_work == "fast":
-            self._opened = self._opened_fast(began)
+            try:
+                self._opened = self._opened_fast(began)
+            except BrokenOffError:  # there is nothing yet that could be kept
+                raise KeyboardInterrupt from None
         else:
             self._loading += perf_counter() - began
             began = thread_time()
@@ -90,11 +94,20 @@ class AutoSession:
             self._spent = thread_time() - began
         return self._opened
 
+    @property
+    def prepares(self) -> bool:
+        """Whether the session only prepares itself, so that an interrupt may break in."""
+        return self._changing or bool(getattr(self._opened, "prepares", False))
+
     def _opened_fast(self, began: float, saved: Snapshot | None = None) -> Session:
         """A session of the fast engine; all since `began` went into loading and compiling it."""
-        from eventsim.engines.fast import FastSession
+        self._changing = True
+        try:
+            from eventsim.engines.fast import FastSession
 
-        session = FastSession(self.stage, self._keep_rows, saved=saved)
+            session = FastSession(self.stage, self._keep_rows, saved=saved)
+        finally:
+            self._changing = False
         self._loading += perf_counter() - began - session.compile_s
         return session
 
@@ -169,10 +182,10 @@ class AutoSession:
 
     def _hand_over(self) -> None:
         before = self._session
+        fast = self._opened_fast(perf_counter(), saved=before.snapshot())
+        fast.counters.copy_from(before.counters)
         self._rows.append(before.take_rows())
-        self.before, self.at_work = self.at_work, "fast"
-        self._opened = self._opened_fast(perf_counter(), saved=before.snapshot())
-        self._opened.counters.copy_from(before.counters)
+        self.before, self.at_work, self._opened = self.at_work, "fast", fast
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""

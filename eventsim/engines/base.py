@@ -124,6 +124,13 @@ class Motion(NamedTuple):
     wraps_y: NDArray[np.int64]
 
 
+class BrokenOffError(Exception):
+    """A session was interrupted while it prepared itself, and has changed nothing.
+
+    Raised into sessions that have a property `prepares`, which says when that may be.
+    """
+
+
 class Session(Protocol):
     """An engine in the middle of a run."""
 

@@ -13,7 +13,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from eventsim.engines.base import OnEvent, Progress, Session, Stop
+from eventsim.engines.base import BrokenOffError, OnEvent, Progress, Session, Stop
 from eventsim.engines.checkpoint import Checkpoint
 from eventsim.engines.collapse import TAIL
 from eventsim.engines.keeper import Keeper
@@ -83,12 +83,15 @@ class Work:
         """Simulate to the end; why it stopped."""
         session, keeper = self.session, self.keeper
         budget = FIRST_BUDGET
-        with _interruptible() as interrupted:
+        with _interruptible(session) as interrupted:
             self._keep()
             while True:
                 aim = self.stop if keeper is None else keeper.next_stop(self.stop, session.counters.events)
                 began = perf_counter()
-                stopped = session.advance(aim, budget)
+                try:
+                    stopped = session.advance(aim, budget)
+                except BrokenOffError:
+                    stopped = "interrupted"
                 stint = perf_counter() - began
                 self.elapsed += stint
                 if stint < 0.5 * LONGEST_STINT:
@@ -141,8 +144,11 @@ def _tell(progress: Progress, session: Session, stop: Stop) -> None:
 
 
 @contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C, or the signal to terminate, sets a flag instead of breaking into an event; a second one breaks in."""
+def _interruptible(session: Session) -> Iterator[Callable[[], bool]]:
+    """Ctrl-C, or the signal to terminate, sets a flag instead of breaking into an event; a second one breaks in.
+
+    Where the session says that it only prepares itself (loads a compiler, compiles), which takes long, the first one breaks in.
+    """
     asked = False
 
     def ask(number: int, frame: FrameType | None) -> None:
@@ -150,6 +156,8 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
         if asked:
             raise KeyboardInterrupt
         asked = True
+        if getattr(session, "prepares", False):
+            raise BrokenOffError
 
     if threading.current_thread() is not threading.main_thread():
         yield lambda: False

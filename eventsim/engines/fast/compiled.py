@@ -80,10 +80,16 @@ def timed_compiling(note: Callable[[float], None]) -> Iterator[None]:
         yield
 
 
+def is_compiling() -> bool:
+    """Whether a kernel is being compiled: it has not begun to work, so an interrupt may break in."""
+    return _Watcher.at_work > 0
+
+
 class _Watcher(event.Listener):
     """Sums up the outermost of nested compilations."""
 
     told = False
+    at_work = 0
 
     def __init__(self, note: Callable[[float], None]) -> None:
         self._note = note
@@ -96,11 +102,13 @@ class _Watcher(event.Listener):
             if not _Watcher.told and sys.stderr.isatty():
                 print("compiling the fast engine (once) ...", file=sys.stderr)
             _Watcher.told = True
+            _Watcher.at_work += 1
         self._depth += 1
 
     def on_end(self, event: Any) -> None:
         self._depth -= 1
         if self._depth == 0:
+            _Watcher.at_work -= 1
             self._note(perf_counter() - self._began)
 
 

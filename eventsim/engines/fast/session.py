@@ -8,7 +8,7 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop
 from eventsim.engines.fast import layout, tally
-from eventsim.engines.fast.compiled import link, mark_warm, timed_compiling
+from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
 from eventsim.engines.fast.machine import FOREVER, Machine
 from eventsim.engines.fast.plan import Sizes
 from eventsim.engines.fast.rules import kind_of
@@ -86,6 +86,11 @@ class FastSession:
         finally:
             tally.tell(self.counters, self._machine.counts, self._machine.sums)
 
+    @property
+    def prepares(self) -> bool:
+        """Whether the session only prepares itself, so that an interrupt may break in."""
+        return is_compiling()
+
     def _note_compiling(self, seconds: float) -> None:
         self.compile_s += seconds
 
@@ -124,9 +129,9 @@ class FastSession:
                             continue
                     if state.epoch >= MOST_EPOCHS:
                         return "quiet"
-                    self.counters.turnovers += 1
                     self._rulings.forget()
                     machine.turn_over()
+                    self.counters.turnovers += 1
                 else:
                     self._pass_to(until)
                     return "quiet" if empty else "until"
