@@ -96,7 +96,8 @@ def _walls(needs: Needs) -> str:
 
 def _flights(needs: Needs) -> str:
     if needs.gravity is None:
-        return "straight lines: no gravity, and no term is computed for it"
+        text = "straight lines: no gravity, and no term is computed for it"
+        return f"{text}; the domain is so wide that places carry what their rounding leaves" if needs.low_places else text
     text = f"parabolas, gravity {point(*needs.gravity)}; it cancels between disks, so only walls see the curve"
     if any(needs.shapes.get(shape, 0) for shape in ("post", "arc", "container")):
         text += "; a parabola against a round wall or a wall's end is a quartic, solved by bracketing"

@@ -68,6 +68,7 @@ class Needs:
         shapes: name -> number of the primitive shapes that the walls are made of, periodic images included.
         gravity, restitution, contact_duration: None without; restitution (pair, wall).
         low_parts: whether masses are so uneven that velocities carry what their rounding leaves.
+        low_places: whether the domain is so wide that places carry what their rounding leaves.
         epoch_length: time, a power of two.
         search: all pairs or cells.
         images: in how many periodic images a disk can be met from inside the domain: 1, 3 or 9.
@@ -99,6 +100,7 @@ class Needs:
     restitution: tuple[float, float] | None
     contact_duration: float | None
     low_parts: bool
+    low_places: bool
     start_time: float
     epoch_length: float
     search: Search
@@ -140,6 +142,7 @@ def needs_of(scene: Scene) -> Needs:
         restitution=None if scene.restitution is None else (scene.restitution.pair, scene.restitution.wall),
         contact_duration=stage.contact_duration,
         low_parts=stage.low_parts,
+        low_places=stage.low_places,
         start_time=scene.start_time,
         epoch_length=stage.epoch_length,
         search=_search(stage),

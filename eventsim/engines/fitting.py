@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, fields
+from dataclasses import fields
 
 import numpy as np
 
@@ -44,12 +44,13 @@ def demand_fit(snapshot: Snapshot, stage: Stage) -> None:
 
 
 def _demand_columns(snapshot: Snapshot, stage: Stage) -> None:
-    """One number for each disk, finite; only a disk that never met anybody did so at -inf."""
+    """One number for each disk, finite, low parts where the stage has them; only who never met anybody did so at -inf."""
+    low = {"low_vx": stage.low_parts, "low_vy": stage.low_parts, "low_x": stage.low_places, "low_y": stage.low_places}
     for item in fields(Snapshot):
         column = getattr(snapshot, item.name)
         if not isinstance(column, tuple):
             continue
-        if len(column) != stage.n and (column or item.default is MISSING):
+        if len(column) != (stage.n if low.get(item.name, True) else 0):
             raise ValueError(f"{item.name} has {len(column)} entries for {stage.n} disks")
         if item.name == "met":
             continue

@@ -110,6 +110,7 @@ class Expansion:
         disk, mass = self.disks[entry.a], self._mass[entry.a]
         if entry.event not in self._set:
             raise self._unfit(entry, "its velocity is not in the metadata (the log was not closed)")
+        disk.settle(entry.remainder)
         before, speed = disk.speed(entry.remainder), self._set[entry.event]
         disk.anchor(entry.remainder, disk.place(entry.remainder), speed)
         disk.low = 0.0, 0.0
@@ -120,8 +121,10 @@ class Expansion:
         t, a, b = entry.remainder, entry.a, entry.b
         contact = self._only(entry, self._contacts.of_pair(a, b, t, t))
         one, other = self.disks[a], self.disks[b]
+        one.settle(t)
+        other.settle(t)
         place_a, place_b = one.place(t), other.place(t)
-        dx, dy = self._contacts.apart(contact.image, place_a, place_b)
+        dx, dy = self._contacts.apart(contact.image, place_a, place_b, one.low_place, other.low_place)
         shares, reduced = self._shares(a, b)
         if self.stage.low_parts:
             speeds, masses = (one.vx, one.vy, other.vx, other.vy), (self._mass[a], self._mass[b])
@@ -140,6 +143,7 @@ class Expansion:
         of_kind = [one for one in found if (one.image[1] == SUPPORTED) == (entry.kind == Kind.REST)]
         contact = self._only(entry, of_kind)
         disk = self.disks[a]
+        disk.settle(t)
         place, before = disk.place(t), disk.speed(t)
         if contact.image[1] != STRUCK:
             return self._rest_or_leave(contact, t, place, before)
@@ -147,11 +151,11 @@ class Expansion:
         u, w = before
         axis = self._contacts.boundary_axis(contact)
         if self.stage.low_parts:
-            normal = self._contacts.normal(contact, place)
+            normal = self._contacts.normal(contact, place, disk.low_place)
             u, w, *low, _ = careful_wall_update(*normal, u, w, *disk.low)
             disk.low = low[0], low[1]
         elif axis is None:
-            u, w, _ = wall_update(*self._contacts.normal(contact, place), u, w, restitution)
+            u, w, _ = wall_update(*self._contacts.normal(contact, place, disk.low_place), u, w, restitution)
         elif axis == 0:
             u, _ = flat_update(u, contact.image[0], restitution)
         else:
@@ -187,10 +191,13 @@ class Expansion:
         rows = self._matched(cluster, [found[k] for k in active])
         for i in sorted({i for contact in rows for i in (contact.a, contact.b) if i >= 0}):
             own = [contact for contact in rows if i in (contact.a, contact.b)]
+            disk = self.disks[i]
+            if disk.low_place is not None:
+                disk.settle(t)
+                places[i] = disk.place(t)
             for contact in own:
                 if contact.b < 0:
                     places[i] = self._contacts.on_boundary(contact, places[i])
-            disk = self.disks[i]
             disk.anchor(t, places[i], outcome.velocities[number[i]])
             disk.low = 0.0, 0.0
             disk.meet(tuple(self._contacts.met(contact, i) for contact in own))
@@ -235,10 +242,11 @@ class Expansion:
     ) -> JointContact:
         a, b = contact.a, contact.b
         if b >= 0:
-            dx, dy = self._contacts.apart(contact.image, places[a], places[b])
+            low = (self.disks[i].low_place_at(t) for i in (a, b))
+            dx, dy = self._contacts.apart(contact.image, places[a], places[b], *low)
             e = self._restitution(self.stage.pair_restitution, t, a, b)
             return JointContact(number[a], number[b], dx, dy, e)
-        nx, ny = self._contacts.normal(contact, places[a])
+        nx, ny = self._contacts.normal(contact, places[a], self.disks[a].low_place_at(t))
         return JointContact(number[a], None, nx, ny, self._restitution(self.stage.wall_restitution, t, a, a))
 
     def _begin(

@@ -15,15 +15,17 @@ from typing import NamedTuple
 
 from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
+from eventsim.formulas.expansion import two_sum
+from eventsim.formulas.low_place import finely_apart, wide_border_delay, wide_pair_delay
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import STRUCK, border_contact, shape_contact
 from eventsim.formulas.roots import Moment, order_of
-from eventsim.formulas.walls.delays import DELAYS
+from eventsim.formulas.walls.delays import DELAYS, at_origin
 from eventsim.formulas.walls.face import Face, face_normal
 from eventsim.formulas.walls.round import round_normal
-from eventsim.record.disk_flight import DiskFlight
-from eventsim.record.moments import Flight, Moments
+from eventsim.record.disk_flight import DiskFlight, Low
+from eventsim.record.moments import Flight, Moments, exact_place
 from eventsim.scene.stage import Stage
 
 
@@ -78,13 +80,23 @@ class Contacts:
         return groups
 
     def apart(
-        self, image: tuple[int, int], place_a: tuple[float, float], place_b: tuple[float, float]
+        self,
+        image: tuple[int, int],
+        place_a: tuple[float, float],
+        place_b: tuple[float, float],
+        low_a: Low = None,
+        low_b: Low = None,
     ) -> tuple[float, float]:
-        """Return the vector from b (its image) to a."""
+        """Return the vector from b (its image) to a; low_a, low_b: the low parts of their places."""
+        if low_a is not None and low_b is not None:
+            shift_x, shift_y = (-self._less(0.0, image, axis) for axis in (0, 1))
+            dx, _ = finely_apart(place_a[0], low_a[0], place_b[0], low_b[0], shift_x)
+            dy, _ = finely_apart(place_a[1], low_a[1], place_b[1], low_b[1], shift_y)
+            return dx, dy
         return self._less(place_a[0] - place_b[0], image, 0), self._less(place_a[1] - place_b[1], image, 1)
 
-    def normal(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
-        """Return the normal, of any length, of a wall towards a disk at `place`."""
+    def normal(self, contact: Contact, place: tuple[float, float], low: Low = None) -> tuple[float, float]:
+        """Return the normal, of any length, of a wall towards a disk at `place`; low: the low parts of that."""
         number, side = -1 - contact.b, contact.image[0]
         if number < self._boundaries:
             boundary = self._stage.boundaries[number]
@@ -92,6 +104,8 @@ class Contacts:
         shape = self._stage.features[number - self._boundaries].shape
         if isinstance(shape, Face):
             return face_normal(shape, side)
+        if low is not None:
+            return round_normal(at_origin(shape), side, (place[0] - shape.x) + low[0], (place[1] - shape.y) + low[1])
         return round_normal(shape, side, *place)
 
     def on_boundary(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
@@ -99,8 +113,11 @@ class Contacts:
         number = -1 - contact.b
         if number >= self._boundaries:
             return place
-        boundary = self._stage.boundaries[number]
-        target = boundary.position + boundary.side * self._disks[contact.a].radius
+        boundary, disk = self._stage.boundaries[number], self._disks[contact.a]
+        target = boundary.position + boundary.side * disk.radius
+        if disk.low_place is not None:
+            rest = two_sum(boundary.position, boundary.side * disk.radius)[1]
+            disk.low_place = (rest, disk.low_place[1]) if boundary.axis == 0 else (disk.low_place[0], rest)
         return (target, place[1]) if boundary.axis == 0 else (place[0], target)
 
     def boundary_axis(self, contact: Contact) -> int | None:
@@ -131,6 +148,12 @@ class Contacts:
         """Return the remainder at which two disks meet in an image; NEVER where they just met."""
         one, other = self._disks[a], self._disks[b]
         t = max(one.t, other.t)
+        if one.low_place is not None:
+            kx, ky = self._unwrapped(a, b, image)
+            if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
+                return NEVER
+            shifts = (-self._less(0.0, image, axis) for axis in (0, 1))
+            return float(t + wide_pair_delay(*one.fine(), *other.fine(), *shifts))
         (ua, wa), (ub, wb) = one.speed(t), other.speed(t)
         dx, dy = self.apart(image, one.place(t), other.place(t))
         du, dw, reach = ua - ub, wa - wb, one.radius + other.radius
@@ -160,6 +183,9 @@ class Contacts:
 
     def _flight(self, i: int) -> Flight:
         disk = self._disks[i]
+        if disk.low_place is not None:
+            x, y = exact_place(disk.x, disk.y, disk.low_place)
+            return disk.t, x, y, disk.vx, disk.vy, None, None
         return disk.t, disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy
 
     def _wall_time(self, a: int, place: int) -> tuple[float, int, int]:
@@ -168,6 +194,9 @@ class Contacts:
         if place < self._boundaries:
             axis, where, side, _ = stage.boundaries[place]
             x, v, g = (disk.x, disk.vx, disk.gx) if axis == 0 else (disk.y, disk.vy, disk.gy)
+            if disk.low_place is not None:
+                delay = wide_border_delay(x, disk.low_place[axis], v, where, disk.radius, side)
+                return disk.t + delay, int(side), STRUCK
             target = where + side * disk.radius
             size = abs(disk.x) + abs(disk.y) + abs(target)
             delay, how = border_contact(
@@ -178,6 +207,10 @@ class Contacts:
         met = next((last[1] for last in disk.met if last[0] == -1 - place), 0)
         flight = (disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy)
         delay_to = DELAYS[type(shape)]
+        if disk.low_place is not None:
+            low_x, low_y = disk.low_place
+            flight = ((disk.x - shape.x) + low_x, (disk.y - shape.y) + low_y, *flight[2:])
+            shape = at_origin(shape)
         if stage.supports is None:
             return disk.t + (found := delay_to(shape, *flight, disk.radius, met))[0], found[1], STRUCK
         e = stage.series_restitution

@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 from eventsim.errors import LogError
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.low_place import Fine, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import NEVER, Acceleration
 from eventsim.formulas.rest import SUPPORTED, Held, held_by
@@ -16,18 +17,22 @@ from eventsim.scene.stage import Stage
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
 """Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, STRUCK, SUPPORTED or LEFT)."""
 
+Low: TypeAlias = tuple[float, float] | None
+"""The low parts of a place; None where places have none."""
+
 
 class DiskFlight:
     """A free flight, and what the next contact of its disk depends on besides.
 
-    window, t: where the clock stood at the anchor x, y, vx, vy. low: the low parts of the velocity. wraps: passages of
+    window, t: where the clock stood at the anchor x, y, vx, vy. low, low_place: the low parts of the velocity, and of the
+    place where places have such. wraps: passages of
     periodic boundaries along x and y. met: whom it met last; held: the wall that it rests on or left at its end.
     contact_time: when that was, a remainder in the present window; -inf: never.
     """
 
     __slots__ = (
-        "_free", "_supports", "contact_time", "gx", "gy", "held", "low", "met", "radius", "t", "vx", "vy", "window", "wraps",
-        "x", "y",
+        "_free", "_supports", "contact_time", "gx", "gy", "held", "low", "low_place", "met", "radius", "t", "vx", "vy",
+        "window", "wraps", "x", "y",
     )  # fmt: skip
 
     def __init__(self, stage: Stage, number: int, immovable: bool) -> None:
@@ -35,6 +40,7 @@ class DiskFlight:
         self.x, self.y = float(stage.x[number]), float(stage.y[number])
         self.vx, self.vy = float(stage.vx[number]), float(stage.vy[number])
         self.low = 0.0, 0.0
+        self.low_place: Low = (0.0, 0.0) if stage.low_places else None
         self.radius = float(stage.radius[number])
         self.gx: Acceleration = None
         self.gy: Acceleration = None
@@ -50,6 +56,27 @@ class DiskFlight:
         """Return the centre at remainder t of the present window."""
         lag = t - self.t
         return position(self.x, self.vx, lag, self.gx), position(self.y, self.vy, lag, self.gy)
+
+    def low_place_at(self, t: float) -> Low:
+        """Return the low parts of `place`; None where places have none."""
+        if self.low_place is None:
+            return None
+        lag, (low_x, low_y) = t - self.t, self.low_place
+        return low_position(self.x, low_x, self.vx, lag), low_position(self.y, low_y, self.vy, lag)
+
+    def settle(self, t: float) -> None:
+        """Begin the flight anew with the high parts of its place rounded to nearest, where places have low parts."""
+        low = self.low_place_at(t)
+        if low is not None:
+            x, y = self.place(t)
+            (x, low_x), (y, low_y) = settled(x, low[0]), settled(y, low[1])
+            self.anchor(t, (x, y), (self.vx, self.vy))
+            self.low_place = low_x, low_y
+
+    def fine(self) -> Fine:
+        """Return what a contact time in a wide domain is a function of."""
+        assert self.low_place is not None
+        return *self.anchored(), *self.low_place
 
     def anchored(self) -> tuple[float, float, float, float, float, float]:
         """Return (x, y, vx, vy, t, radius), what a contact time of a straight flight is a function of."""
@@ -93,6 +120,7 @@ class DiskFlight:
                     continue
             if not behind:
                 return
+            self.low_place = self.low_place_at(limit)
             self.anchor(0.0, self.place(limit), self.speed(limit))
             self.contact_time -= limit
             self.window += 1
@@ -113,7 +141,10 @@ class DiskFlight:
     def _wrap(self, t: float, axis: int, step: int, period: tuple[float | None, float | None]) -> None:
         length = period[axis]
         assert length is not None
-        place = list(self.place(t))
+        place, low = list(self.place(t)), self.low_place_at(t)
+        if low is not None:
+            beyond = place[axis] - (length if step > 0 else 0.0)
+            self.low_place = (low[0] + beyond, low[1]) if axis == 0 else (low[0], low[1] + beyond)
         place[axis] = 0.0 if step > 0 else length
         self.anchor(t, (place[0], place[1]), self.speed(t))
         self.wraps[axis] += step

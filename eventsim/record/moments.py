@@ -13,7 +13,10 @@ from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.round import Arc, Container
 from eventsim.scene.stage import Stage
 
-Flight: TypeAlias = tuple[float, float, float, float, float, Acceleration, Acceleration]
+Place: TypeAlias = float | Fraction
+"""A coordinate, exact where places have low parts."""
+
+Flight: TypeAlias = tuple[float, Place, Place, float, float, Acceleration, Acceleration]
 """A free flight: t, x, y, vx, vy, and its acceleration."""
 
 Line: TypeAlias = tuple[Fraction, Fraction, Fraction]
@@ -60,7 +63,10 @@ class Moments:
         lines = _lines(flight)
         if place < len(stage.boundaries):
             boundary = stage.boundaries[place]
-            return _falls_to(lines[boundary.axis], boundary.position + boundary.side * radius, side)
+            target: Place = boundary.position + boundary.side * radius
+            if stage.low_places:
+                target = Fraction(boundary.position) + side * Fraction(radius)
+            return _falls_to(lines[boundary.axis], target, side)
         shape = stage.features[place - len(stage.boundaries)].shape
         x, y = _less_number(lines[0], shape.x), _less_number(lines[1], shape.y)
         if isinstance(shape, Face):
@@ -71,12 +77,17 @@ class Moments:
         return _reaches([x, y], circle + side * Fraction(radius), -side)
 
 
+def exact_place(x: float, y: float, low: tuple[float, float]) -> tuple[Fraction, Fraction]:
+    """Both parts of a place as one number each."""
+    return Fraction(x) + Fraction(low[0]), Fraction(y) + Fraction(low[1])
+
+
 def _lines(flight: Flight) -> tuple[Line, Line]:
     t, x, y, vx, vy, gx, gy = flight
     return _line(x, vx, gx, Fraction(t)), _line(y, vy, gy, Fraction(t))
 
 
-def _line(x: float, v: float, g: float | None, t: Fraction) -> Line:
+def _line(x: Place, v: float, g: float | None, t: Fraction) -> Line:
     speed = Fraction(v)
     if not g:
         return Fraction(x) - speed * t, speed, ZERO
@@ -88,7 +99,7 @@ def _less(one: Line, other: Line) -> Line:
     return one[0] - other[0], one[1] - other[1], one[2] - other[2]
 
 
-def _less_number(line: Line, number: float) -> Line:
+def _less_number(line: Line, number: Place) -> Line:
     return line[0] - Fraction(number), line[1], line[2]
 
 
@@ -100,7 +111,7 @@ def _reaches(apart: list[Line], reach: Fraction, side: int) -> Moment | None:
     return quadratic_root(u * u + w * w, x * u + y * w, x * x + y * y - reach * reach, side)
 
 
-def _falls_to(line: Line, target: float, side: int) -> Moment | None:
+def _falls_to(line: Line, target: Place, side: int) -> Moment | None:
     """When side * (line - target) sinks to 0: of a parabola the time at which it falls."""
     at, rate, half = _less_number(line, target)
     return quadratic_root(side * half, side * rate / 2, side * at, -1)

@@ -23,6 +23,10 @@ from eventsim.scene.supports import any_lies, supports_of
 
 Floats: TypeAlias = NDArray[np.float64]
 
+WIDE = 2.0**16
+"""Diameters of the largest disk across a domain from which on places carry their low parts: a coordinate there has lost 16 of the
+53 bits that a gap between two disks could have, and with them a third of the events that float64 follows."""
+
 LONGEST_PERIODIC_WINDOW = 13
 """A window of 2**13 epochs: a disk that only wraps keeps its digits, and a gas that has cooled is not slowed much."""
 
@@ -52,6 +56,8 @@ class Stage:
         mass_ratio: of the heaviest to the lightest disk, tracers and immovable ones apart.
         low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): energy is conserved and
             masses are very uneven.
+        low_places: whether places carry what their rounding leaves (`formulas/low_place`): the domain is very wide and
+            nothing falls.
         gravity: (gx, gy), or None.
         pair_restitution, wall_restitution: 1.0 where elastic.
         contact_duration: time, or None.
@@ -77,6 +83,7 @@ class Stage:
     common_mass: float
     mass_ratio: float
     low_parts: bool
+    low_places: bool
     gravity: Point | None
     pair_restitution: float
     wall_restitution: float
@@ -140,6 +147,14 @@ def stage_of(scene: Scene) -> Stage:
     moves = bool(np.any(disks.velocity != 0.0))
     lightest, heaviest = _extreme_masses(disks.mass)
     elastic = restitution is None or (restitution.pair == 1.0 and restitution.wall == 1.0)
+    epoch_length = _epoch_length(x, y, vx, vy, disks.radius, size, scene.gravity)
+    longest_periodic = LONGEST_PERIODIC_WINDOW
+    diameter = 2.0 * float(disks.radius.max())
+    low_places = size is not None and scene.gravity is None and 0.0 < diameter < max(size) / WIDE
+    if low_places:  # a crowd in a corner of the domain has the clock of a crowd
+        longest_periodic += math.frexp(epoch_length)[1]
+        epoch_length = _epoch_length(x, y, vx, vy, disks.radius, (diameter, diameter), None)
+        longest_periodic -= math.frexp(epoch_length)[1]
     return Stage(
         n=len(disks),
         x=x,
@@ -157,6 +172,7 @@ def stage_of(scene: Scene) -> Stage:
             and lightest > 1.0 / EXTREME
             and heaviest < EXTREME
         ),
+        low_places=low_places,
         gravity=scene.gravity,
         pair_restitution=1.0 if restitution is None else restitution.pair,
         wall_restitution=wall_restitution,
@@ -169,8 +185,8 @@ def stage_of(scene: Scene) -> Stage:
         wall_names=(*names, *walls.feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,
-        epoch_length=_epoch_length(x, y, vx, vy, disks.radius, size, scene.gravity),
-        window_cap=LONGEST_PERIODIC_WINDOW if periodic and (moves or scene.gravity) else LONGEST_WINDOW,
+        epoch_length=epoch_length,
+        window_cap=longest_periodic if periodic and (moves or scene.gravity) else LONGEST_WINDOW,
     )
 
 

@@ -1,6 +1,7 @@
 """Scenes that several tests of engines use."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +28,20 @@ def lattice_gas(n, eta, domain=es.Box, seed=1, quantum=None, radii=(0.5,), masse
         disks=es.Disks((sites + 0.5) * pitch, velocity, radius, np.resize(np.array(masses), n)),
         domain=es.Open() if domain is es.Open else domain((side, side)),
         **scene,
+    )
+
+
+def in_far_corner(scene, size, corner=(1, 1)):
+    """The disks of a box in a corner of a very wide one, 0: at its low end, 1: at its high end, held there by walls."""
+    width, height = scene.domain.size
+    x, y = (size - width if corner[0] else 0.0), (size - height if corner[1] else 0.0)
+    end_x, end_y = (size if corner[0] else 0.0), (size if corner[1] else 0.0)
+    wall_x, wall_y = (x if corner[0] else width), (y if corner[1] else height)
+    return replace(
+        scene,
+        disks=replace(scene.disks, position=np.add(scene.disks.position, (x, y))),
+        domain=es.Box((size, size)),
+        walls=(es.Polyline([(wall_x, end_y), (wall_x, wall_y), (end_x, wall_y)]),),
     )
 
 

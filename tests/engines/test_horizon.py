@@ -8,7 +8,7 @@ from eventsim.engines.horizon import horizon
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
-from tests.engines.scenes import lattice_gas, rows_of
+from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 
 SHAPES = ((8, 0.2), (16, 0.3), (24, 0.4), (16, 0.5), (12, 0.1))
 
@@ -29,6 +29,15 @@ def test_the_horizon_is_neither_late_nor_half(n, eta, seeds):
         assert true is not None
         assert told.event is not None
         print(f"n = {n}, eta = {eta}, seed {seed}: true {true}, told {told.event}")
+        assert 0.5 * true <= told.event <= 1.1 * true
+
+
+@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(10), marks=pytest.mark.slow)])
+def test_in_a_wide_box_it_is_neither(seeds):
+    for seed in seeds:
+        scene = in_far_corner(lattice_gas(16, 0.3, seed=seed), 1e6)
+        true, told = true_difference(scene, 600), horizon(scene, Stop(None, 1600))
+        print(f"far corner, seed {seed}: true {true}, told {told.event}")
         assert 0.5 * true <= told.event <= 1.1 * true
 
 

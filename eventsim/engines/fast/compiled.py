@@ -27,6 +27,7 @@ from eventsim.formulas import (
     digits,
     expansion,
     impulse,
+    low_place,
     motion,
     parabola,
     real,
@@ -213,5 +214,5 @@ def _register(module: ModuleType, **options: Any) -> None:
 
 for _module in (motion, contact, impulse):
     _register(_module, forceinline=True, error_model="numpy")
-for _module in (careful_impulse, crossing, digits, expansion, parabola, face, round, rest):
+for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, face, round, rest):
     _register(_module, error_model="numpy")

@@ -67,7 +67,8 @@ class Arrays(NamedTuple):
 
     disks: the records, and behind them the calendar's buckets and its waiting room.
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
-    parts of velocities, (vx, vy) each.  levels: the table of `levels`.  rows: the log's buffer, bytes.
+    parts of velocities, (vx, vy) each; low_places: those of places, (x, y) each.  levels: the table of `levels`.  rows: the
+    log's buffer, bytes.
     """
 
     disks: object
@@ -76,6 +77,7 @@ class Arrays(NamedTuple):
     several: object
     mass: object
     low: object
+    low_places: object
     features: object
     levels: object
     supports: object

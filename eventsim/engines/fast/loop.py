@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.advance import anchor, place, speed, wrap
+from eventsim.engines.fast.advance import anchor, keep_low_place, place, speed, wrap
 from eventsim.engines.fast.calendar import (
     NO_DAY,
     bucket,
@@ -81,6 +81,7 @@ def pointers(a):
         pointer(a.several),
         pointer(a.mass),
         pointer(a.low),
+        pointer(a.low_places),
         pointer(a.features),
         pointer(a.levels),
         pointer(a.supports),
@@ -253,5 +254,6 @@ def turn_over(arrays, grid, rules, end):
     for i in range(grid.n):
         x, y = place(m, rules, i, end)
         vx, vy = speed(m, rules, i, end)
+        keep_low_place(m, i, end, m.low_places)
         anchor(m, i, end - end, x, y, vx, vy)
         store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - end)

@@ -38,7 +38,7 @@ class Machine:
         self.counts = np.zeros(13, np.int64)
         self.sums = np.zeros(6)
         self.keep_rows = keep_rows
-        straight = stage.gravity is None
+        straight = stage.gravity is None and not stage.low_places
         plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
         wanted = lanes_work() if lanes is None else lanes
         self._lanes = 8 if wanted and straight and plain else None
@@ -146,6 +146,7 @@ class Machine:
                 state.several.reshape(-1),
                 self._mass,
                 state.low.reshape(-1) if state.low_parts else None,
+                state.low_of_places.reshape(-1) if state.low_places else None,
                 self._features,
                 self.grids.table(),
                 self._supports,

@@ -21,6 +21,7 @@ from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.met import just_met
 from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
+from eventsim.formulas.low_place import wide_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
@@ -54,6 +55,13 @@ def images(m, rules, i, j, now, x, y):
 @inline
 def pair_time(m, rules, i, j, kx, ky):
     """The contact time of two disks; symmetric under their exchange, bit for bit."""
+    return _pair_time(m, rules, i, j, kx, ky, m.low_places)
+
+
+@inline
+def _pair_time(m, rules, i, j, kx, ky, low):
+    if low is not None:
+        return _wide_pair_time(m, rules, i, j, kx, ky)
     f, g = i * REALS, j * REALS
     ti, tj = real(m.disks, f + T), real(m.disks, g + T)
     begin = ti if ti > tj else tj
@@ -67,6 +75,34 @@ def pair_time(m, rules, i, j, kx, ky):
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
     return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, _or(rules.classes, m.supports))
+
+
+@part
+def _wide_pair_time(m, rules, i, j, kx, ky):
+    """The same from places with low parts."""
+    f, g = i * REALS, j * REALS
+    ti, tj = real(m.disks, f + T), real(m.disks, g + T)
+    delay = wide_pair_delay(
+        real(m.disks, f + X),
+        real(m.disks, f + Y),
+        real(m.disks, f + VX),
+        real(m.disks, f + VY),
+        ti,
+        real(m.disks, f + RADIUS),
+        real(m.low_places, 2 * i),
+        real(m.low_places, 2 * i + 1),
+        real(m.disks, g + X),
+        real(m.disks, g + Y),
+        real(m.disks, g + VX),
+        real(m.disks, g + VY),
+        tj,
+        real(m.disks, g + RADIUS),
+        real(m.low_places, 2 * j),
+        real(m.low_places, 2 * j + 1),
+        shift(kx, rules.length_x),
+        shift(ky, rules.length_y),
+    )
+    return (ti if ti > tj else tj) + delay
 
 
 @inline

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.advance import anchor, place, speed
+from eventsim.engines.fast.advance import anchor, place, settle, speed
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import (
     AT_ONCE,
@@ -30,6 +30,7 @@ from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rows import write_row
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
+from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -39,6 +40,7 @@ from eventsim.formulas.impulse import (
     wall_impulse,
     wall_update,
 )
+from eventsim.formulas.low_place import finely_apart
 from eventsim.formulas.real import sqrt
 from eventsim.formulas.rest import is_still
 
@@ -162,6 +164,7 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     dx, dy = xa - xb, ya - yb
     kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
+    xa, ya, xb, yb, dx, dy = _finely(m, rules, a, b, t, kx, ky, xa, ya, xb, yb, dx, dy, m.low_places)
     still = _is_still(m, rules, a, t, rules.settles) and _is_still(m, rules, b, t, rules.settles)
     ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)
     anchor(m, a, t, xa, ya, ua, wa)
@@ -178,6 +181,26 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     _book_pair(sums, a, b, -(q * reduced) * dx, -(q * reduced) * dy, m.mass)
     write_row(m, number, slot, a, b, -1, -(q * reduced) * distance, t, clock, m.rows)
     return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
+
+
+@inline
+def _finely(m, rules, a, b, t, kx, ky, xa, ya, xb, yb, dx, dy, low):
+    """Places and distance of a pair; from places with low parts, where they have them, which settles the two disks."""
+    if low is None:
+        return xa, ya, xb, yb, dx, dy
+    return _settled_pair(m, rules, a, b, t, kx, ky)
+
+
+@part
+def _settled_pair(m, rules, a, b, t, kx, ky):
+    low = m.low_places
+    settle(m, rules, a, t, low)
+    settle(m, rules, b, t, low)
+    xa, ya = place(m, rules, a, t)
+    xb, yb = place(m, rules, b, t)
+    dx, _ = finely_apart(xa, real(low, 2 * a), xb, real(low, 2 * b), shift(kx, rules.length_x))
+    dy, _ = finely_apart(ya, real(low, 2 * a + 1), yb, real(low, 2 * b + 1), shift(ky, rules.length_y))
+    return xa, ya, xb, yb, dx, dy
 
 
 @inline
@@ -211,6 +234,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     """Resolve the contact of disk i with the wall that the code of the event stands for."""
     wall_code = WALL - code
     place_, side = wall_code // 2, -1 if wall_code % 2 else 1
+    settle(m, rules, i, t, m.low_places)
     x, y = place(m, rules, i, t)
     u, w = speed(m, rules, i, t)
     u0, w0 = u, w
@@ -219,11 +243,13 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r
+        _lay_on(2 * i, rules.width, side, r, m.low_places)
         u, _ = flat_update(u, float(side), e)
         _reverse(2 * i, u != u0, m.low)
         wall = place_
     elif _is_across(rules.wall_y, place_):
         y = rules.height - r if side < 0 else r
+        _lay_on(2 * i + 1, rules.height, side, r, m.low_places)
         w, _ = flat_update(w, float(side), e)
         _reverse(2 * i + 1, w != w0, m.low)
         wall = place_
@@ -237,6 +263,14 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         sums[OUTER_X] += mass * (u - u0)
         sums[OUTER_Y] += mass * (w - w0)
     write_row(m, number, slot, i, -1, wall, wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
+
+
+@inline
+def _lay_on(at, size, side, r, low):
+    """Let a low part be what the place of a disk on a wall of the domain leaves when it is rounded."""
+    if low is not None:
+        _, rest = two_sum(size, -r)
+        store(low, at, rest if side < 0 else 0.0)
 
 
 @inline
@@ -257,7 +291,7 @@ def _reverse(place_, reversed_, low):
 def _against_shape(m, i, k, side, x, y, u, w, e, features, low):
     if features is None:
         return u, w, -1
-    nx, ny = shape_normal(m, k, side, x, y)
+    nx, ny = shape_normal(m, i, k, side, x, y)
     if low is None:
         u, w, _ = wall_update(nx, ny, u, w, e)
     else:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from eventsim.engines.fast import layout
 from eventsim.engines.fast.advance import place, pulls, wrap
-from eventsim.engines.fast.alone import shape_time
+from eventsim.engines.fast.alone import shape_time, wall_delay
 from eventsim.engines.fast.compiled import inline, kernel, link, part
 from eventsim.engines.fast.layout import (
     NOBODY,
@@ -111,6 +111,7 @@ class Retracer:
             several=self.state.several.reshape(-1),
             mass=self._mass,
             low=self.state.low.reshape(-1) if self.state.low_parts else None,
+            low_places=self.state.low_of_places.reshape(-1) if self.state.low_places else None,
             features=self._features,
             levels=None,
             supports=None,  # scenes in which disks come to rest are left to `eventsim.record.compact`
@@ -132,6 +133,8 @@ class Retracer:
         flight.met, flight.contact_time = s.met[i], s.contact_time[i]
         if s.low_parts:
             flight.low = s.low_vx[i], s.low_vy[i]
+        if s.low_places:
+            flight.low_place = s.low_x[i], s.low_y[i]
 
     def take_back(self, i: int, flight: DiskFlight) -> None:
         """Let disk i fly on as a flight does."""
@@ -141,6 +144,8 @@ class Retracer:
         s.met[i], s.contact_time[i] = flight.met, flight.contact_time
         if s.low_parts:
             s.low_vx[i], s.low_vy[i] = flight.low
+        if s.low_places:
+            s.low_x[i], s.low_y[i] = flight.low_place or (0.0, 0.0)
 
 
 @kernel
@@ -233,18 +238,20 @@ def _wall_met(m, rules, i, wall, t, features):
     gx, gy = pulls(m, rules, i)
     x, u, y, w = real(m.disks, f + X), real(m.disks, f + VX), real(m.disks, f + Y), real(m.disks, f + VY)
     if wall < rules.first_feature:
-        code = _wall_across(begin, x, u, gx, r, rules.width, wall, t, rules.wall_x)
-        return code if code != NO_CODE else _wall_across(begin, y, w, gy, r, rules.height, wall, t, rules.wall_y)
+        code = _wall_across(m, begin, x, u, gx, r, rules.width, wall, t, 2 * i, rules.wall_x)
+        if code != NO_CODE:
+            return code
+        return _wall_across(m, begin, y, w, gy, r, rules.height, wall, t, 2 * i + 1, rules.wall_y)
     return _shape_met(m, rules, i, wall, t, features)
 
 
 @inline
-def _wall_across(begin, x, v, g, r, length, wall, t, first):
+def _wall_across(m, begin, x, v, g, r, length, wall, t, at, first):
     if first is None:
         return NO_CODE
-    if wall == first and begin + crossing_delay(x, v, g, r, 1.0) == t:
+    if wall == first and begin + wall_delay(x, v, g, 0.0, 1.0, r, at, m.low_places) == t:
         return WALL - 2 * wall
-    if wall == first + 1 and begin + crossing_delay(x, v, g, length - r, -1.0) == t:
+    if wall == first + 1 and begin + wall_delay(x, v, g, length, -1.0, r, at, m.low_places) == t:
         return WALL - 2 * wall - 1
     return NO_CODE
 

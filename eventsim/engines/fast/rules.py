@@ -8,8 +8,9 @@ import numpy as np
 
 from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
-from eventsim.engines.fast.shapes import KINDS, WIDTH
+from eventsim.engines.fast.shapes import CENTER, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of
+from eventsim.formulas.walls.delays import at_origin
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -49,7 +50,7 @@ def rules_of(stage: Stage) -> Rules:
 
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
-    asked = [keep_rows, stage.low_parts, grids.sizes is not None]
+    asked = [keep_rows, stage.low_parts, stage.low_places, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     needs = [*rules_of(stage), *grids.grid(None), stage.mass, stage.supports, *wanted]
     return "".join("0" if need is None else "1" for need in needs)
@@ -62,7 +63,8 @@ def features_of(stage: Stage) -> Floats | None:
     table = np.zeros((len(stage.features), WIDTH))
     for row, (shape, wall, _) in zip(table, stage.features, strict=True):
         row[0], row[1] = KINDS.index(type(shape)), wall
-        row[2 : 2 + len(shape)] = shape
+        row[2 : 2 + len(shape)] = at_origin(shape) if stage.low_places else shape
+        row[CENTER:] = shape.x, shape.y
     return table.reshape(-1)
 
 

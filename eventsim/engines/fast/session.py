@@ -24,6 +24,9 @@ COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_
 LOW_COLUMNS = ("low_vx", "low_vy")
 """The same, where velocities have low parts."""
 
+LOW_PLACES = ("low_x", "low_y")
+"""The same, where places have low parts."""
+
 ROUNDS = 2.0
 """Times around the domain without an event after which disks that move along an axis are known to meet nothing."""
 
@@ -54,7 +57,11 @@ class FastSession:
         self._machine = Machine(stage, keep_rows, lanes, sizes)
         self.state = self._machine.state
         self._rulings = Rulings(self._machine, self.counters)
-        self._columns = (*COLUMNS, *LOW_COLUMNS) if stage.low_parts else COLUMNS
+        self._columns = (
+            *COLUMNS,
+            *(LOW_COLUMNS if stage.low_parts else ()),
+            *(LOW_PLACES if stage.low_places else ()),
+        )
         with timed_compiling(self._note_compiling):
             link()
         if saved is None:

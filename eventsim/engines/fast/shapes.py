@@ -12,8 +12,9 @@ from eventsim.formulas.walls.round import Arc, Container, Post, arc_delay, conta
 KINDS = (Face, Post, Container, Arc)
 """The kinds of shapes, by the number that stands for them in the table."""
 
-WIDTH = 11
-"""Numbers in a row: the kind, the number of the wall, then the shape's own."""
+WIDTH, CENTER = 13, 11
+"""Numbers in a row: the kind, the number of the wall, then the shape's own; where the point (x, y) that it is told from is, which
+for its own numbers is the origin where places have low parts."""
 
 FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
 
@@ -48,6 +49,7 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
     s = WIDTH * k
     kind = real(row, s)
     a, b = real(row, s + 2), real(row, s + 3)
+    x, y = _seen_from(m, i, s, x, y, m.low_places)
     if faces is not None and kind == FACE:
         return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
     if posts is not None and kind == POST:
@@ -61,12 +63,22 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
     return NEVER, 0
 
 
+@inline
+def _seen_from(m, i, s, x, y, low):
+    """The place of disk i as a shape sees it: relative to its center where places have low parts."""
+    if low is None:
+        return x, y
+    row = m.features
+    return (x - real(row, s + CENTER)) + real(low, 2 * i), (y - real(row, s + CENTER + 1)) + real(low, 2 * i + 1)
+
+
 @part
-def shape_normal(m, k, side, x, y):
-    """The normal, of any length, of the k-th shape, towards a disk at (x, y)."""
+def shape_normal(m, i, k, side, x, y):
+    """The normal, of any length, of the k-th shape, towards disk i at (x, y), where its flight begins."""
     row = m.features
     s = WIDTH * k
     if real(row, s) == FACE:
         face = Face(0.0, 0.0, 0.0, 0.0, real(row, s + 6), real(row, s + 7), 0.0, 0.0, 0.0)
         return face_normal(face, side)
+    x, y = _seen_from(m, i, s, x, y, m.low_places)
     return round_normal(Post(real(row, s + 2), real(row, s + 3)), side, x, y)

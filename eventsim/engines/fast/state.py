@@ -167,7 +167,7 @@ class FastState(EngineState):
     memory: the records, and the calendar's buckets behind them.
     disks: (n + 1, REALS), the last one a sentinel.  words: the same memory as int32.  place_of: where a disk is in memory;
     labels: which disk is at a place.  several: chains of whom disks met in joint contacts.  low: low parts of velocities, (n, 2),
-    or (0, 2) where there are none.
+    or (0, 2) where there are none; low_of_places: of places.
     """
 
     x: Any
@@ -181,6 +181,8 @@ class FastState(EngineState):
     at_once: Any
     low_vx: Any
     low_vy: Any
+    low_x: Any
+    low_y: Any
     count: Any
     met: Any
     gravity_x: Any
@@ -218,6 +220,9 @@ class FastState(EngineState):
         self.low_parts = stage.low_parts
         self.low: Floats = np.zeros((n if stage.low_parts else 0, 2))
         self.low_vx, self.low_vy = Column(self.low[:, 0], self.place_of), Column(self.low[:, 1], self.place_of)
+        self.low_places = stage.low_places
+        self.low_of_places: Floats = np.zeros((n if stage.low_places else 0, 2))
+        self.low_x, self.low_y = (Column(self.low_of_places[:, axis], self.place_of) for axis in (0, 1))
         self.supports = stage.supports
         self.gravity_x, self.gravity_y = AccelerationColumn(self, 0, stage), AccelerationColumn(self, 1, stage)
         self.epoch_length = stage.epoch_length

@@ -17,6 +17,7 @@ from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
+from eventsim.engines.reference.wide import WidePredictor
 from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
 from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import SqueezedError
@@ -56,7 +57,8 @@ class ReferenceSession:
         self.refused = False
         self._check = check
         self._wraps_in_vain = 0
-        self._predictor = self.predictor(stage, self.state, self.calendar, self.cells)
+        fine = self.state.low_places and self.predictor is Predictor
+        self._predictor = (WidePredictor if fine else self.predictor)(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
         self._ties = Ties(stage, self.state)
         self._predict_afresh()

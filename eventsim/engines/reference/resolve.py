@@ -10,10 +10,11 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
-from eventsim.engines.reference.state import EngineState
+from eventsim.engines.reference.state import EngineState, Low
 from eventsim.engines.reference.surfaces import Surfaces
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import contact_restitution, flat_update, pair_update, wall_update
+from eventsim.formulas.low_place import finely_apart
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
 from eventsim.record.events import Kind
@@ -74,6 +75,7 @@ class Resolver:
         """Set the velocity of disk i from outside, at the present time; a row of its own."""
         state = self._state
         t = state.now
+        state.settle(i, t)
         x, y = state.place(i, t)
         before = state.speed(i, t)
         self._rests.free(i, t)
@@ -87,9 +89,11 @@ class Resolver:
     def _pair(self, event: Event) -> list[int]:
         state = self._state
         t, a, b = event.time, event.a, event.b
+        state.settle(a, t)
+        state.settle(b, t)
         xa, ya = state.place(a, t)
         xb, yb = state.place(b, t)
-        dx, dy = self._apart(event, xa, ya, xb, yb)
+        dx, dy = self._apart(event, xa, ya, xb, yb, state.low_place(a, t), state.low_place(b, t))
         still = self._instants.is_still(a, t) and self._instants.is_still(b, t)
         if state.low_parts:
             ua, wa, ub, wb, q = self._careful_pair(a, b, dx, dy)
@@ -133,6 +137,7 @@ class Resolver:
     def _wall(self, event: Event) -> list[int]:
         state, stage, surfaces = self._state, self._stage, self._surfaces
         t, i, place, side = event.time, event.a, -1 - event.b, event.image[0]
+        state.settle(i, t)
         x, y = state.place(i, t)
         u, w = state.speed(i, t)
         before = u, w
@@ -140,14 +145,14 @@ class Resolver:
         still = not self._instants.is_series(i, place) and self._instants.is_still(i, t)
         restitution = self._restitution(stage.wall_restitution, t, i, i)
         if state.low_parts:
-            u, w = self._careful_wall(i, *surfaces.normal(place, side, x, y))
+            u, w = self._careful_wall(i, *surfaces.normal(place, side, x, y, state.low_place(i, t)))
         elif place >= len(stage.boundaries):
-            u, w, _ = wall_update(*surfaces.normal(place, side, x, y), u, w, restitution)
+            u, w, _ = wall_update(*surfaces.normal(place, side, x, y, state.low_place(i, t)), u, w, restitution)
         elif stage.boundaries[place].axis == 0:
             u, _ = flat_update(u, stage.boundaries[place].side, restitution)
         else:
             w, _ = flat_update(w, stage.boundaries[place].side, restitution)
-        x, y = surfaces.exactly_on(place, i, x, y)
+        x, y = surfaces.place_on(place, i, state, x, y)
         self._rests.free(i, t)
         state.anchor(i, t, x, y, u, w)
         state.meet(i, (self._met(event, i),))
@@ -174,18 +179,19 @@ class Resolver:
         disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
         number = {disk: k for k, disk in enumerate(disks)}
         at = [state.place(i, t) for i in disks]
+        low = [state.low_place(i, t) for i in disks]
         before = [state.speed(i, t) for i in disks]
         contacts = []
         for event in component:
-            xa, ya = at[number[event.a]]
-            if event.b >= 0:
-                dx, dy = self._apart(event, xa, ya, *at[number[event.b]])
+            a, b = number[event.a], number[event.b] if event.b >= 0 else None
+            if b is not None:
+                dx, dy = self._apart(event, *at[a], *at[b], low[a], low[b])
                 e = self._restitution(stage.pair_restitution, t, event.a, event.b)
-                contacts.append(JointContact(number[event.a], number[event.b], dx, dy, e))
+                contacts.append(JointContact(a, b, dx, dy, e))
             else:
-                nx, ny = self._surfaces.normal(-1 - event.b, event.image[0], xa, ya)
+                nx, ny = self._surfaces.normal(-1 - event.b, event.image[0], *at[a], low[a])
                 e = self._restitution(stage.wall_restitution, t, event.a, event.a)
-                contacts.append(JointContact(number[event.a], None, nx, ny, e))
+                contacts.append(JointContact(a, None, nx, ny, e))
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
         if not active and stage.gravity is not None:
@@ -193,10 +199,11 @@ class Resolver:
         changed = sorted({i for k in active for i in component[k][2:4] if i >= 0})
         still = all(self._instants.is_still(i, t) for i in changed)
         for i in changed:
-            x, y = at[number[i]]
+            state.settle(i, t)
+            x, y = at[number[i]] if low[number[i]] is None else state.place(i, t)
             for k in active:
                 if component[k].a == i and component[k].b < 0:
-                    x, y = self._surfaces.exactly_on(-1 - component[k].b, i, x, y)
+                    x, y = self._surfaces.place_on(-1 - component[k].b, i, state, x, y)
             self._rests.free(i, t)
             state.anchor(i, t, x, y, *outcome.velocities[number[i]])
             state.forget_low_parts(i)
@@ -236,9 +243,15 @@ class Resolver:
         ky = event.image[1] + state.wraps_y[event.a] - state.wraps_y[event.b]
         return (event.b, kx, ky) if i == event.a else (event.a, -kx, -ky)
 
-    def _apart(self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real) -> tuple[Real, Real]:
-        """The vector from b (its image) to a."""
+    def _apart(
+        self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real, low_a: Low, low_b: Low
+    ) -> tuple[Real, Real]:
+        """The vector from b (its image) to a; low_a, low_b: the low parts of their places."""
         (kx, ky), (length_x, length_y) = event.image, self._stage.period
+        if low_a is not None and low_b is not None:
+            dx, _ = finely_apart(xa, low_a[0], xb, low_b[0], kx * length_x if kx else 0.0)  # type: ignore[operator]
+            dy, _ = finely_apart(ya, low_a[1], yb, low_b[1], ky * length_y if ky else 0.0)  # type: ignore[operator]
+            return dx, dy
         dx, dy = xa - xb, ya - yb
         if kx:
             dx = dx - kx * length_x  # type: ignore[operator]

@@ -6,6 +6,7 @@ from typing import Any, TypeAlias
 
 from eventsim.engines.base import Snapshot
 from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
+from eventsim.formulas.low_place import Fine, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Acceleration, Real
 from eventsim.formulas.rest import SUPPORTED, Support, held_by
@@ -16,6 +17,10 @@ Met: TypeAlias = tuple[tuple[int, int, int], ...]
 a joint contact."""
 
 
+Low: TypeAlias = tuple[float, float] | None
+"""The low parts of a place; None where places have none."""
+
+
 class EngineState:
     """The flights of n disks as lists of numbers; only advance and resolve change them.
 
@@ -23,7 +28,8 @@ class EngineState:
     wraps_x, wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was
     (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.  number: makes
     a number of the engine's type from a float.  low_parts: whether velocities carry what their rounding at a contact left, in
-    low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.
+    low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.  low_places: the same for what
+    the rounding of places left, in low_x and low_y.
     """
 
     def __init__(self, stage: Stage, number: Any = float) -> None:
@@ -44,6 +50,9 @@ class EngineState:
         self.low_parts = stage.low_parts and number is float
         self.low_vx = [0.0] * n if self.low_parts else []
         self.low_vy = [0.0] * n if self.low_parts else []
+        self.low_places = stage.low_places and number is float
+        self.low_x = [0.0] * n if self.low_places else []
+        self.low_y = [0.0] * n if self.low_places else []
         self.gravity_x, self.gravity_y = _accelerations(stage)
         self._free_x, self._free_y = self.gravity_x, self.gravity_y
         self.supports = stage.supports
@@ -69,6 +78,30 @@ class EngineState:
         """The velocity of disk i at time t of its present flight."""
         lag = t - self.t[i]
         return velocity(self.vx[i], lag, self.gravity_x[i]), velocity(self.vy[i], lag, self.gravity_y[i])
+
+    def low_place(self, i: int, t: Real) -> Low:
+        """The low parts of `place`; None where places have none."""
+        if not self.low_places:
+            return None
+        lag = t - self.t[i]
+        return (
+            low_position(self.x[i], self.low_x[i], self.vx[i], lag),
+            low_position(self.y[i], self.low_y[i], self.vy[i], lag),
+        )
+
+    def settle(self, i: int, t: Real) -> None:
+        """Where places have low parts: begin the flight of disk i anew at time t, the high parts rounded to nearest."""
+        if self.low_places:
+            (x, y), low = self.place(i, t), self.low_place(i, t)
+            assert low is not None
+            low_x, low_y = low
+            self.t[i] = t
+            self.x[i], self.low_x[i] = settled(x, low_x)
+            self.y[i], self.low_y[i] = settled(y, low_y)
+
+    def fine_flight(self, i: int, radius: float) -> Fine:
+        """What a contact time in a wide domain is a function of."""
+        return self.x[i], self.y[i], self.vx[i], self.vy[i], self.t[i], radius, self.low_x[i], self.low_y[i]
 
     def anchor(self, i: int, t: Real, x: Real, y: Real, vx: Real, vy: Real) -> None:
         """Begin a new flight of disk i; all predictions that rest on the old one are stale from here on."""
@@ -104,6 +137,8 @@ class EngineState:
         for i in range(self.n):
             x, y = self.place(i, end)
             vx, vy = self.speed(i, end)
+            if (low := self.low_place(i, end)) is not None:
+                self.low_x[i], self.low_y[i] = low
             self.anchor(i, end - end, x, y, vx, vy)
             self.contact_time[i] = self.contact_time[i] - end
         self.now = end - end
@@ -131,6 +166,8 @@ class EngineState:
             at_once=tuple(self.at_once),
             low_vx=tuple(self.low_vx),
             low_vy=tuple(self.low_vy),
+            low_x=tuple(self.low_x),
+            low_y=tuple(self.low_y),
         )
 
     def restore(self, saved: Snapshot) -> None:
@@ -142,6 +179,7 @@ class EngineState:
         self.wraps_x, self.wraps_y = list(saved.wraps_x), list(saved.wraps_y)
         self.met, self.contact_time, self.at_once = list(saved.met), list(saved.contact_time), list(saved.at_once)
         self.low_vx, self.low_vy = list(saved.low_vx), list(saved.low_vy)
+        self.low_x, self.low_y = list(saved.low_x), list(saved.low_y)
         self.count = [count + 1 for count in self.count]
         if self.supports is not None:
             for i in range(self.n):

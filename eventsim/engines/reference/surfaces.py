@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from eventsim.engines.reference.state import EngineState, Low
+from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.real import Real
+from eventsim.formulas.walls.delays import at_origin
 from eventsim.formulas.walls.face import Face, face_normal
 from eventsim.formulas.walls.round import round_normal
 from eventsim.scene.stage import Stage
@@ -19,14 +22,16 @@ class Surfaces:
         self._features = stage.features
         self._radius = radius
 
-    def normal(self, place: int, side: int, x: Real, y: Real) -> tuple[Real, Real]:
-        """The normal, of any length, towards a disk at (x, y)."""
+    def normal(self, place: int, side: int, x: Real, y: Real, low: Low) -> tuple[Real, Real]:
+        """The normal, of any length, towards a disk at (x, y); low: the low parts of that."""
         if place < len(self._boundaries):
             boundary = self._boundaries[place]
             return (boundary.side, 0.0) if boundary.axis == 0 else (0.0, boundary.side)
         shape = self._features[place - len(self._boundaries)].shape
         if isinstance(shape, Face):
             return face_normal(shape, side)
+        if low is not None:
+            return round_normal(at_origin(shape), side, (x - shape.x) + low[0], (y - shape.y) + low[1])
         return round_normal(shape, side, x, y)
 
     def exactly_on(self, place: int, i: int, x: Real, y: Real) -> tuple[Real, Real]:
@@ -36,6 +41,14 @@ class Surfaces:
         boundary = self._boundaries[place]
         target = boundary.position + boundary.side * self._radius[i]
         return (target, y) if boundary.axis == 0 else (x, target)
+
+    def place_on(self, place: int, i: int, state: EngineState, x: Real, y: Real) -> tuple[Real, Real]:
+        """The same; the low part along its axis, where places have one, is set to what the rounding left."""
+        if state.low_places and place < len(self._boundaries):
+            boundary = self._boundaries[place]
+            low = state.low_x if boundary.axis == 0 else state.low_y
+            low[i] = two_sum(boundary.position, boundary.side * self._radius[i])[1]
+        return self.exactly_on(place, i, x, y)
 
     def number(self, place: int) -> int:
         """The number that the log knows a wall by."""

@@ -1,0 +1,82 @@
+"""Where the domain is very wide: a coordinate carries what its rounding left, in a low part, so that no digit of a gap is lost.
+
+A coordinate of a million diameters has twenty bits less for the gap between two disks than one near the corner.  So the place of
+a disk is the unrounded sum of two floats: the high part is the coordinate with which disks fly and are logged, as everywhere,
+the low part some last bits of it.  Free flight keeps what its rounding takes (Dekker's error-free sum and product); distances
+are taken of both parts, so each disk is its own anchor.  Without gravity.
+
+Source: T. J. Dekker, Numer. Math. 18, 224 (1971), doi:10.1007/BF01397083.
+"""
+
+from typing import TypeAlias
+
+from eventsim.formulas.contact import screened_pair_delay
+from eventsim.formulas.crossing import closing_delay
+from eventsim.formulas.digits import careful_pair_delay
+from eventsim.formulas.expansion import two_product, two_sum
+
+Fine: TypeAlias = tuple[float, float, float, float, float, float, float, float]
+"""A flight: x, y, vx, vy, t, the radius of the disk, and the low parts of x and y."""
+
+
+def low_position(x: float, low: float, v: float, lag: float) -> float:
+    """The low part of a coordinate after a flight: what belongs to the high part x + v lag."""
+    step, fine = two_product(v, lag)
+    _, rest = two_sum(x, step)
+    left = low + (rest + fine)
+    return left if left == left else low  # not a number where the splitting of a huge lag or speed overflows
+
+
+def settled(x: float, low: float) -> tuple[float, float]:
+    """The same place with the high part rounded to nearest."""
+    return two_sum(x, low)
+
+
+def finely_apart(x: float, low: float, other: float, other_low: float, shift: float) -> tuple[float, float]:
+    """x - other - shift as an unrounded sum; exchange changes its sign and no bit."""
+    apart, rest = two_sum(x, -other)
+    return two_sum(apart - shift, rest + (low - other_low))
+
+
+def wide_pair_delay(
+    xi: float,
+    yi: float,
+    ui: float,
+    wi: float,
+    ti: float,
+    ri: float,
+    exi: float,
+    eyi: float,
+    xj: float,
+    yj: float,
+    uj: float,
+    wj: float,
+    tj: float,
+    rj: float,
+    exj: float,
+    eyj: float,
+    shift_x: float,
+    shift_y: float,
+) -> float:
+    """The delay, counted from max(ti, tj), until two straight flights are ri + rj apart; NEVER where they miss or graze.
+
+    As `careful_pair_delay`, with (ex, ey) the low parts of the anchor (x, y): from the distance by the plain formula, by
+    careful arithmetic where that is in doubt.  Exchange of the disks changes no bit.
+    """
+    begin = ti if ti > tj else tj
+    lag, other = begin - ti, begin - tj
+    dx, ex = finely_apart(
+        xi + ui * lag, low_position(xi, exi, ui, lag), xj + uj * other, low_position(xj, exj, uj, other), shift_x
+    )
+    dy, ey = finely_apart(
+        yi + wi * lag, low_position(yi, eyi, wi, lag), yj + wj * other, low_position(yj, eyj, wj, other), shift_y
+    )
+    delay = screened_pair_delay(dx, dy, ui - uj, wi - wj, ri + rj)
+    if delay == delay:
+        return delay
+    return careful_pair_delay(dx, dy, ui, wi, 0.0, ri, -ex, -ey, uj, wj, 0.0, rj, 0.0, 0.0)
+
+
+def wide_border_delay(x: float, low: float, v: float, border: float, radius: float, side: float) -> float:
+    """The delay until the centre of a disk is a radius from a border of the domain, on its side; as `crossing_delay`."""
+    return float(closing_delay(side * ((x - border) + low) - radius, side * v, None))
