@@ -82,16 +82,17 @@ def _transposed(builder, rows, odd):
 
 @intrinsic
 def contact_of_eight(
-    typing, disks, near, first, x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y, edge
+    typing, disks, near, first, x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y, edge, gx, gy
 ):
     """(time, disk, many, doubted): the earliest contact of a disk with near[first:first+8], whether several share that time,
     and a bit for each pair that the plain formula cannot tell about (it does not count then).
 
     x, y, vx, vy, t, r: the flight of the disk and its radius.  Times before `floor` do not count; inf if there is none.
     edge: 1.0 if the pairs may be across a periodic boundary (then x_now, y_now, length_x, length_y are used; length inf: none
-    along this axis); the integer 0 if they cannot be, and the code for it is left out.
+    along this axis); the integer 0 if they cannot be, and the code for it is left out.  gx, gy: the gravity that all fall
+    by, so that they fly straight beside each other; or None.
     """
-    across = isinstance(edge, types.Float)
+    across, falls = isinstance(edge, types.Float), isinstance(gx, types.Float)
 
     def codegen(context, b, signature, arguments):
         ids = place(context, b, signature, arguments, I32, 1)
@@ -106,7 +107,16 @@ def contact_of_eight(
         def less(p, q):
             return b.fcmp_ordered("<", p, q)
 
+        def position(x, v, lag, g):
+            if not falls:
+                return add(x, mul(v, lag))
+            return add(x, mul(lag, add(v, mul(mul(constant(0.5), g), lag))))
+
+        def velocity(v, lag, g):
+            return add(v, mul(g, lag)) if falls else v
+
         x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y = map(every, arguments[3:15])
+        gx, gy = map(every, arguments[16:18]) if falls else (None, None)
         rows = []
         for lane in range(8):
             disk = b.sext(b.load(b.gep(ids, [I64(lane)])), I64)
@@ -116,20 +126,21 @@ def contact_of_eight(
         other_y, other_vy, other_r = _transposed(b, rows, 1)
         begin = b.select(less(other_t, t), t, other_t)
         lag, other_lag = sub(begin, t), sub(begin, other_t)
-        dx = sub(add(x, mul(vx, lag)), add(other_x, mul(other_vx, other_lag)))
-        dy = sub(add(y, mul(vy, lag)), add(other_y, mul(other_vy, other_lag)))
+        dx = sub(position(x, vx, lag, gx), position(other_x, other_vx, other_lag, gx))
+        dy = sub(position(y, vy, lag, gy), position(other_y, other_vy, other_lag, gy))
         if across:
             since = sub(now, other_t)
 
-            def shift(here, other, speed, length):
-                d = sub(here, add(other, mul(speed, since)))
+            def shift(here, other, speed, g, length):
+                d = sub(here, position(other, speed, since, g))
                 half = mul(length, constant(0.5))
                 below = b.select(less(d, b.fneg(half)), b.fneg(length), constant(0.0))
                 return b.select(less(half, d), length, below)
 
-            dx = sub(dx, shift(x_now, other_x, other_vx, length_x))
-            dy = sub(dy, shift(y_now, other_y, other_vy, length_y))
-        du, dw = sub(vx, other_vx), sub(vy, other_vy)
+            dx = sub(dx, shift(x_now, other_x, other_vx, gx, length_x))
+            dy = sub(dy, shift(y_now, other_y, other_vy, gy, length_y))
+        du = sub(velocity(vx, lag, gx), velocity(other_vx, other_lag, gx))
+        dw = sub(velocity(vy, lag, gy), velocity(other_vy, other_lag, gy))
         approach = add(mul(dx, du), mul(dy, dw))
         reach = add(r, other_r)
         reach2 = mul(reach, reach)
@@ -159,4 +170,4 @@ def contact_of_eight(
         disk = b.sext(b.load(b.gep(ids, [lane])), I64)
         return context.make_tuple(b, signature.return_type, [earliest, disk, many, b.zext(b.bitcast(doubted, I8), I64)])
 
-    return types.Tuple((f64, i64, i64, i64))(disks, near, i64, *[f64] * 12, edge), codegen
+    return types.Tuple((f64, i64, i64, i64))(disks, near, i64, *[f64] * 12, edge, gx, gy), codegen

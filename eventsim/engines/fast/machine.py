@@ -38,7 +38,8 @@ class Machine:
         self.counts = np.zeros(13, np.int64)
         self.sums = np.zeros(6)
         self.keep_rows = keep_rows
-        straight = stage.gravity is None and not stage.low_places
+        beside = stage.gravity is None or stage.supports is None  # all fly straight beside each other
+        straight = beside and not stage.low_places
         plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
         wanted = lanes_work() if lanes is None else lanes
         self._lanes = 8 if wanted and straight and plain else None

@@ -135,16 +135,13 @@ def _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, 
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
     periodic = rules.length_x is not None or rules.length_y is not None
+    flight = x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y
     first = doubts = 0
     while True:
         if periodic and edge:
-            new, j, many, doubted = contact_of_eight(
-                m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 1.0
-            )
+            new, j, many, doubted = contact_of_eight(m.disks, m.near, first, *flight, 1.0, rules.gx, rules.gy)
         else:
-            new, j, many, doubted = contact_of_eight(
-                m.disks, m.near, first, x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, 0
-            )
+            new, j, many, doubted = contact_of_eight(m.disks, m.near, first, *flight, 0, rules.gx, rules.gy)
         sooner = new < time  # no branches: they could not be foreseen
         also = (new <= time * NEARLY) & (time <= new * NEARLY)
         shared = (many if sooner else shared) | also

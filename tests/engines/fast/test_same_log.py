@@ -124,6 +124,14 @@ def test_scalar_kernel_and_lanes_and_two_cell_sizes_agree() -> None:
     assert len(digests) == 1
 
 
+@pytest.mark.parametrize("domain", ["box", "periodic"])
+def test_disks_that_fall_alike_meet_in_lanes_as_one_by_one(domain: str) -> None:
+    gas = lattice_gas(9, 9, 1.25, np.random.default_rng(8), domain, True, 0.6)
+    stage = stage_of(es.Scene(gas.disks, gas.domain, gravity=(0.25, -0.5)))
+    assert_same(stage, Stop(events=3000), lanes=None)
+    assert_same(stage, Stop(events=3000), lanes=False)
+
+
 @pytest.mark.parametrize(("domain", "quantised"), [("periodic", False), ("box", True)])
 def test_what_is_done_for_many_disks_changes_no_bit(
     domain: str, quantised: bool, monkeypatch: pytest.MonkeyPatch
