@@ -128,3 +128,14 @@ def test_f32_a_mirror_image_has_the_same_contacts(engine):
     # an ulp of coordinates below 8, doubled about ten times by chaos, and 2^6 for chance
     np.testing.assert_allclose(other.vxa, -one.vxa, rtol=0.0, atol=1e-10)
     np.testing.assert_allclose(other.vya, one.vya, rtol=0.0, atol=1e-10)
+
+
+def test_f29_both_boundaries_passed_at_one_time_are_passed_in_one_order():
+    """A disk flies along the diagonal of a torus and through its corner, then into another one; places that round differently."""
+    side = 7.8
+    for k in range(6, 22):
+        place = (0.3 + k / 61) * side
+        disks = es.Disks([(place, place), (0.125 * side, 0.225 * side)], [(1.3, 1.3), (0.0, 0.0)], 0.05 * side)
+        reference, fast = (log_of(es.Scene(disks, es.Periodic((side, side))), engine, events=20) for engine in BOTH)
+        assert len(reference) == 20
+        assert reference.digest() == fast.digest()

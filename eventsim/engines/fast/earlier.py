@@ -15,12 +15,12 @@ def is_contact(code):
 
 @inline
 def earlier(time, code, shared, new_time, new_code):
-    """The earlier of two events; at one time wraps and crossings come first.
+    """The earlier of two events; at one time wraps and crossings come first, and of these the one that is known already.
 
     shared: whether another contact may be nearly at the time of the earlier one, so that it is not for kernels.
     """
     if new_time < time:
         return new_time, new_code, 1 if time <= new_time * NEARLY else 0
-    if new_time == time and not is_contact(new_code):
+    if new_time == time and is_contact(code) and not is_contact(new_code):
         return new_time, new_code, 1
     return time, code, 1 if new_time <= time * NEARLY else shared
