@@ -10,10 +10,14 @@ Source: T. J. Dekker, Numer. Math. 18, 224 (1971), doi:10.1007/BF01397083.
 
 from typing import TypeAlias
 
-from eventsim.formulas.contact import screened_pair_delay
+from eventsim.formulas.contact import SMALLEST, screened_pair_delay
 from eventsim.formulas.crossing import closing_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.expansion import two_product, two_sum
+from eventsim.formulas.real import NEVER
+
+ROUGH = 2.0**-44
+"""What a dozen roundings may take from numbers, relative to the largest of them, and much more."""
 
 Fine: TypeAlias = tuple[float, float, float, float, float, float, float, float]
 """A flight: x, y, vx, vy, t, the radius of the disk, and the low parts of x and y."""
@@ -61,17 +65,29 @@ def wide_pair_delay(
     """The delay, counted from max(ti, tj), until two straight flights are ri + rj apart; NEVER where they miss or graze.
 
     As `careful_pair_delay`, with (ex, ey) the low parts of the anchor (x, y): from the distance by the plain formula, by
-    careful arithmetic where that is in doubt.  Exchange of the disks changes no bit.
+    careful arithmetic where that is in doubt.  Most pairs part or miss by far, which is seen without low parts.  Exchange of
+    the disks changes no bit.
     """
     begin = ti if ti > tj else tj
     lag, other = begin - ti, begin - tj
+    near_x, near_y = (xi + ui * lag) - (xj + uj * other) - shift_x, (yi + wi * lag) - (yj + wj * other) - shift_y
+    du, dw = ui - uj, wi - wj
+    size = (abs(xi) + abs(xj)) + (abs(yi) + abs(yj)) + (abs(shift_x) + abs(shift_y))
+    size = size + ((abs(ui) + abs(wi)) * lag + (abs(uj) + abs(wj)) * other)
+    slack = (ROUGH * size + ((abs(exi) + abs(exj)) + (abs(eyi) + abs(eyj)))) * (abs(du) + abs(dw))
+    if near_x * du + near_y * dw > slack:
+        return NEVER
+    cross = abs(near_x * dw - near_y * du) - slack
+    reach = ri + rj
+    if cross > 0.0 and cross * cross > (1.0 + ROUGH) * ((du * du + dw * dw) * (reach * reach)) + SMALLEST:
+        return NEVER
     dx, ex = finely_apart(
         xi + ui * lag, low_position(xi, exi, ui, lag), xj + uj * other, low_position(xj, exj, uj, other), shift_x
     )
     dy, ey = finely_apart(
         yi + wi * lag, low_position(yi, eyi, wi, lag), yj + wj * other, low_position(yj, eyj, wj, other), shift_y
     )
-    delay = screened_pair_delay(dx, dy, ui - uj, wi - wj, ri + rj)
+    delay = screened_pair_delay(dx, dy, du, dw, reach)
     if delay == delay:
         return delay
     return careful_pair_delay(dx, dy, ui, wi, 0.0, ri, -ex, -ey, uj, wj, 0.0, rj, 0.0, 0.0)
