@@ -22,6 +22,13 @@ def test_a_corner_is_met_in_joint_rows():
     assert (rows[1]["vxa"], rows[1]["vya"]) == (-1.0, -1.0)
 
 
+def test_an_immovable_disk_in_a_corner_leaves_the_momentum_of_the_others_booked():
+    obstacle = es.Disks([(5.0, 5.0), (2.0, 5.0)], [(1.0, 1.0), (0.0, 1.0)], 0.5, (math.inf, 1.0))
+    run = es.simulate(es.Scene(obstacle, es.Box((10.0, 10.0))), until=6.0)
+    assert (run.counters.clusters, run.counters.outer_momentum) == (1, [0.0, -2.0])
+    assert run.residuals.momentum == 0.0
+
+
 def test_many_periods_are_bit_exact():
     run = es.simulate(diagonal(), until=PERIOD * 2000)
     assert run.counters.events == 8000

@@ -230,7 +230,8 @@ class Resolver:
             self._counters.pair_contacts += 1
             self._ledger.log(t, Kind.PAIR, a, b, -1, impulse, first)
         else:
-            self._ledger.book(jx, jy)
+            if not self._masses.is_immovable(a):  # such a disk has no momentum to speak of
+                self._ledger.book(jx, jy)
             self._counters.wall_contacts += 1
             self._ledger.log(t, Kind.WALL, a, -1, self._surfaces.number(-1 - b), impulse, first)
 
