@@ -29,9 +29,17 @@ def test_a_seed_gives_one_scene():
 
 
 @pytest.mark.slow
-def test_the_engines_agree_on_random_scenes():
+@pytest.mark.timeout(900)  # some ten versions of the kernels may have to be compiled
+@pytest.mark.parametrize("group", [0, 8, 16])
+def test_the_engines_agree_on_random_scenes(group):
+    """Of the groups that share kernels one of each size: all of them are what the command is for."""
     pytest.importorskip("numba")
-    assert list(soak(range(300), ("reference", "fast"), workers=2)) == [None] * 300
+    seeds = by_kernels(range(3000))[group][:100]
+    assert [finding_of(seed, ("reference", "fast")) for seed in seeds] == [None] * len(seeds)
+
+
+def test_a_soak_has_an_answer_for_every_seed():
+    assert list(soak(range(3000, 3012), ("reference",), workers=2)) == [None] * 12
 
 
 def test_seeds_whose_scenes_share_kernels_are_together():
