@@ -19,6 +19,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from time import process_time
+from types import ModuleType
 
 from tests.benchmarks.table import Table, arguments, whole
 
@@ -26,65 +27,63 @@ COLUMNS = ("without", "ratio", "lowest", "highest", "rate_median")
 WHOLE, BARE = "nothing", "the driver: log, measures, progress"
 
 
+def cut(module: ModuleType, **functions: Callable[..., object]) -> None:
+    """Put functions in the place of those that a module of the engine has by these names."""
+    from eventsim.engines.fast.compiled import inline
+
+    for name, function in functions.items():
+        assert hasattr(module, name), f"{module.__name__} has no {name} any more: nothing would be cut"
+        setattr(module, name, inline(function))
+
+
 def cut_walls() -> None:
     """No wall shapes, and no contacts with hard walls."""
     from eventsim.engines.fast import loop, predict
-    from eventsim.engines.fast.compiled import inline
 
-    predict.earliest_at_shapes = inline(lambda m, rules, i, floor, time, code, shared, features: (time, code, shared))
-    loop.resolve_wall = inline(lambda m, rules, sums, i, code, t, number, slot, clock: None)
+    cut(predict, earliest_at_shapes=lambda m, rules, i, floor, time, code, shared, features: (time, code, shared))
+    cut(loop, resolve_wall=lambda m, rules, sums, i, code, t, number, slot, clock: None)
 
 
 def cut_gravity() -> None:
     """Straight flights, and nobody's own acceleration."""
-    from eventsim.engines.fast import advance, alone, pairs, predict, resolve
-    from eventsim.engines.fast.compiled import inline
+    from eventsim.engines.fast import advance, alone, levels, pairs
 
-    pull = inline(lambda m, i, g, classes: None)
-    position, velocity = inline(lambda x, v, t, g: x + v * t), inline(lambda v, t, g: v)
-    for module in (advance, alone, pairs, predict, resolve):
-        for name, function in (("pull", pull), ("position", position), ("velocity", velocity)):
-            if hasattr(module, name):
-                setattr(module, name, function)
+    for module in (advance, alone, levels, pairs):
+        cut(module, pulls=lambda m, rules, i: (None, None))
+    for module in (advance, pairs):
+        cut(module, position=lambda x, v, t, g: x + v * t, velocity=lambda v, t, g: v)
 
 
 def cut_restitution() -> None:
     """Every contact is elastic: a constant."""
     from eventsim.engines.fast import resolve
-    from eventsim.engines.fast.compiled import inline
 
-    resolve._restitution = inline(lambda m, a, b, t, restitution, duration: 1.0)
+    cut(resolve, _restitution=lambda m, a, b, t, restitution, duration: 1.0)
 
 
 def cut_masses() -> None:
     """All masses are one and finite."""
     from eventsim.engines.fast import resolve
-    from eventsim.engines.fast.compiled import inline
 
-    resolve._shares = inline(lambda a, b, mass: (0.5, 0.5))
-    resolve._reduced = inline(lambda a, b, mass, common: 0.5)
-    resolve._is_finite = inline(lambda i, mass: True)
-    resolve._book_pair = inline(lambda sums, a, b, jx, jy, mass: None)
+    cut(resolve, _shares=lambda a, b, mass: (0.5, 0.5), _reduced=lambda a, b, mass, common: 0.5)
+    cut(resolve, _is_finite=lambda i, mass: True, _book_pair=lambda sums, a, b, jx, jy, mass: None)
 
 
 def cut_radii() -> None:
     """One grid, four slots in a cell."""
     from eventsim.engines.fast import calendar, cells, loop, predict
-    from eventsim.engines.fast.compiled import inline
 
-    home = inline(lambda m, grid, i: grid)
     for module in (calendar, loop, predict):
-        module.home_of = home
-    predict._look = inline(lambda m, grid, rules, i, now, u, w, time, code, shared, levels: (time, code, shared))
-    cells._behind = inline(lambda first, slot: slot)
+        cut(module, home_of=lambda m, grid, i: grid)
+    cut(predict, _look=lambda m, grid, rules, i, now, u, w, time, code, shared, levels: (time, code, shared))
+    cut(cells, _behind=lambda first, slot: slot)
 
 
 def cut_log() -> None:
     """No rows."""
     from eventsim.engines.fast import resolve
-    from eventsim.engines.fast.compiled import inline
 
-    resolve.write_row = inline(lambda m, number, slot, a, b, wall, impulse, t, clock, rows: None)
+    cut(resolve, write_row=lambda m, number, slot, a, b, wall, impulse, t, clock, rows: None)
 
 
 CUTS: dict[str, Callable[[], None]] = {
