@@ -208,14 +208,14 @@ class Expansion:
     def _together(self, cluster: list[Entry]) -> list[Contact]:
         """Return the contacts, at exactly one time, of the pairs and walls that the rows of a cluster name."""
         t = cluster[0].remainder
-        latest = t * NEARLY
+        span = t * (2.0 - NEARLY), t * NEARLY
         wanted = Counter((entry.a, entry.b, entry.wall) for entry in cluster)
         near: list[Contact] = []
         for a, b, wall in sorted(wanted):
             if b >= 0:
-                near += self._contacts.of_pair(a, b, t, latest)
+                near += self._contacts.of_pair(a, b, *span)
             else:
-                near += [one for one in self._contacts.of_wall(a, wall, t, latest) if one.image[1] == STRUCK]
+                near += [one for one in self._contacts.of_wall(a, wall, *span) if one.image[1] == STRUCK]
         if len(near) == len(cluster):
             return near
         for group in self._contacts.by_exact_time(near):

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from eventsim.engines.certified.ball import Ball, Undecided, of_rational
+from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.ledger import Ledger
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.formulas.impulse import mass_fractions
@@ -46,6 +47,10 @@ class CertifiedResolver(Resolver):
 
     at_once = AT_ONCE
     ledger = CertifiedLedger
+
+    def _time_of(self, component: list[Event]) -> Any:
+        """The time of a cluster, which is proven to be that of all its contacts."""
+        return component[0].time
 
     def _shares(self, a: int, b: int) -> tuple[Any, Any]:
         if self._stage.mass is None:

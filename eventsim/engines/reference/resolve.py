@@ -6,6 +6,7 @@ import math
 
 from eventsim.engines.base import Counters
 from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.generation import disks_of
 from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
@@ -169,13 +170,15 @@ class Resolver:
         u, w, state.low_vx[i], state.low_vy[i], _ = careful_wall_update(nx, ny, state.vx[i], state.vy[i], *low)
         return u, w
 
-    def _joint(self, component: list[Event]) -> list[int]:
-        """A cluster: the velocities after it from the law of simultaneous contacts; disks that get no impulse fly on.
+    def _time_of(self, component: list[Event]) -> Real:
+        """When to resolve a cluster, whose exact times are equal: at the first float one, but in no disk's past."""
+        begun = max(self._state.t[i] for event in component for i in disks_of(event))
+        return max(begun, min(event.time for event in component))
 
-        Its exact times are equal; it is resolved at the first of the float ones.
-        """
+    def _joint(self, component: list[Event]) -> list[int]:
+        """A cluster: the velocities after it from the law of simultaneous contacts; disks that get no impulse fly on."""
         state, stage = self._state, self._stage
-        t = min(event.time for event in component)
+        t = self._time_of(component)
         disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
         number = {disk: k for k, disk in enumerate(disks)}
         at = [state.place(i, t) for i in disks]

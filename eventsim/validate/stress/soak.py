@@ -14,6 +14,7 @@ import numpy as np
 
 from eventsim.engines.base import Run
 from eventsim.errors import SceneError
+from eventsim.formulas.roots import NEARLY
 from eventsim.scene import Box, Channel, Disks, Domain, Open, Periodic, Scene
 from eventsim.simulation import simulate
 from eventsim.validate.stress.workers import Silence, answers
@@ -145,9 +146,9 @@ def _fault(run: Run) -> str | None:
     assert log is not None
     if not (np.isfinite(run.state.position).all() and np.isfinite(run.state.velocity).all()):
         return "a position or a velocity is not a number"
-    # Contacts of one disk within 4 ulp are taken in their exact order, so a logged time may step back by so much.
-    back = float(np.max(-np.diff(log.time), initial=0.0))
-    if back > 4.0 * math.ulp(float(np.max(log.time, initial=1.0))):
+    # Contacts so near to each other are taken in their exact order, so a logged time may step back by so much.
+    back, latest = float(np.max(-np.diff(log.time), initial=0.0)), float(np.max(log.time, initial=1.0))
+    if back > (NEARLY - 1.0) * latest + math.ulp(latest):
         return f"the clock steps back by {back:.2g}"
     if run.residuals.max_overlap > OVERLAP:
         return f"an overlap of {run.residuals.max_overlap:.2g} reaches at a contact"
