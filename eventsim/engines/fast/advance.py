@@ -28,6 +28,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import forget_walls
+from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.low_place import low_position, settled
 from eventsim.formulas.motion import position, velocity
 
@@ -153,3 +154,11 @@ def _keep_beyond(at, beyond, low):
     """Add to a low part what is taken off the high part, because that is set exactly onto the boundary."""
     if low is not None:
         store(low, at, real(low, at) + beyond)
+
+
+@inline
+def lay_on(at, size, side, r, low):
+    """Let a low part be what the place of a disk on a wall of the domain leaves when it is rounded."""
+    if low is not None:
+        _, rest = two_sum(size, -r)
+        store(low, at, rest if side < 0 else 0.0)

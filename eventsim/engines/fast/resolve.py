@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.advance import anchor, place, settle, speed
+from eventsim.engines.fast.advance import anchor, lay_on, place, settle, speed
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import (
     AT_ONCE,
@@ -30,7 +30,6 @@ from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rows import write_row
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
-from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -243,13 +242,13 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r
-        _lay_on(2 * i, rules.width, side, r, m.low_places)
+        lay_on(2 * i, rules.width, side, r, m.low_places)
         u, _ = flat_update(u, float(side), e)
         _reverse(2 * i, u != u0, m.low)
         wall = place_
     elif _is_across(rules.wall_y, place_):
         y = rules.height - r if side < 0 else r
-        _lay_on(2 * i + 1, rules.height, side, r, m.low_places)
+        lay_on(2 * i + 1, rules.height, side, r, m.low_places)
         w, _ = flat_update(w, float(side), e)
         _reverse(2 * i + 1, w != w0, m.low)
         wall = place_
@@ -263,14 +262,6 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         sums[OUTER_X] += mass * (u - u0)
         sums[OUTER_Y] += mass * (w - w0)
     write_row(m, number, slot, i, -1, wall, wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
-
-
-@inline
-def _lay_on(at, size, side, r, low):
-    """Let a low part be what the place of a disk on a wall of the domain leaves when it is rounded."""
-    if low is not None:
-        _, rest = two_sum(size, -r)
-        store(low, at, rest if side < 0 else 0.0)
 
 
 @inline
