@@ -38,6 +38,13 @@ def test_the_engines_agree_on_random_scenes(group):
     assert [finding_of(seed, ("reference", "fast")) for seed in seeds] == [None] * len(seeds)
 
 
+@pytest.mark.slow
+def test_the_engines_agree_on_a_seed_that_once_parted_them():
+    """On a torus, with an immovable disk: the rows were as many, their order or their bits were not the same."""
+    pytest.importorskip("numba")
+    assert finding_of(8072, ("reference", "fast")) is None
+
+
 def test_a_soak_has_an_answer_for_every_seed():
     assert list(soak(range(3000, 3012), ("reference",), workers=2)) == [None] * 12
 
