@@ -97,7 +97,9 @@ def _rate(run: Run) -> float | None:
 def _events(run: Run) -> str:
     counters = run.counters
     pairs = plural(counters.pair_contacts, "pair contact")
-    text = f"{counters.events:,}: {pairs}, {plural(counters.wall_contacts, 'wall contact')}"
+    more = [(counters.rests, "rest"), (counters.kicks, "kick")]
+    others = "".join(f", {plural(count, name)}" for count, name in more if count)
+    text = f"{counters.events:,}: {pairs}, {plural(counters.wall_contacts, 'wall contact')}{others}"
     rate = _rate(run)
     return text if rate is None or counters.events == 0 else f"{text}; {rate:,.0f} events/s"
 

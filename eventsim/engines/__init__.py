@@ -9,6 +9,7 @@ from typing import Any
 
 from eventsim.engines.base import Run, Session, Stop
 from eventsim.engines.drive import Wishes, drive
+from eventsim.engines.interrupts import unmissed_interrupts
 from eventsim.errors import EventsimError
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
@@ -31,7 +32,8 @@ class Engine:
             stop = Stop(until=float(stop))
         stage = stage_of(scene)
         # Where contacts can pile up, the last rows say how.
-        session = self.open(stage, keep_rows=wishes.rows or stage.loses_energy, **options)
+        with unmissed_interrupts():
+            session = self.open(stage, keep_rows=wishes.rows or stage.loses_energy, **options)
         return drive(session, self.name, scene, stop, wishes)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -57,4 +56,4 @@ def _sign_with_root(p: Fraction, side: int, square: Fraction) -> int:
 
 
 def _sign(x: Fraction) -> int:
-    return int(math.copysign(1, x.numerator)) if x else 0
+    return (x > 0) - (x < 0)

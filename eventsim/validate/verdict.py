@@ -18,6 +18,8 @@ ENOUGH, ALL = 0.98, 0.99
 
 def verdict(comparison: Comparison) -> list[str]:
     """The sentences, the most important first."""
+    if not comparison.lines:
+        return ["Nothing was compared: no engine came to the end of its run. A longer --patience gives them more time."]
     sentences = [*_energy(comparison), *_complete(comparison), *_stuck(comparison), *_orders(comparison)]
     return sentences or ["No engine lost a contact with any of these steps."]
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import eventsim as es
 from eventsim import gallery, load_log, simulate
 from eventsim.cli.summary import summary_text
 from eventsim.cli.target import Files
@@ -51,6 +52,15 @@ def test_the_line_of_the_engine_names_both_of_auto_and_times_worth_a_word():
     told = replace(run, engine="fast", begun_by="reference", elapsed_s=2.0, compile_s=4.0, write_s=1e-3)
     line = summary_text("break", told, Files(None, None, None)).splitlines()[1]
     assert " ".join(line.split()) == "engine reference, then fast: 2 s simulating + 4 s compiling"
+
+
+def test_the_line_of_events_adds_up_where_disks_come_to_rest():
+    scene = es.Scene(es.Disks([[1.0, 0.6]], radius=0.5), es.Box((2.0, 2.0)), gravity=(0.0, -1.0), restitution=0.5)
+    run = simulate(scene, until=5.0)
+    line = summary_text("rest", run, Files(None, None, None)).splitlines()
+    events = next(text for text in line if text.strip().startswith("events"))
+    assert f"{run.counters.events}: 0 pair contacts, {run.counters.wall_contacts} wall contacts, 1 rest;" in events
+    assert run.counters.events == run.counters.wall_contacts + 1
 
 
 def test_without_a_scene_it_runs_the_break(eventsim):

@@ -1,6 +1,8 @@
 """Ctrl-C: at once while a session prepares itself, else between two of its stints; what has happened is kept."""
 
 import signal
+import threading
+from contextlib import suppress
 
 import pytest
 
@@ -9,6 +11,7 @@ from eventsim.engines import auto
 from eventsim.engines.auto import AutoSession
 from eventsim.engines.base import BrokenOffError, Stop
 from eventsim.engines.drive import Wishes, drive
+from eventsim.engines.interrupts import unmissed_interrupts
 from eventsim.engines.reference import ReferenceSession
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
@@ -127,3 +130,18 @@ def test_the_fast_engine_prepares_itself_while_it_compiles():
     assert set(seen) == {True}
     assert not session.prepares
     assert len(seconds) == 1
+
+
+@pytest.mark.skipif(threading.current_thread() is not threading.main_thread(), reason="signals come to the main thread")
+def test_an_interrupt_that_somebody_swallows_is_not_missed():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt), unmissed_interrupts(), suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        with pytest.raises(KeyboardInterrupt), unmissed_interrupts():
+            signal.raise_signal(signal.SIGINT)
+        with unmissed_interrupts():
+            pass
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -43,3 +43,13 @@ def test_every_engine_of_the_list_takes_a_scene_and_a_stop():
     run = es.ENGINES["reference"].run(lattice_gas(5, 0.1), es.Stop(events=3))
     assert run.counters.events == 3
     assert es.ENGINES["reference"].run(lattice_gas(5, 0.1), 0.5).time == 0.5
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_a_prediction_that_came_to_nothing_is_no_event_ahead(engine):
+    """The disk in the middle was to be met by the slow one at 20, but another disk hits it away before."""
+    if engine == "fast":
+        pytest.importorskip("numba")
+    disks = es.Disks([[0.0, 0.0], [-21.0, 0.0], [0.0, -3.0]], [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], 0.5, [1, 1, 3])
+    run = es.simulate(es.Scene(disks, es.Open()), until=10.0, engine=engine)
+    assert (run.counters.events, run.stopped) == (1, "quiet")

@@ -132,3 +132,15 @@ def test_moments_are_ordered_exactly():
             )
             apart = value(one) - value(other)
             assert order_of(one, other) == (0 if abs(apart) < Decimal(10) ** -40 else np.sign(apart))
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_near_ties_of_enormous_exact_times_are_ordered(engine):
+    """The exact coefficients of these contact times have numerators that are no floats."""
+    if engine == "fast":
+        pytest.importorskip("numba")
+    position = [[0.0, 0.0], [3.0, 0.0], [-2.9999999999999996, 0.0]]
+    velocity = [[0.0, 0.0], [-1.0000000000000004, 1e-160], [1.0000000000000004, -1.2e-16]]
+    scene = es.Scene(es.Disks(position, velocity, 1.0, [1e9, 1.0, 1.0]), es.Open(), restitution=0.5)
+    run = es.simulate(scene, until=20.0, engine=engine)
+    assert (run.counters.events, run.stopped) == (2, "quiet")

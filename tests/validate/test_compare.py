@@ -283,3 +283,7 @@ def test_chart_of_a_scene_writes_figure_and_table(tmp_path):
     assert done.exit_code == 0, done.output
     assert target.stat().st_size > 10_000
     assert "elapsed_per_time" in (tmp_path / "two.csv").read_text()
+
+
+def test_a_comparison_of_nothing_draws_no_verdict(gas):
+    assert verdict(replace(gas, lines=[]))[0].startswith("Nothing was compared")

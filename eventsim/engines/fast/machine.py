@@ -168,6 +168,18 @@ class Machine:
         place = int(self.state.place_of[i])
         self._predict(place, place + 1, floor)
 
+    def renew_stale(self) -> bool:
+        """Whether nothing but stale predictions was ahead; they are made anew then."""
+        words, n = self.state.words, self.state.n
+        partner = words[:n, layout.PARTNER]
+        count = words[np.maximum(partner, 0), layout.COUNT]
+        stale = (partner >= 0) & (words[:n, layout.PARTNER_COUNT] & (layout.COUNTS - 1) != count)
+        if not np.array_equal(stale, np.isfinite(self.due)):
+            return False
+        for i in np.flatnonzero(stale).tolist():
+            self._predict(i, i + 1, self.state.now)
+        return True
+
     def _predict(self, begin: int, end: int, floor: float) -> None:
         predict_some(self.arrays, self.grid, self.rules, self.counts, begin, end, self.state.now, floor)
 

@@ -139,7 +139,7 @@ class FastSession:
                     self._rulings.forget()
                     machine.turn_over()
                     self.counters.turnovers += 1
-                else:
+                elif empty or not machine.renew_stale():
                     self._pass_to(until)
                     return "quiet" if empty else "until"
         return None
