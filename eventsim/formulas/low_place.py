@@ -14,10 +14,13 @@ from eventsim.formulas.contact import SMALLEST, screened_pair_delay
 from eventsim.formulas.crossing import closing_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.expansion import two_product, two_sum
-from eventsim.formulas.real import NEVER
+from eventsim.formulas.real import NEVER, Real
 
 ROUGH = 2.0**-44
 """What a dozen roundings may take from numbers, relative to the largest of them, and much more."""
+
+Low: TypeAlias = tuple[float, float] | None
+"""The low parts of a place; None where places have none."""
 
 Fine: TypeAlias = tuple[float, float, float, float, float, float, float, float]
 """A flight: x, y, vx, vy, t, the radius of the disk, and the low parts of x and y."""
@@ -40,6 +43,18 @@ def finely_apart(x: float, low: float, other: float, other_low: float, shift: fl
     """x - other - shift as an unrounded sum; exchange changes its sign and no bit."""
     apart, rest = two_sum(x, -other)
     return two_sum(apart - shift, rest + (low - other_low))
+
+
+def apart(
+    place: tuple[Real, Real], other: tuple[Real, Real], shifts: tuple[float, float], low: Low, other_low: Low
+) -> tuple[Real, Real]:
+    """place - other - shifts, rounded; from places with low parts where there are such."""
+    if low is not None and other_low is not None:
+        dx, _ = finely_apart(place[0], low[0], other[0], other_low[0], shifts[0])
+        dy, _ = finely_apart(place[1], low[1], other[1], other_low[1], shifts[1])
+        return dx, dy
+    dx, dy = place[0] - other[0], place[1] - other[1]
+    return dx - shifts[0] if shifts[0] else dx, dy - shifts[1] if shifts[1] else dy
 
 
 def wide_pair_delay(

@@ -1,4 +1,4 @@
-"""Free flight: where a disk is, and how fast, some time after its anchor."""
+"""Free flight: where a disk is, and how fast, some time after its anchor; how far away its images are."""
 
 from eventsim.formulas.real import Acceleration, Real
 
@@ -15,3 +15,8 @@ def velocity(v: Real, lag: Real, g: Acceleration) -> Real:
     if g is None:
         return v
     return v + g * lag
+
+
+def periods(k: int, length: float | None) -> float:
+    """The distance of image k; 0 without a period."""
+    return k * length if k and length is not None else 0.0

@@ -15,18 +15,16 @@ from typing import NamedTuple
 
 from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
-from eventsim.formulas.expansion import two_sum
-from eventsim.formulas.low_place import finely_apart, wide_border_delay, wide_pair_delay
+from eventsim.formulas.low_place import Low, apart, wide_border_delay, wide_pair_delay
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import STRUCK, border_contact, shape_contact
 from eventsim.formulas.roots import Moment, order_of
 from eventsim.formulas.walls.delays import DELAYS, at_origin
-from eventsim.formulas.walls.face import Face, face_normal
-from eventsim.formulas.walls.round import round_normal
-from eventsim.record.disk_flight import DiskFlight, Low
+from eventsim.record.disk_flight import DiskFlight
 from eventsim.record.moments import Flight, Moments, exact_place
 from eventsim.scene.stage import Stage
+from eventsim.scene.surfaces import Surfaces
 
 
 class Contact(NamedTuple):
@@ -50,12 +48,12 @@ class Contacts:
         self._disks = disks
         self._moments = Moments(stage, self._flight)
         self._boundaries = len(stage.boundaries)
+        self._surfaces = Surfaces(stage, stage.radius.tolist())
         along_x, along_y = ((0,) if length is None else (-1, 0, 1) for length in stage.period)
         self._images = list(product(along_x, along_y))
-        self._wall = [boundary.wall for boundary in stage.boundaries] + [feature.wall for feature in stage.features]
         self._places: dict[int, list[int]] = {}
-        for place, wall in enumerate(self._wall):
-            self._places.setdefault(wall, []).append(place)
+        for place in range(len(stage.boundaries) + len(stage.features)):
+            self._places.setdefault(self._surfaces.number(place), []).append(place)
 
     def of_pair(self, a: int, b: int, first: float, latest: float) -> list[Contact]:
         """Return the contacts of two disks in a span of remainders; several where a disk is as wide as the domain."""
@@ -88,37 +86,19 @@ class Contacts:
         low_b: Low = None,
     ) -> tuple[float, float]:
         """Return the vector from b (its image) to a; low_a, low_b: the low parts of their places."""
-        if low_a is not None and low_b is not None:
-            shift_x, shift_y = (-self._less(0.0, image, axis) for axis in (0, 1))
-            dx, _ = finely_apart(place_a[0], low_a[0], place_b[0], low_b[0], shift_x)
-            dy, _ = finely_apart(place_a[1], low_a[1], place_b[1], low_b[1], shift_y)
-            return dx, dy
-        return self._less(place_a[0] - place_b[0], image, 0), self._less(place_a[1] - place_b[1], image, 1)
+        return apart(place_a, place_b, self._stage.shifts(image), low_a, low_b)
 
     def normal(self, contact: Contact, place: tuple[float, float], low: Low = None) -> tuple[float, float]:
         """Return the normal, of any length, of a wall towards a disk at `place`; low: the low parts of that."""
-        number, side = -1 - contact.b, contact.image[0]
-        if number < self._boundaries:
-            boundary = self._stage.boundaries[number]
-            return (boundary.side, 0.0) if boundary.axis == 0 else (0.0, boundary.side)
-        shape = self._stage.features[number - self._boundaries].shape
-        if isinstance(shape, Face):
-            return face_normal(shape, side)
-        if low is not None:
-            return round_normal(at_origin(shape), side, (place[0] - shape.x) + low[0], (place[1] - shape.y) + low[1])
-        return round_normal(shape, side, *place)
+        return self._surfaces.normal(-1 - contact.b, contact.image[0], *place, low)
 
     def on_boundary(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
         """Return the place of a disk, set exactly onto the boundary of the domain if that is what it meets."""
-        number = -1 - contact.b
-        if number >= self._boundaries:
-            return place
-        boundary, disk = self._stage.boundaries[number], self._disks[contact.a]
-        target = boundary.position + boundary.side * disk.radius
-        if disk.low_place is not None:
-            rest = two_sum(boundary.position, boundary.side * disk.radius)[1]
-            disk.low_place = (rest, disk.low_place[1]) if boundary.axis == 0 else (disk.low_place[0], rest)
-        return (target, place[1]) if boundary.axis == 0 else (place[0], target)
+        number, disk = -1 - contact.b, self._disks[contact.a]
+        if disk.low_place is not None and (left := self._surfaces.left_on(number, contact.a)) is not None:
+            axis, rest = left
+            disk.low_place = (rest, disk.low_place[1]) if axis == 0 else (disk.low_place[0], rest)
+        return self._surfaces.exactly_on(number, contact.a, *place)
 
     def boundary_axis(self, contact: Contact) -> int | None:
         """Return the axis across which a boundary of the domain is met; None for other walls."""
@@ -127,7 +107,7 @@ class Contacts:
 
     def wall_of(self, contact: Contact) -> int:
         """Return the number of the wall that is met."""
-        return self._wall[-1 - contact.b]
+        return self._surfaces.number(-1 - contact.b)
 
     def met(self, contact: Contact, i: int) -> tuple[int, int, int]:
         """Return what disk i of a contact remembers of it."""
@@ -135,10 +115,6 @@ class Contacts:
             return contact.b, *contact.image
         kx, ky = self._unwrapped(contact.a, contact.b, contact.image)
         return (contact.b, kx, ky) if i == contact.a else (contact.a, -kx, -ky)
-
-    def _less(self, d: float, image: tuple[int, int], axis: int) -> float:
-        k, length = image[axis], self._stage.period[axis]
-        return d - k * length if k and length is not None else d
 
     def _unwrapped(self, a: int, b: int, image: tuple[int, int]) -> tuple[int, int]:
         one, other = self._disks[a].wraps, self._disks[b].wraps
@@ -152,8 +128,7 @@ class Contacts:
             kx, ky = self._unwrapped(a, b, image)
             if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
                 return NEVER
-            shifts = (-self._less(0.0, image, axis) for axis in (0, 1))
-            return float(t + wide_pair_delay(*one.fine(), *other.fine(), *shifts))
+            return float(t + wide_pair_delay(*one.fine(), *other.fine(), *self._stage.shifts(image)))
         (ua, wa), (ub, wb) = one.speed(t), other.speed(t)
         dx, dy = self.apart(image, one.place(t), other.place(t))
         du, dw, reach = ua - ub, wa - wb, one.radius + other.radius
@@ -168,8 +143,7 @@ class Contacts:
             delay = rescaled_pair_delay(dx, dy, du, dw, reach)
         if math.isnan(delay):
             if one.gx is None:
-                shift_x, shift_y = (-self._less(0.0, image, axis) for axis in (0, 1))
-                delay = careful_pair_delay(*one.anchored(), *other.anchored(), shift_x, shift_y)
+                delay = careful_pair_delay(*one.anchored(), *other.anchored(), *self._stage.shifts(image))
             else:
                 delay = careful_pair_delay(
                     *(dx, dy, du, dw, 0.0, one.radius), *(0.0, 0.0, 0.0, 0.0, 0.0, other.radius), 0.0, 0.0

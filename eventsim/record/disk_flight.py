@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from eventsim.errors import LogError
 from eventsim.formulas.crossing import crossing_delay
-from eventsim.formulas.low_place import Fine, low_position, settled
+from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import NEVER, Acceleration
 from eventsim.formulas.rest import SUPPORTED, Held, held_by
@@ -16,9 +16,6 @@ from eventsim.scene.stage import Stage
 
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
 """Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, STRUCK, SUPPORTED or LEFT)."""
-
-Low: TypeAlias = tuple[float, float] | None
-"""The low parts of a place; None where places have none."""
 
 
 class DiskFlight:

@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.formulas.motion import periods
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.face import Face
 from eventsim.scene import walls
@@ -103,6 +104,10 @@ class Stage:
     def periodic(self) -> bool:
         """Whether any axis is periodic."""
         return self.period != (None, None)
+
+    def shifts(self, image: tuple[int, int]) -> tuple[float, float]:
+        """The distance of an image (kx, ky) of the domain, along x and y."""
+        return periods(image[0], self.period[0]), periods(image[1], self.period[1])
 
     @property
     def slopes(self) -> Floats:

@@ -45,7 +45,7 @@ class Predictor:
         self._features = tuple(
             (first + k, feature.shape, DELAYS[type(feature.shape)]) for k, feature in enumerate(stage.features)
         )
-        self._period = stage.period
+        self._shifts = stage.shifts
         self._falls = stage.gravity is not None
         self._series_restitution = stage.series_restitution
         self._unmoved = _classes(stage)
@@ -95,9 +95,9 @@ class Predictor:
         radius, unmoved, met = self._radius, self._unmoved, state.met
         reach_i = radius[i]
         straight_delay = self.straight_delay
-        length_x, length_y = self._period
         for members, image in near:
             kx, ky = image
+            shift_x, shift_y = self._shifts(image) if kx or ky else (0.0, 0.0)
             for j in members:
                 if j == i or (unmoved is not None and unmoved[i] and unmoved[i] == unmoved[j]):
                     continue
@@ -121,9 +121,9 @@ class Predictor:
                         tr, lag = tj, tj - ti
                         dx, dy = (xi + ui * lag) - x[j], (yi + wi * lag) - y[j]
                 if kx:
-                    dx = dx - kx * length_x  # type: ignore[operator]
+                    dx = dx - shift_x
                 if ky:
-                    dy = dy - ky * length_y  # type: ignore[operator]
+                    dy = dy - shift_y
                 if falls and (gx != hx or gy != hy):
                     delay, _ = circle_delays(dx, dy, du, dw, gx - hx, gy - hy, reach_i + radius[j], 1.0)
                     if not delay < NEVER:
@@ -149,11 +149,10 @@ class Predictor:
         delay = rescaled_pair_delay(*apart, ri + rj)
         if delay == delay:
             return delay
-        shift_x, shift_y = (k * length if k else 0.0 for k, length in zip(image, self._period, strict=True))  # type: ignore[operator]
         return careful_pair_delay(
             *(s.x[i], s.y[i], s.vx[i], s.vy[i], s.t[i], ri),
             *(s.x[j], s.y[j], s.vx[j], s.vy[j], s.t[j], rj),
-            *(shift_x, shift_y),
+            *self._shifts(image),
         )
 
     def _just_met(self, i: int, j: int, kx: int, ky: int) -> bool:

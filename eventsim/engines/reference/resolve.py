@@ -11,15 +11,15 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
-from eventsim.engines.reference.state import EngineState, Low
-from eventsim.engines.reference.surfaces import Surfaces
+from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import contact_restitution, flat_update, pair_update, wall_update
-from eventsim.formulas.low_place import finely_apart
+from eventsim.formulas.low_place import Low, apart
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
+from eventsim.scene.surfaces import Surfaces
 
 
 class Resolver:
@@ -153,7 +153,7 @@ class Resolver:
             u, _ = flat_update(u, stage.boundaries[place].side, restitution)
         else:
             w, _ = flat_update(w, stage.boundaries[place].side, restitution)
-        x, y = surfaces.place_on(place, i, state, x, y)
+        x, y = self._place_on(place, i, x, y)
         self._rests.free(i, t)
         state.anchor(i, t, x, y, u, w)
         state.meet(i, (self._met(event, i),))
@@ -206,7 +206,7 @@ class Resolver:
             x, y = at[number[i]] if low[number[i]] is None else state.place(i, t)
             for k in active:
                 if component[k].a == i and component[k].b < 0:
-                    x, y = self._surfaces.place_on(-1 - component[k].b, i, state, x, y)
+                    x, y = self._place_on(-1 - component[k].b, i, x, y)
             self._rests.free(i, t)
             state.anchor(i, t, x, y, *outcome.velocities[number[i]])
             state.forget_low_parts(i)
@@ -251,17 +251,15 @@ class Resolver:
         self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real, low_a: Low, low_b: Low
     ) -> tuple[Real, Real]:
         """The vector from b (its image) to a; low_a, low_b: the low parts of their places."""
-        (kx, ky), (length_x, length_y) = event.image, self._stage.period
-        if low_a is not None and low_b is not None:
-            dx, _ = finely_apart(xa, low_a[0], xb, low_b[0], kx * length_x if kx else 0.0)  # type: ignore[operator]
-            dy, _ = finely_apart(ya, low_a[1], yb, low_b[1], ky * length_y if ky else 0.0)  # type: ignore[operator]
-            return dx, dy
-        dx, dy = xa - xb, ya - yb
-        if kx:
-            dx = dx - kx * length_x  # type: ignore[operator]
-        if ky:
-            dy = dy - ky * length_y  # type: ignore[operator]
-        return dx, dy
+        return apart((xa, ya), (xb, yb), self._stage.shifts(event.image), low_a, low_b)
+
+    def _place_on(self, place: int, i: int, x: Real, y: Real) -> tuple[Real, Real]:
+        """The place of disk i, exactly on a boundary of the domain that it meets; its low part, if it has one, is set."""
+        state = self._state
+        if state.low_places and (left := self._surfaces.left_on(place, i)) is not None:
+            axis, rest = left
+            (state.low_x, state.low_y)[axis][i] = rest
+        return self._surfaces.exactly_on(place, i, x, y)
 
     def _restitution(self, restitution: float, t: Real, a: int, b: int) -> Real:
         duration = self._stage.contact_duration

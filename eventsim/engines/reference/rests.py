@@ -8,11 +8,11 @@ from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger
 from eventsim.engines.reference.state import EngineState
-from eventsim.engines.reference.surfaces import Surfaces
 from eventsim.formulas.real import Real
 from eventsim.formulas.rest import LEFT, SUPPORTED, held_by, resting_place, slope
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
+from eventsim.scene.surfaces import Surfaces
 
 
 class TwoSupportsError(Exception):

@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 
 from eventsim.engines.base import Snapshot
 from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
-from eventsim.formulas.low_place import Fine, low_position, settled
+from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Acceleration, Real
 from eventsim.formulas.rest import SUPPORTED, Support, held_by
@@ -15,11 +15,6 @@ from eventsim.scene.stage import Stage
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
 """Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, STRUCK, SUPPORTED or LEFT); several after
 a joint contact."""
-
-
-Low: TypeAlias = tuple[float, float] | None
-"""The low parts of a place; None where places have none."""
-
 
 class EngineState:
     """The flights of n disks as lists of numbers; only advance and resolve change them.

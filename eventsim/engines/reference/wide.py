@@ -26,14 +26,13 @@ class WidePredictor(Predictor):
 
     def _contacts(self, i: int, near: Iterable[Group]) -> None:
         state, radius, unmoved, met = self._state, self._radius, self._unmoved, self._state.met
-        for members, (kx, ky) in near:
-            shift_x, shift_y = (
-                k * length if k and length is not None else 0.0 for k, length in zip((kx, ky), self._period, strict=True)
-            )
+        for members, image in near:
+            kx, ky = image
+            shifts = self._shifts(image)
             for j in members:
                 if j == i or (unmoved is not None and unmoved[i] and unmoved[i] == unmoved[j]):
                     continue
-                delay = wide_pair_delay(*state.fine_flight(i, radius[i]), *state.fine_flight(j, radius[j]), shift_x, shift_y)
+                delay = wide_pair_delay(*state.fine_flight(i, radius[i]), *state.fine_flight(j, radius[j]), *shifts)
                 if delay == NEVER or (met[i] and met[j] and self._just_met(i, j, kx, ky)):
                     continue
                 time = max(state.t[i], state.t[j]) + delay

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from eventsim.engines.reference.state import EngineState, Low
 from eventsim.formulas.expansion import two_sum
+from eventsim.formulas.low_place import Low
 from eventsim.formulas.real import Real
 from eventsim.formulas.walls.delays import at_origin
 from eventsim.formulas.walls.face import Face, face_normal
@@ -22,7 +22,7 @@ class Surfaces:
         self._features = stage.features
         self._radius = radius
 
-    def normal(self, place: int, side: int, x: Real, y: Real, low: Low) -> tuple[Real, Real]:
+    def normal(self, place: int, side: int, x: Real, y: Real, low: Low = None) -> tuple[Real, Real]:
         """The normal, of any length, towards a disk at (x, y); low: the low parts of that."""
         if place < len(self._boundaries):
             boundary = self._boundaries[place]
@@ -42,13 +42,12 @@ class Surfaces:
         target = boundary.position + boundary.side * self._radius[i]
         return (target, y) if boundary.axis == 0 else (x, target)
 
-    def place_on(self, place: int, i: int, state: EngineState, x: Real, y: Real) -> tuple[Real, Real]:
-        """The same; the low part along its axis, where places have one, is set to what the rounding left."""
-        if state.low_places and place < len(self._boundaries):
-            boundary = self._boundaries[place]
-            low = state.low_x if boundary.axis == 0 else state.low_y
-            low[i] = two_sum(boundary.position, boundary.side * self._radius[i])[1]
-        return self.exactly_on(place, i, x, y)
+    def left_on(self, place: int, i: int) -> tuple[int, float] | None:
+        """(axis, what rounding left of that coordinate) of disk i on a boundary of the domain; None for other walls."""
+        if place >= len(self._boundaries):
+            return None
+        boundary = self._boundaries[place]
+        return boundary.axis, two_sum(boundary.position, boundary.side * self._radius[i])[1]
 
     def number(self, place: int) -> int:
         """The number that the log knows a wall by."""
