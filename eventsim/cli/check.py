@@ -32,7 +32,8 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
                                   numbers of disks: all, with a speed, of mass inf, both, of mass 0
       species, species_count      the commonest {count, radius, mass}; how many there are
       radii, masses               [least, largest]
-      fastest, temperature        largest speed; mean m v^2/2 (null without a finite positive mass)
+      fastest, temperature        largest speed; mean m v^2/2 (null without a finite positive mass; a text where
+                                  it is beyond the range of floats)
       packing_fraction            null on the open plane
       domain, size, origin        kind; [width, height]; lower-left corner
       walls, shapes               name -> kind; primitive shape -> number

@@ -14,6 +14,7 @@ from eventsim.engines.near_ties import NearTie, near_ties
 from eventsim.engines.reference.cells import images_of, plan
 from eventsim.scene.disks import Disks
 from eventsim.scene.overlaps import pair_overlaps
+from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
 from eventsim.scene.stage import stage_of
 from eventsim.scene.validate import touching_by_rounding
 from eventsim.scene.walls import wall_names
@@ -61,7 +62,8 @@ class Needs:
         species: the commonest radius-mass combinations, at most SPECIES_SHOWN; species_count: how many there are.
         radii, masses: (least, largest).
         fastest: largest speed at the start, length / time.
-        temperature: kT = sum m |v|^2 / 2N over disks of finite positive mass; None where there are none.
+        temperature: kT = sum m |v|^2 / 2N over disks of finite positive mass, as a text where that is no float; None where
+            there are none.
         packing_fraction: area of the disks over that of the domain; None on the open plane.
         domain, size, origin: its kind, width and height, lower-left corner.
         walls: name -> kind of the walls inside the domain.
@@ -89,7 +91,7 @@ class Needs:
     radii: tuple[float, float]
     masses: tuple[float, float]
     fastest: float
-    temperature: float | None
+    temperature: float | str | None
     packing_fraction: float | None
     domain: str
     size: tuple[float, float] | None
@@ -131,7 +133,7 @@ def needs_of(scene: Scene) -> Needs:
         radii=(float(disks.radius.min()), float(disks.radius.max())),
         masses=(float(disks.mass.min()), float(disks.mass.max())),
         fastest=float(speed.max()),
-        temperature=_temperature(disks, speed),
+        temperature=_temperature(disks, speed, pace_of_scene(scene)),
         packing_fraction=None if size is None else float(np.pi * (disks.radius**2).sum()) / (size[0] * size[1]),
         domain=domain.kind,
         size=size,
@@ -169,11 +171,13 @@ def _species(disks: Disks) -> tuple[tuple[Species, ...], int]:
     return tuple(species), len(codes)
 
 
-def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64]) -> float | None:
+def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64], pace: int) -> float | str | None:
     massive = (disks.mass > 0.0) & np.isfinite(disks.mass)
     if not massive.any():
         return None
-    return float(np.mean(disks.mass[massive] * speed[massive] ** 2) / 2.0)
+    found = float(np.mean(disks.mass[massive] * slowed(speed[massive], pace) ** 2) / 2.0)
+    exact = as_float(found, 2 * pace)
+    return in_words(found, 2 * pace) if exact is None else exact
 
 
 def _touching_pairs(scene: Scene) -> int:

@@ -16,8 +16,8 @@ from eventsim.scene.stage import Stage
 OUTSIDE = 2.0**-10
 """How far outside the domain, in parts of its size, a disk may be: generous, since rounding puts it there by far less."""
 
-LARGEST = 1e200
-"""Lengths, speeds and times whose products are still numbers."""
+LARGEST = 1e300
+"""Lengths, speeds and times that scenes of numbers within their limits come to."""
 
 MOST_COUNTED = 2**31 - 1
 """What the records of the compiled engine can count."""

@@ -16,7 +16,7 @@ import math
 from eventsim.formulas.expansion import two_product, two_sum
 
 LEAST, MOST = 2.0**-900, 2.0**900
-"""Squares of velocities within which error-free products neither underflow nor overflow; beyond, s is taken for 0."""
+"""Squares of velocities within which error-free products neither underflow nor overflow."""
 
 
 def careful_pair_update(
@@ -85,17 +85,27 @@ def _change(dx: float, dy: float, u: float, w: float, e: float, f: float) -> tup
     """(p_x, p_y, s p_x, s p_y, q): what is taken off the relative velocity v = (u + e, w + f) along d."""
     q = 2.0 * ((dx * u + dy * w) / (dx * dx + dy * dy))
     px, py = q * dx, q * dy
+    s = _excess(px, py, u, w, e, f)
+    return px, py, s * px, s * py, q
+
+
+def _excess(px: float, py: float, u: float, w: float, e: float, f: float) -> float:
+    """s = p.(2v - p)/p^2, at speeds of about 1 where squares of these would be no floats; 0 where p is nothing beside v."""
     square = px * px + py * py
     if not LEAST < square < MOST:
-        return px, py, 0.0, 0.0, q
+        power = -math.frexp(max(abs(u), abs(w)))[1]
+        px, py, u, w = math.ldexp(px, power), math.ldexp(py, power), math.ldexp(u, power), math.ldexp(w, power)
+        e, f = math.ldexp(e, power), math.ldexp(f, power)
+        square = px * px + py * py
+    if not square > LEAST:
+        return 0.0
     x, x_rest = two_sum(2.0 * u, -px)
     y, y_rest = two_sum(2.0 * w, -py)
     along_x, fine_x = two_product(px, x)
     along_y, fine_y = two_product(py, y)
     along, fine = two_sum(along_x, along_y)
     fine = fine + ((fine_x + fine_y) + (px * (x_rest + 2.0 * e) + py * (y_rest + 2.0 * f)))
-    s = (along + fine) / square
-    return px, py, s * px, s * py, q
+    return (along + fine) / square
 
 
 def _lighter_share(lighter: float, heavier: float) -> tuple[float, float]:

@@ -2,7 +2,10 @@
 
 import math
 
-from eventsim.formulas.real import Real, sqrt
+from eventsim.formulas.real import Real, is_float, sqrt
+
+LEAST, MOST = 2.0**-900, 2.0**900
+"""Squares of velocities within which their sum is a float, to the last bit."""
 
 
 def mass_fractions(mass_a: float, mass_b: float) -> tuple[float, float]:
@@ -90,4 +93,14 @@ def wall_impulse(mass: float, du: Real, dw: Real) -> Real:
     """
     if math.isinf(mass):
         return math.nan
-    return mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else sqrt(du * du + dw * dw))
+    return mass * (abs(du) if dw == 0.0 else abs(dw) if du == 0.0 else _speed(du, dw))
+
+
+def _speed(u: Real, w: Real) -> Real:
+    """The magnitude of a velocity; times a power of two it is exactly that much larger, also where squares are no floats."""
+    square = u * u + w * w
+    if not is_float(u) or LEAST < square < MOST:
+        return sqrt(square)
+    power = math.frexp(max(abs(u), abs(w)))[1]
+    u, w = math.ldexp(u, -power), math.ldexp(w, -power)
+    return math.ldexp(math.sqrt(u * u + w * w), power)

@@ -10,7 +10,7 @@ Source: T. J. Dekker, Numer. Math. 18, 224 (1971), doi:10.1007/BF01397083.
 
 from typing import TypeAlias
 
-from eventsim.formulas.contact import SMALLEST, screened_pair_delay
+from eventsim.formulas.contact import SMALLEST, rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.crossing import closing_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.expansion import two_product, two_sum
@@ -103,6 +103,8 @@ def wide_pair_delay(
         yi + wi * lag, low_position(yi, eyi, wi, lag), yj + wj * other, low_position(yj, eyj, wj, other), shift_y
     )
     delay = screened_pair_delay(dx, dy, du, dw, reach)
+    if delay != delay:
+        delay = rescaled_pair_delay(dx, dy, du, dw, reach)
     if delay == delay:
         return delay
     return careful_pair_delay(dx, dy, ui, wi, 0.0, ri, -ex, -ey, uj, wj, 0.0, rj, 0.0, 0.0)

@@ -15,11 +15,14 @@ from eventsim.measure.correlation import Correlator
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.equilibration import settled_after
 from eventsim.measure.flights import Flights, Follower
+from eventsim.measure.pace import at_full_pace, slowed_rows
 from eventsim.measure.results import Measures, Records, results_of
 from eventsim.measure.series import FIRST_BINS, Series
 from eventsim.measure.tally import ENERGY, VIRIAL, Tally
 from eventsim.record.events import Floats, Rows
 from eventsim.record.log import EventLog
+from eventsim.record.provenance import Kick
+from eventsim.scene.pace import later, pace_of_scene, slowed_scene
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import stage_of
 
@@ -39,18 +42,22 @@ class Meter:
     >>> meter = Meter(scene); meter.write(rows); meter.write(more_rows); meter.finish(duration)
     """
 
-    def __init__(self, scene: Scene, discard: float | None = None) -> None:
+    def __init__(self, scene: Scene, discard: float | None = None, kicks: tuple[Kick, ...] = ()) -> None:
         """discard: time from the start that is left out; None: the scene's `equilibration`, or else found from the pressure.
+
+        kicks: velocities that are set from outside.  Very fast and very slow runs are measured at their pace (`scene.pace`).
 
         Raises EventsimError for a negative or infinite time, and for a scene without disks that carry energy.
         """
         if discard is not None and not 0.0 <= discard < math.inf:
             raise EventsimError(f"discard = {discard!r}: must be a finite time, at least 0")
-        self.scene = scene
+        self._pace = pace_of_scene(scene, kicks)
+        self._epoch_length = math.ldexp(stage_of(scene).epoch_length, self._pace)
+        self.scene = scene = slowed_scene(scene, self._pace)
         self.ensemble = ensemble_of(scene)
         if not self.ensemble.n:
             raise EventsimError("there is nothing to measure: no disk has a finite positive mass")
-        self.discard = scene.equilibration if discard is None else discard
+        self.discard = scene.equilibration if discard is None else later(discard, self._pace)
         self._stage = stage_of(scene)
         self._tally = Tally(self.ensemble, self._stage)
         self._follower = Follower(self._stage)
@@ -67,7 +74,7 @@ class Meter:
 
     def write(self, rows: Rows) -> None:
         """Take a block of full rows, the next of the run."""
-        self._waiting.append(rows.copy())
+        self._waiting.append(slowed_rows(rows, self._pace) if self._pace else rows.copy())
         self._waiting_rows += len(rows)
         if self._waiting_rows >= BLOCK:
             every = np.concatenate(self._waiting)
@@ -83,8 +90,9 @@ class Meter:
         """
         if not duration > 0.0:
             raise EventsimError("there is nothing to measure: no time passes in this run")
+        length, duration = duration, math.ldexp(duration, self._pace)
         if self.discard is not None and self.discard >= duration:
-            raise EventsimError(f"discard = {self.discard!r}: the run lasts {duration!r} only")
+            raise EventsimError(f"discard = {math.ldexp(self.discard, -self._pace)!r}: the run lasts {length!r} only")
         if self._waiting_rows:
             self._take(np.concatenate(self._waiting))
             self._waiting, self._waiting_rows = [], 0
@@ -114,11 +122,12 @@ class Meter:
             cooling=self._cooling,
             moved=moved,
         )
-        return results_of(records)
+        measures = results_of(records)
+        return at_full_pace(measures, self._pace) if self._pace else measures
 
     def _take(self, rows: Rows) -> None:
         """Take up a block of the meter's own."""
-        time = rows["epoch"] * self._stage.epoch_length + rows["remainder"]
+        time = rows["epoch"] * self._epoch_length + rows["remainder"]
         time = np.maximum.accumulate(np.maximum(time, self._time))  # logged times may step back by an ulp
         end = float(time[-1])
         series, correlator = self._scales(end, len(rows))
@@ -165,7 +174,7 @@ def measure(log: EventLog, discard: float | None = None) -> Measures:
     discard: as of Meter.  Raises EventsimError where there is nothing to measure, LogError for a log without an end.
     """
     full = log.expand()
-    meter = Meter(full.scene, discard)
+    meter = Meter(full.scene, discard, full.provenance.kicks)
     for first in range(0, len(full), BLOCK):
         meter.write(full.rows[first : first + BLOCK])
     ending = full.provenance.ending

@@ -12,6 +12,8 @@ Point: TypeAlias = tuple[float, float]
 
 # Squares of lengths must be numbers too, neither infinite nor 0.
 SHORTEST, LONGEST = 1e-150, 1e150
+# Of speeds squares are never taken, but products with lengths, and sums of them.
+FASTEST = 1e290
 LENGTHS = f"must be above 0 (at least {SHORTEST}) and at most {LONGEST}"
 RADII = f"must be at least 0 and at most {LONGEST} (0 is a point, no other below {SHORTEST})"
 

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.names import DiskNames, SelectedNames
-from eventsim.scene.numbers import LENGTHS, LONGEST, RADII, SHORTEST, is_length, is_place
+from eventsim.scene.numbers import (
+    FASTEST,
+    LENGTHS,
+    LONGEST,
+    RADII,
+    SHORTEST,
+    is_length,
+    is_place,
+)
 from eventsim.scene.overlaps import (
     ENOUGH,
     Found,
@@ -21,6 +29,7 @@ from eventsim.scene.overlaps import (
     feature_overlaps,
     pair_overlaps,
 )
+from eventsim.scene.scale_rules import scale_problems
 from eventsim.scene.wall_rules import wall_problems
 from eventsim.scene.walls import features
 
@@ -30,8 +39,8 @@ if TYPE_CHECKING:
 # Of many problems of one kind so many are written out; the rest are counted.
 WRITTEN_OUT = 3
 
-LIGHTEST, MOST_ENERGY = 1e-320, 1e300
-"""A mass that has a half; an energy of which many can be added."""
+LIGHTEST = 1e-320
+"""A mass that has a half."""
 
 NO_DISKS = "disk: a scene needs at least one disk"
 
@@ -50,7 +59,7 @@ def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
         return [*problems, NO_DISKS]
     sound = np.ones(len(scene.disks), dtype=np.bool_)
     problems += _number_problems(scene.disks, names, sound)
-    problems += [] if problems else _scale_problems(scene)
+    problems += [] if problems else list(scale_problems(scene))
     # In a domain that is none, among walls that are none, a place would mean nothing.
     if not shapes:
         if sound.all():
@@ -122,8 +131,8 @@ def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -
                 f"must be two finite numbers, at most {LONGEST}",
             ),
             "velocity": (
-                (np.abs(disks.velocity) <= LONGEST).all(axis=1),
-                f"must be two finite numbers, at most {LONGEST}",
+                (np.abs(disks.velocity) <= FASTEST).all(axis=1),
+                f"must be two finite numbers, at most {FASTEST}",
             ),
             "radius": (
                 (disks.radius == 0.0) | ((disks.radius >= SHORTEST) & (disks.radius <= LONGEST)),
@@ -141,24 +150,6 @@ def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -
         value = getattr(disks, key)
         problems += [f"{names.key(int(i), key)} = {value[i].tolist()}: {rule}" for i in broken[: _written(len(broken))]]
         problems += _rest(len(broken), f"disks whose {key} {rule}")
-    return problems
-
-
-def _scale_problems(scene: Scene) -> list[str]:
-    """Rules for numbers together: contacts and energies are made of their products, which must be numbers too."""
-    disks = scene.disks
-    lengths = np.concatenate([disks.position.ravel(), disks.radius, scene.domain.size or (), scene.domain.origin])
-    extent, fastest = float(np.abs(lengths).max()), float(np.abs(disks.velocity).max())
-    finite = disks.mass[np.isfinite(disks.mass)]
-    heaviest = float(finite.max()) if len(finite) else 0.0
-    pull = 0.0 if scene.gravity is None else max(map(abs, scene.gravity))
-    problems = []
-    if fastest * extent > LONGEST:
-        problems.append(f"velocity: {fastest:g} times the largest length, {extent:g}, must be at most {LONGEST}")
-    if pull * extent > LONGEST:
-        problems.append(f"gravity: {pull:g} times the largest length, {extent:g}, must be at most {LONGEST}")
-    if not heaviest * max(fastest, 1.0) * max(fastest, pull * extent, 1.0) <= MOST_ENERGY:
-        problems.append(f"mass: {heaviest:g}, and the energy of such a disk, must be at most {MOST_ENERGY}")
     return problems
 
 

@@ -13,6 +13,7 @@ from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, Kind, Rows, State
 from eventsim.record.log import EventLog
 from eventsim.record.replay import Replay
+from eventsim.scene.pace import pace_of_scene, slowed
 
 GLOW = 0.2
 """Seconds of the movie for which a contact lights up its disks."""
@@ -83,8 +84,7 @@ class Frame:
     """What is to be seen at one time.
 
     state: all disks, exactly at that time. events: rows of the log so far. contacts: (N,) contacts of each disk so
-    far. glow: (N,) 1 at a contact, fading to 0. energy: kinetic, and potential in a scene with gravity, of the disks
-    of finite mass. recent: the rows since the previous frame.
+    far. glow: (N,) 1 at a contact, fading to 0. energy: as from `energy_of`. recent: the rows since the previous frame.
     """
 
     state: State
@@ -126,9 +126,18 @@ def _glow(log: EventLog, clock: Floats, events: int, time: float, glow_time: flo
 
 
 def energy_of(log: EventLog, state: State) -> float:
-    """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes."""
+    """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes.
+
+    In units of 4**pace, that of `pace_of_log`: usually 1.
+    """
+    velocity = slowed(state.velocity, pace_of_log(log))
     mass = np.where(np.isfinite(log.scene.disks.mass), log.scene.disks.mass, 0.0)
-    energy = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
+    energy = 0.5 * float(mass @ (velocity**2).sum(axis=1))
     if log.scene.gravity is not None:
         energy -= float(mass @ (state.position @ np.array(log.scene.gravity)))
     return energy
+
+
+def pace_of_log(log: EventLog) -> int:
+    """Return the pace of the run that a log tells."""
+    return pace_of_scene(log.scene, log.provenance.kicks)

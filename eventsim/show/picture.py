@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
 from eventsim.record.replay import Replay
+from eventsim.scene.pace import in_words
 from eventsim.show import outlines
 from eventsim.show.colouring import colouring_of
-from eventsim.show.frames import Frame
+from eventsim.show.frames import Frame, pace_of_log
 from eventsim.show.images import disks_with_images, lines_with_images
 from eventsim.show.layout import DPI, Bars, layout
 from eventsim.show.palette import DARK, LIGHT
@@ -33,6 +34,9 @@ EDGED = 4.0
 
 WALL_WIDTH, WIDEST_WALL = 2.0, 0.08
 """Points, and as a share of the picture's smaller side: a corridor must not be all wall."""
+
+LATEST = 1e15
+"""A time from which on it has more digits than anybody reads."""
 
 LONGEST_ARROW = 0.08
 """The arrow of the fastest flight is this share of the picture's larger side."""
@@ -82,6 +86,7 @@ class Picture:
         self._bars = Bars(self._figure, self.layout, self._palette, replay.log.scene.name or "")
         self._bars.draw_key(self._colouring.key)
         self._clock_format = _clock_format(times)
+        self._energy_power = 2 * pace_of_log(replay.log)
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -98,7 +103,7 @@ class Picture:
             self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
             self._axes.draw_artist(self._arrows)
         self._bars.clock.set_text(f"t = {frame.state.time:{self._clock_format}}")
-        self._bars.counter.set_text(f"{frame.events:,} events   energy {frame.energy:.4g}")
+        self._bars.counter.set_text(f"{frame.events:,} events   energy {in_words(frame.energy, self._energy_power)}")
         for text in (self._bars.clock, self._bars.counter):
             self._figure.draw_artist(text)
         return np.asarray(self._canvas.buffer_rgba())
@@ -174,4 +179,4 @@ def _clock_format(times: Floats) -> str:
     digits = max(math.ceil(-math.log10(step)), 0) if step > 0.0 else 3
     if digits < 12 and float(np.abs(np.round(times, digits) - times).max()) > MISPLACED * step > 0.0:
         digits += 1
-    return f",.{digits}f" if digits < 12 else ".6e"
+    return f",.{digits}f" if digits < 12 and float(np.abs(times).max()) < LATEST else ".6e"

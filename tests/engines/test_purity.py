@@ -166,23 +166,6 @@ def test_a_shifted_or_late_scene_has_the_same_log(engine, domain, offset, start)
     assert np.all(np.abs((other["time"] - start) - one["time"]) <= np.spacing(other["time"]))
 
 
-@pytest.mark.parametrize("engine", ["reference", "fast"])
-@pytest.mark.parametrize("k", [-900, -480, -300, -1, 1, 300, 480])
-def test_velocities_times_a_power_of_two_scale_the_times_exactly(engine, k):
-    """Down to 2**-900; faster than 1e150, whose squares are no floats, disks are refused."""
-    if engine == "fast":
-        pytest.importorskip("numba")
-    scene = lattice_gas(30, 0.3, es.Periodic)
-    velocity = np.ldexp(scene.disks.velocity, k)
-    fast = es.Scene(es.Disks(scene.disks.position, velocity, 0.5), scene.domain)
-    one, other = rows_by(engine, scene, 300), rows_by(engine, fast, 300)
-    for name in ("a", "b", "epoch", "xa", "ya", "xb", "yb"):
-        assert one[name].tobytes() == other[name].tobytes(), name
-    assert np.ldexp(one["remainder"], -k).tolist() == other["remainder"].tolist()
-    for name in ("vxa", "vya", "vxb", "vyb", "impulse"):
-        assert np.ldexp(one[name], k).tolist() == other[name].tolist(), name
-
-
 def test_looking_at_the_state_in_between_changes_no_bit():
     scene = lattice_gas(30, 0.3, es.Periodic)
     run = es.simulate(scene, events=500, log=True)

@@ -100,12 +100,12 @@ def test_anything_anywhere_in_a_scene_is_answered(place, value):
         ("count", 10**9, "must be at most 50000000"),
         ("count", 10**400, "count"),
         ("radius", 1e-308, "radius"),
-        ("temperature", 1e308, "velocity"),
+        ("speed", 1e291, "velocity"),
         ("mass", 5e-324, "mass"),
     ],
 )
 def test_a_gas_beyond_all_measure_is_refused_at_once(key, value, words):
-    gas = {"count": 20, "radius": 0.01, "temperature": 1.0, "arrangement": "square", "seed": 1}
+    gas = {"count": 20, "radius": 0.01, "arrangement": "square", "seed": 1}
     with pytest.raises(es.SceneError, match=words):
         scene_from_dict({"domain": {"kind": "periodic", "size": [1.0, 1.0]}, "gas": [gas | {key: value}]})
 
@@ -113,16 +113,33 @@ def test_a_gas_beyond_all_measure_is_refused_at_once(key, value, words):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"velocity": [1e140, 0.0], "position": [1e20, 0.0]}, "times the largest length"),
-        ({"velocity": [1e100, 0.0], "mass": 1e200}, "energy of such a disk"),
-        ({"velocity": [1e160, 0.0]}, "must be two finite numbers, at most"),
+        ({"velocity": [1e281, 0.0], "position": [1e20, 0.0]}, "times the largest length, 1e.20, must be at most"),
+        ({"velocity": [1e281, 0.0], "radius": 1e-20}, "over the shortest length, 1e-20, must be at most"),
+        ({"velocity": [1e200, 0.0], "mass": 1e200}, "mass: 1e.200, and the momentum of such a disk"),
+        (
+            {"velocity": [1e140, 0.0], "position": [1e20, 0.0], "gravity": 1.0},
+            "times the largest length, 1e.20, .* gravity",
+        ),
+        ({"velocity": [1e160, 0.0], "gravity": 1.0}, "velocity: 1e.160, .* where there is gravity"),
+        ({"velocity": [1e100, 0.0], "mass": 1e200, "gravity": 1.0}, "energy of such a disk"),
+        ({"velocity": [1e295, 0.0]}, "must be two finite numbers, at most"),
         ({"mass": 1e305}, "mass: 1e"),
         ({"mass": 5e-324}, "mass = 5e-324"),
     ],
 )
 def test_products_that_are_no_numbers_are_refused_by_name(changes, words):
+    disk = {"position": [0.0, 0.0], "radius": 1.0} | changes
+    pull = {"gravity": [0.0, -disk.pop("gravity")]} if "gravity" in disk else {}
     with pytest.raises(es.SceneError, match=words):
-        scene_from_dict({"domain": {"kind": "open"}, "disk": [{"position": [0.0, 0.0], "radius": 1.0} | changes]})
+        scene_from_dict({"domain": {"kind": "open"}, "disk": [disk]} | pull)
+
+
+def test_a_light_disk_that_heavy_ones_could_drive_beyond_all_numbers_is_refused():
+    disks = [
+        {"position": [float(x), 0.0], "radius": 1.0, "mass": 10.0 ** (x * 9), "velocity": [1e285, 0.0]} for x in (-4, 0)
+    ]
+    with pytest.raises(es.SceneError, match=r"velocity: 1.41421e\+303, the most that a disk can come to"):
+        scene_from_dict({"domain": {"kind": "open"}, "disk": disks})
 
 
 @pytest.mark.parametrize("suffix", [".toml", ".json"])

@@ -1,0 +1,77 @@
+"""The rules of scale: numbers of a scene whose products, quotients and sums must be numbers too."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventsim.scene.numbers import LONGEST
+from eventsim.scene.outlines import bounds
+from eventsim.scene.walls import Circle, features
+
+if TYPE_CHECKING:
+    from eventsim.scene.scene import Scene
+
+MOST = 1e300
+"""A number of which many can be added; and the inverse of the shortest time that has all its digits."""
+
+
+def scale_problems(scene: Scene) -> Iterator[str]:
+    """Rules for numbers together, of a scene whose numbers each keep their own.
+
+    Straight flights take no squares of speeds, parabolas do.
+    """
+    extent, shortest = _lengths(scene)
+    fastest = float(np.abs(scene.disks.velocity).max())
+    mass = scene.disks.mass[(scene.disks.mass > 0.0) & np.isfinite(scene.disks.mass)]
+    lightest, heaviest = (float(mass.min()), float(mass.max())) if len(mass) else (1.0, 0.0)
+    if scene.gravity is not None:
+        yield from _falling_problems(max(map(abs, scene.gravity)), fastest, extent, heaviest)
+        return
+    # if all energy came to the lightest disk
+    driven = fastest * math.sqrt(len(scene.disks)) * max(math.sqrt(heaviest) / math.sqrt(lightest), 1.0)
+    if not driven * max(extent, 1.0) <= MOST:
+        yield (
+            f"velocity: {driven:g}, the most that a disk can come to, times the largest length, {extent:g}, must be at"
+            f" most {MOST}"
+        )
+    if not driven <= MOST * shortest:
+        yield (
+            f"velocity: {driven:g}, the most that a disk can come to, over the shortest length, {shortest:g}, must be at"
+            f" most {MOST}"
+        )
+    if not heaviest * max(fastest, 1.0) <= MOST * min(shortest, 1.0):
+        yield f"mass: {heaviest:g}, and the momentum of such a disk over the shortest length, must be at most {MOST}"
+
+
+def _falling_problems(pull: float, fastest: float, extent: float, heaviest: float) -> Iterator[str]:
+    """The same under gravity, where the roots are those of squares."""
+    if fastest * max(extent, 1.0) > LONGEST:
+        yield (
+            f"velocity: {fastest:g}, and that times the largest length, {extent:g}, must be at most {LONGEST}"
+            " where there is gravity"
+        )
+    if pull * extent > LONGEST:
+        yield f"gravity: {pull:g} times the largest length, {extent:g}, must be at most {LONGEST}"
+    if not heaviest * max(fastest, 1.0) * max(fastest, pull * extent, 1.0) <= MOST:
+        yield f"mass: {heaviest:g}, and the energy of such a disk, must be at most {MOST}"
+
+
+def _lengths(scene: Scene) -> tuple[float, float]:
+    """The largest length of a scene, coordinates among them, and the shortest one that is none."""
+    disks, domain = scene.disks, scene.domain
+    places, sizes = [*domain.origin], [*(domain.size or ())]
+    for feature in features(scene.walls):
+        if isinstance(feature, Circle):
+            places += feature.center
+            sizes.append(feature.radius)
+            continue
+        low, high = bounds(feature)
+        places += [*low, *high]
+        sizes.append(max(high[0] - low[0], high[1] - low[1]))
+    lengths = np.concatenate([disks.radius, sizes])
+    largest = float(np.abs(np.concatenate([disks.position.ravel(), places, lengths])).max())
+    return largest, float(lengths[lengths > 0.0].min(initial=math.inf))
