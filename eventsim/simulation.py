@@ -20,7 +20,7 @@ from eventsim.record.log import EventLog
 from eventsim.record.provenance import Ending
 from eventsim.scene import Scene
 from eventsim.scene.difference import difference
-from eventsim.scene.numbers import number, optional_number, optional_whole, point
+from eventsim.scene.numbers import FASTEST, LONGEST, number, optional_number, optional_whole, point
 from eventsim.scene.stage import stage_of
 
 STEP_BUDGET = 4096
@@ -237,13 +237,14 @@ class Simulation:
     def set_velocity(self, disk: int, velocity: tuple[float, float]) -> None:
         """Give a disk another velocity, now: a kick, logged, so that the log still replays.
 
-        Raises EventsimError for a disk that does not exist or a velocity that is not two finite numbers.
+        Raises EventsimError for a disk that does not exist or a velocity that no disk of a scene may have.
         """
         vx, vy = point(velocity, f"velocity of disk {disk}")
         if not 0 <= disk < len(self.scene.disks):
             raise EventsimError(f"disk {disk} does not exist; there are {len(self.scene.disks)}, counted from 0")
-        if not (math.isfinite(vx) and math.isfinite(vy)):
-            raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: must be finite")
+        most = FASTEST if self.scene.gravity is None else LONGEST
+        if not (abs(vx) <= most and abs(vy) <= most):
+            raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: must be finite, and at most {most}")
         self._session.kick(disk, vx, vy)
         self._keep()
 

@@ -47,7 +47,8 @@ def command(
       steady, equilibrated      can there be a steady state; was it reached, as far as one can tell
       doubts                    reasons against it, sentences
       quantities                name -> {value, error, unit, blocks, block_length, theory, accuracy, deviation,
-                                source}; deviation in standard errors; null where there is none
+                                source}; deviation in standard errors; null where there is none; a unit "2^1800 energy"
+                                where speeds are such that the value would be no float in the scene's own
       speeds                    histograms: species, edges, density, error, theory, misfit
       correlations              lag, msd, msd_error, vacf, vacf_error
       structure                 null without --structure; psi_6, r, g

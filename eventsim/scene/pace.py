@@ -19,8 +19,8 @@ from eventsim.scene.disks import Floats
 if TYPE_CHECKING:
     from eventsim.scene.scene import Scene
 
-SLOWEST, FASTEST = 2.0**-400, 2.0**400
-"""Between these, squares of the largest speed and of much smaller ones, times a mass, are floats."""
+SLOWEST, FASTEST = 2.0**-128, 2.0**128
+"""Between these, fourth powers of the largest speed, squares of energies, are floats, and those of much smaller ones too."""
 
 LEAST_EXPONENT, LARGEST_EXPONENT = -1022, 1024
 """Of floats with all their digits, as frexp counts."""
@@ -73,6 +73,12 @@ def as_float(value: float, power: int) -> float | None:
     return math.ldexp(value, power)
 
 
-def in_words(value: float, power: int = 0) -> str:
-    """value * 2**power to four digits, also where that is no float."""
-    return f"{value:.4g}" if power == 0 else f"{Decimal(value) * Decimal(2) ** power:.4g}"
+def in_words(value: float, power: int, digits: int = 4) -> str:
+    """value * 2**power to so many digits, also where that is no float."""
+    return f"{value:.{digits}g}" if power == 0 else f"{Decimal(value) * Decimal(2) ** power:.{digits}g}"
+
+
+def typical_speed(vx: Floats, vy: Floats) -> float:
+    """The root mean square of speeds (N,)."""
+    pace = pace_of([vx, vy], falls=False)
+    return math.ldexp(float(np.sqrt(np.mean(slowed(vx, pace) ** 2 + slowed(vy, pace) ** 2))), pace)

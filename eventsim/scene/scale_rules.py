@@ -15,8 +15,8 @@ from eventsim.scene.walls import Circle, features
 if TYPE_CHECKING:
     from eventsim.scene.scene import Scene
 
-MOST = 1e300
-"""A number of which many can be added; and the inverse of the shortest time that has all its digits."""
+MOST, LARGEST = 1e300, 1e305
+"""A number of which many can be added; one of which a few can, and whose inverse has all its digits."""
 
 
 def scale_problems(scene: Scene) -> Iterator[str]:
@@ -33,18 +33,24 @@ def scale_problems(scene: Scene) -> Iterator[str]:
         return
     # if all energy came to the lightest disk
     driven = fastest * math.sqrt(len(scene.disks)) * max(math.sqrt(heaviest) / math.sqrt(lightest), 1.0)
-    if not driven * max(extent, 1.0) <= MOST:
+    if not driven * max(extent, 1.0) <= LARGEST:
         yield (
             f"velocity: {driven:g}, the most that a disk can come to, times the largest length, {extent:g}, must be at"
-            f" most {MOST}"
+            f" most {LARGEST}"
         )
-    if not driven <= MOST * shortest:
+    if not driven <= LARGEST * shortest:
         yield (
             f"velocity: {driven:g}, the most that a disk can come to, over the shortest length, {shortest:g}, must be at"
-            f" most {MOST}"
+            f" most {LARGEST}"
         )
-    if not heaviest * max(fastest, 1.0) <= MOST * min(shortest, 1.0):
-        yield f"mass: {heaviest:g}, and the momentum of such a disk over the shortest length, must be at most {MOST}"
+    momentum = heaviest * max(fastest, 1.0)
+    if not momentum <= MOST:
+        yield f"mass: {heaviest:g}, and the momentum of such a disk, must be at most {MOST}"
+    elif not momentum <= LARGEST * shortest:
+        yield (
+            f"mass: {heaviest:g}: the momentum of such a disk over the shortest length, {shortest:g}, must be at most"
+            f" {LARGEST}"
+        )
 
 
 def _falling_problems(pull: float, fastest: float, extent: float, heaviest: float) -> Iterator[str]:

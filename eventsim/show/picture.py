@@ -86,7 +86,8 @@ class Picture:
         self._bars = Bars(self._figure, self.layout, self._palette, replay.log.scene.name or "")
         self._bars.draw_key(self._colouring.key)
         self._clock_format = _clock_format(times)
-        self._energy_power = 2 * pace_of_log(replay.log)
+        pace = pace_of_log(replay.log)
+        self._energy_words = (2 * pace, 2 if pace else 4)  # its power of two, and digits: 2e+543 takes the room of 1.603e-09
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -103,7 +104,7 @@ class Picture:
             self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
             self._axes.draw_artist(self._arrows)
         self._bars.clock.set_text(f"t = {frame.state.time:{self._clock_format}}")
-        self._bars.counter.set_text(f"{frame.events:,} events   energy {in_words(frame.energy, self._energy_power)}")
+        self._bars.counter.set_text(f"{frame.events:,} events   energy {in_words(frame.energy, *self._energy_words)}")
         for text in (self._bars.clock, self._bars.counter):
             self._figure.draw_artist(text)
         return np.asarray(self._canvas.buffer_rgba())

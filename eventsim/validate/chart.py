@@ -16,6 +16,7 @@ from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
 from eventsim.scene import Scene
 from eventsim.scene.gallery import gallery
+from eventsim.scene.pace import typical_speed
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validate.compare import Comparison, Tell, compare, truth_to_compare
 from eventsim.validate.entrants import ENTRANTS, Entrant
@@ -132,7 +133,7 @@ def rates(patience_s: float, tell: Tell = lambda _: None) -> dict[str, list[tupl
         until = RATE_CONTACTS * free
         truth = follow(ENGINES[best_engine(n)].open(stage, keep_rows=True), [until])
         contacts = truth.counters.pair_contacts + truth.counters.wall_contacts
-        speed = float(np.sqrt(np.mean(stage.vx**2 + stage.vy**2)))
+        speed = typical_speed(stage.vx, stage.vy)
         dt = RATE_STEP * float(stage.radius[0]) / speed
         for label, opened in _contestants(dt):
             if label in found and found[label][-1][0] < SIZES[max(SIZES.index(n) - 1, 0)]:

@@ -16,6 +16,7 @@ from eventsim.engines.auto import has_compiler
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene import Scene
+from eventsim.scene.pace import typical_speed
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validate.follow import Followed, follow, position_errors
 
@@ -86,8 +87,8 @@ def truth_of(scene: Scene, times: Sequence[float], engine: str | None = None) ->
     neighbour = follow(ENGINES[name].open(neighbouring(stage), keep_rows=True), times)
     uncertainty = position_errors(stage, run, neighbour)
     moving = np.isfinite(stage.radius) & np.isfinite(scene.disks.mass)
-    speed = float(np.sqrt(np.mean(np.sum(run.velocity[:, moving] ** 2, axis=-1)))) if np.any(moving) else 0.0
-    start = float(np.sqrt(np.mean(stage.vx**2 + stage.vy**2)))
+    speed = typical_speed(run.velocity[:, moving, 0], run.velocity[:, moving, 1]) if np.any(moving) else 0.0
+    start = typical_speed(stage.vx, stage.vy)
     return Truth(scene, stage, run.times, run, uncertainty, max(speed, start) or 1.0)
 
 

@@ -8,6 +8,7 @@ from eventsim.engines.base import Stop
 from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
 from eventsim.record.events import Rows
 from eventsim.record.times import clock_times
+from eventsim.scene.pace import typical_speed
 from eventsim.scene.stage import Stage
 
 GRID_SLACK = 1e-9
@@ -78,7 +79,7 @@ class StepClock:
 def usual_step(stage: Stage) -> float:
     """A twentieth of the time in which a disk of typical speed flies its radius; with gravity, falls it."""
     radius = float(np.median(stage.radius)) or 1.0
-    speed = float(np.sqrt(np.mean(stage.vx**2 + stage.vy**2)))
+    speed = typical_speed(stage.vx, stage.vy)
     if stage.gravity is not None:
         speed = max(speed, float(np.sqrt(2.0 * np.hypot(*stage.gravity) * radius)))
     return 0.05 * radius / speed if speed > 0.0 else 1.0 / 60.0

@@ -19,6 +19,7 @@ from eventsim.engines.stepped.disks import Moving, moving_disks
 from eventsim.engines.stepped.found import BUFFER, MOVED, ROW_COUNT, Found, nothing_found, take_counters, tell_counters
 from eventsim.engines.stepped.ground import ground_of
 from eventsim.errors import EventsimError
+from eventsim.formulas.contact import FASTEST, SLOWEST
 from eventsim.record.events import ROW, Kind, Rows, blank_rows
 from eventsim.record.trajectory import Trajectory
 from eventsim.scene.stage import Stage
@@ -39,6 +40,12 @@ class SteppedSession(ABC):
     name = "stepped engine"
 
     def __init__(self, stage: Stage, keep_rows: bool = True, dt: float | None = None) -> None:
+        fastest = max(float(np.abs(stage.vx).max()), float(np.abs(stage.vy).max()))
+        if fastest > 0.0 and stage.gravity is None and not SLOWEST < fastest < FASTEST:
+            raise EventsimError(
+                f"{self.name} cannot simulate this scene: it takes squares of speeds, and that of {fastest:.3g} is beyond the"
+                " range of floats"
+            )
         self.stage = stage
         self.counters = Counters()
         self.reason: str | None = None

@@ -14,8 +14,10 @@ from eventsim.measure.displacement import mean_square
 from eventsim.measure.theory import enskog_diffusion
 from eventsim.record.flights import flight_table
 from eventsim.record.log import EventLog
+from eventsim.scene.pace import in_words, slowed
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of
+from eventsim.show.frames import pace_of_log
 
 SAMPLES, LAGS = 600, 40
 """Times at which displacements are read; lags shown, evenly spread on a logarithmic scale."""
@@ -37,21 +39,23 @@ def draw(figure: Figure, log: EventLog) -> None:
     axes = figure.add_subplot()
     axes.errorbar(tau, mean, error, fmt="o", ms=3.5, lw=1, color=BLUE, label="measured, standard error over disks")
     weight = table.duration * np.isin(table.disk, moving)
-    velocity2 = float(np.average((table.velocity**2).sum(axis=1), weights=weight))
-    axes.plot(tau, velocity2 * tau**2, color=ORANGE, lw=1.3, label=r"ballistic, $\langle v^2\rangle\,\tau^2$")
+    pace = pace_of_log(log)
+    lag = np.ldexp(tau, pace)
+    velocity2 = float(np.average((slowed(table.velocity, pace) ** 2).sum(axis=1), weights=weight))
+    axes.plot(tau, velocity2 * lag**2, color=ORANGE, lw=1.3, label=r"ballistic, $\langle v^2\rangle\,\tau^2$")
     pairs = int((log.b >= 0).sum())
     verdict = ""
     if pairs and len(np.unique(mass)) == 1 and log.scene.gravity is None:
-        rate = 2.0 * pairs / (len(mass) * (end - start))
+        rate = 2.0 * pairs / (len(mass) * float(np.ldexp(end - start, pace)))
         diffusion = enskog_diffusion(0.5 * velocity2, 1.0, rate)  # per mass
         axes.plot(
             tau,
-            4.0 * diffusion * tau,
+            4.0 * diffusion * lag,
             color=GREEN,
             lw=1.3,
             label=r"Enskog, $4 D \tau$, $D = kT / (m \cdot$ rate)",
         )
-        verdict = f", Enskog's D = {diffusion:.3g} {LENGTH}$^2$ / {TIME}"
+        verdict = f", Enskog's D = {in_words(diffusion, pace, 3)} {LENGTH}$^2$ / {TIME}"
     axes.set(xscale="log", yscale="log", ylim=(0.5 * mean.min(), 4.0 * mean.max()))
     label(
         axes, f"lag [{TIME}]", f"mean squared displacement [{LENGTH}$^2$]",

@@ -12,8 +12,10 @@ from eventsim.errors import LogError
 from eventsim.measure.speeds import maxwell_density, maxwell_survival
 from eventsim.record.events import Floats
 from eventsim.record.log import EventLog
+from eventsim.scene.pace import in_words, slowed
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import SPEED, label, name_of
+from eventsim.show.frames import pace_of_log
 from eventsim.show.palette import KINDS
 
 SAMPLES, BLOCKS = 400, 20
@@ -34,7 +36,8 @@ def draw(figure: Figure, log: EventLog) -> None:
         raise LogError(f"speeds: {len(masses)} finite masses in this scene; the figure shows 1 to {MOST_MASSES}")
     times = np.linspace(*replay.span, SAMPLES)
     velocity = np.array([replay.state_at(time).velocity for time in times.tolist()])
-    speed = np.hypot(velocity[..., 0], velocity[..., 1])
+    pace = pace_of_log(log)
+    speed = slowed(np.hypot(velocity[..., 0], velocity[..., 1]), pace)
     if not speed[:, moving].any():
         raise LogError("speeds: nothing moves in this run")
     temperature = float((0.5 * mass[moving] * speed[:, moving] ** 2).mean())
@@ -50,7 +53,7 @@ def draw(figure: Figure, log: EventLog) -> None:
         if moving.sum() >= FEWEST:
             v = np.linspace(0.0, edges[-1], 300)
             curve = maxwell_density(v, temperature, value)
-            axes.plot(v, curve, color=colour, lw=1.4, label=None if place else f"Maxwell, kT = {temperature:.4g}")
+            axes.plot(v, curve, color=colour, lw=1.4, label=None if place else f"Maxwell, kT = {in_words(temperature, 2 * pace)}")
             expected = -np.diff(maxwell_survival(edges, temperature, value)) / np.diff(edges)
             good = errors > 0.0
             chi2 += float((((heights - expected)[good] / errors[good]) ** 2).sum())
@@ -62,8 +65,8 @@ def draw(figure: Figure, log: EventLog) -> None:
     )
     label(
         axes,
-        f"speed [{SPEED}]",
-        "probability density [time / length]",
+        f"speed [{SPEED}]" if not pace else f"speed [2^{pace} {SPEED}]",
+        "probability density [time / length]" if not pace else f"probability density [2^{-pace} time / length]",
         f"{name_of(log.scene.name)}: {verdict}",
     )
     axes.set(xlim=(0.0, edges[-1]), ylim=(0.0, None))
