@@ -23,6 +23,9 @@ ROUNDING = 2.0**-97
 ENOUGH = 2.0**-56
 """A relative error that leaves the last bit of a float to the final rounding."""
 
+SMALL, LARGE = 2.0**-64, 2.0**64
+"""Lengths, speeds and times between these need no scaling: their products of any degree that occurs are floats."""
+
 LARGEST, CUT = 1024, 900
 """Exponents of the largest float, and of the largest one whose products with numbers below 1 are safe to split."""
 
@@ -54,8 +57,11 @@ def careful_pair_delay(
     """
     if ui == uj and wi == wj:
         return NEVER
-    length = _exponent(max(ri, rj, abs(xi), abs(yi), abs(xj), abs(yj), abs(shift_x), abs(shift_y)))
-    speed = _exponent(max(abs(ui), abs(wi), abs(uj), abs(wj)))
+    size = max(ri, rj, abs(xi), abs(yi), abs(xj), abs(yj), abs(shift_x), abs(shift_y))
+    fastest = max(abs(ui), abs(wi), abs(uj), abs(wj))
+    length = speed = 0
+    if not (SMALL < size < LARGE and SMALL < fastest < LARGE and abs(ti) < LARGE and abs(tj) < LARGE):
+        length, speed = _exponent(size), _exponent(fastest)
     clock = length - speed
     lag_i, lag_j = 0.0, 0.0
     rest_i, rest_j = 0.0, 0.0
@@ -88,6 +94,8 @@ def careful_pair_delay(
         if not d[0] > 0.0:
             return NEVER
         scaled_delay = _quotient(c, _minus(_root(d), b))
+    if clock == 0:
+        return scaled_delay
     mantissa, exponent = math.frexp(scaled_delay)
     return math.ldexp(mantissa, exponent + clock) if exponent + clock <= LARGEST else NEVER
 
@@ -109,6 +117,8 @@ def _exponent(size: float) -> int:
 
 def _shifted(x: float, power: int) -> float:
     """x times a power of two; so large a lag that its products would overflow belongs to a disk at rest, and is cut."""
+    if power == 0:
+        return x
     mantissa, exponent = math.frexp(x)
     return math.ldexp(mantissa, min(exponent + power, CUT))
 

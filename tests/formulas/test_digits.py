@@ -123,6 +123,17 @@ def test_ties_of_a_lattice_are_decided_exactly_at_any_speed(xi, yi, ui, wi, xj, 
     assert careful_pair_delay(*at(k)) == math.ldexp(careful_pair_delay(*slow), -k)
 
 
+@pytest.mark.parametrize("k", [-200, -70, 70, 200])
+def test_lengths_and_speeds_that_are_scaled_first_give_the_bits_of_those_that_are_not(k):
+    rng = random.Random(k)
+    for kind in ("plain", "near", "graze"):
+        for _ in range(100):
+            xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y = pair = pair_of(kind, rng)
+            long = [math.ldexp(value, k) for value in (xi, yi, ri, xj, yj, rj, shift_x, shift_y, ti, tj)]
+            delay = careful_pair_delay(*long[:2], ui, wi, long[8], long[2], *long[3:5], uj, wj, long[9], *long[5:8])
+            assert delay == math.ldexp(careful_pair_delay(*pair), k)
+
+
 def straight(x, dy, radius=0.5, speed=1.0):
     """Disk A at (x, dy) flies along x towards B at rest in the origin."""
     return x, dy, speed, 0.0, 0.0, radius, 0.0, 0.0, *STILL, 0.0, radius, 0.0, 0.0

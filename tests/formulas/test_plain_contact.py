@@ -5,7 +5,7 @@ from decimal import Decimal
 
 import pytest
 
-from eventsim.formulas.contact import DIGITS_LOST, SMALLEST, circle_delay, pair_delay, screened_pair_delay
+from eventsim.formulas.contact import DIGITS_LOST, NEAR, SMALLEST, circle_delay, pair_delay, screened_pair_delay
 from eventsim.formulas.real import NEVER
 
 PAIRS = [
@@ -47,15 +47,21 @@ def test_signs_decide_before_numbers(pair, delay):
 
 
 def test_the_limits_of_the_screen():
-    assert (DIGITS_LOST, SMALLEST) == (2.0**-12, 1e-290)
-    assert math.isnan(screened_pair_delay(-64.0, -1.0, 1.0, 0.0, 64.0))  # c = 1, 2^-12 of 4096
-    assert screened_pair_delay(-64.0, -1.5, 1.0, 0.0, 64.0) == 2.25 / (math.sqrt(4093.75) + 64.0)
-    assert screened_pair_delay(-64.0, -1.5, -1.0, 0.0, 64.0) == NEVER
-    # a reach^2 is 4096, so D may lose as much
-    assert math.isnan(screened_pair_delay(-100.0, 63.9921875, 1.0, 0.0, 64.0))  # D = 1 - 2^-14
-    assert screened_pair_delay(-100.0, 63.984375, 1.0, 0.0, 64.0) < NEVER
+    assert (DIGITS_LOST, NEAR, SMALLEST) == (2.0**-12, 2.01e-3, 1e-290)
+    assert math.isnan(screened_pair_delay(-64.0, -2.0, 1.0, 0.0, 64.0))  # c = 4, 2^-10 of 4096
+    assert screened_pair_delay(-64.0, -3.0, 1.0, 0.0, 64.0) == 9.0 / (math.sqrt(4087.0) + 64.0)
+    assert screened_pair_delay(-64.0, -2.0, -1.0, 0.0, 64.0) == NEVER  # b^2 is 4096, and needs no more than 1
+    assert screened_pair_delay(-64.0, 0.0, -0.015625, 0.25, 64.0) == NEVER  # 1 and more than .0625
+    assert math.isnan(screened_pair_delay(-64.0, 0.0, -0.0039, 0.25, 64.0))  # less than that
+    # a reach^2 is 4096 and a d^2 three times and a half as much: a D of that many 2^-12 is lost
+    assert math.isnan(screened_pair_delay(-100.0, 63.98, 1.0, 0.0, 64.0))  # D = 2.6, lost 3.4
+    assert screened_pair_delay(-100.0, 63.97, 1.0, 0.0, 64.0) < NEVER
     assert math.isnan(screened_pair_delay(-100.0, 64.00390625, 1.0, 0.0, 64.0))
     assert screened_pair_delay(-100.0, 64.015625, 1.0, 0.0, 64.0) == NEVER
+    # beyond 64 reaches no hit is told, but misses are
+    assert screened_pair_delay(-63.9, 0.0, 1.0, 0.0, 1.0) == pytest.approx(62.9, rel=1e-15)
+    assert math.isnan(screened_pair_delay(-64.0, 0.0, 1.0, 0.0, 1.0))
+    assert screened_pair_delay(-1e9, 1.001, 1.0, 0.0, 1.0) == NEVER
 
 
 def test_squares_that_vanish_are_doubted_except_at_rest():

@@ -14,7 +14,7 @@ from numba.extending import intrinsic
 
 from eventsim.engines.fast.layout import REALS
 from eventsim.engines.fast.memory import F64, I8, I32, I64, call, f64, i64, place
-from eventsim.formulas.contact import DIGITS_LOST, SMALLEST
+from eventsim.formulas.contact import DIGITS_LOST, NEAR, SMALLEST
 
 I16, I1 = ir.IntType(16), ir.IntType(1)
 V8, V16, M16 = ir.VectorType(F64, 8), ir.VectorType(I32, 16), ir.VectorType(I1, 16)
@@ -144,15 +144,17 @@ def contact_of_eight(
         approach = add(mul(dx, du), mul(dy, dw))
         reach = add(r, other_r)
         reach2 = mul(reach, reach)
-        c = sub(add(mul(dx, dx), mul(dy, dy)), reach2)
+        d2 = add(mul(dx, dx), mul(dy, dy))
+        c = sub(d2, reach2)
         cross = sub(mul(dx, dw), mul(dy, du))
         a = add(mul(du, du), mul(dw, dw))
-        bound = mul(a, reach2)
-        discriminant = sub(bound, mul(cross, cross))
-        lost = constant(DIGITS_LOST * (1.0 + SAFE))
-        slack = call(b, "llvm.fma.v8f64", V8, lost, bound, constant(SMALLEST * (1.0 + SAFE)))
-        told = b.and_(less(mul(lost, reach2), c), less(slack, call(b, "llvm.fabs.v8f64", V8, discriminant)))
-        doubted = b.and_(b.not_(told), b.fcmp_ordered("ord", other_x, other_x))
+        discriminant = sub(mul(a, reach2), mul(cross, cross))
+        lost, least = constant(DIGITS_LOST * (1.0 + SAFE)), constant(SMALLEST * (1.0 + SAFE))
+        slack = call(b, "llvm.fma.v8f64", V8, lost, mul(a, d2), least)
+        apart = less(mul(constant(NEAR * (1.0 + SAFE)), reach2), c)
+        told = b.and_(apart, less(slack, call(b, "llvm.fabs.v8f64", V8, discriminant)))
+        recedes = less(slack, mul(approach, call(b, "llvm.fabs.v8f64", V8, approach)))
+        doubted = b.and_(b.not_(b.or_(told, recedes)), b.fcmp_ordered("ord", other_x, other_x))
         meets = b.and_(told, b.and_(less(approach, constant(0.0)), less(slack, discriminant)))
         root = call(b, "llvm.sqrt.v8f64", V8, discriminant)
         delay = b.fdiv(c, sub(root, approach))
