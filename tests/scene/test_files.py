@@ -56,7 +56,7 @@ def scenes(draw):
         draw(st.lists(points, min_size=count, max_size=count)),
         draw(st.lists(points, min_size=count, max_size=count)),
         0.0,
-        draw(st.lists(st.one_of(st.floats(0, 1e250), st.just(math.inf)), min_size=count, max_size=count)),
+        draw(st.lists(st.sampled_from([0.0, math.inf]) | st.floats(1e-320, 1e250), min_size=count, max_size=count)),
     )
     return Scene(
         disks,
