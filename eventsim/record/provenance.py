@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 from eventsim.errors import LogError, SceneError
@@ -15,6 +16,8 @@ from eventsim.scene.files import scene_from_dict, scene_to_json
 
 FORMAT = 1
 """Version of the file format; a reader refuses versions it does not know."""
+
+BEFORE_SCENE = '{"scene": '
 
 Kick = tuple[int, float, float]
 """Event number and the velocity that was set."""
@@ -68,8 +71,13 @@ def kicks_of(rows: Rows) -> list[Kick]:
 def provenance_text(provenance: Provenance, scene: str | None = None) -> str:
     """Return the provenance as one line of JSON (ASCII only, so that characters are bytes).
 
-    scene: its scene as JSON, where that is known: of many disks it takes a while.
+    scene: its scene as JSON, where that is known.
     """
+    return BEFORE_SCENE + (scene or scene_to_json(provenance.scene)) + text_after_scene(provenance)
+
+
+def text_after_scene(provenance: Provenance) -> str:
+    """Return what of that line comes after the scene: the one part that the end of a run changes."""
     ending = provenance.ending
     data = {
         "format": FORMAT,
@@ -90,11 +98,14 @@ def provenance_text(provenance: Provenance, scene: str | None = None) -> str:
         },
         "rows": provenance.rows,
     }
-    return f'{{"scene": {scene or scene_to_json(provenance.scene)}, {json.dumps(data)[1:]}'
+    return f", {json.dumps(data)[1:]}"
 
 
-def provenance_from_text(text: str, source: str) -> Provenance:
-    """Read what `provenance_text` wrote; raise LogError naming `source` for anything else."""
+def provenance_from_text(text: str, source: str, base_dir: Path | None = None) -> Provenance:
+    """Read what `provenance_text` wrote; raise LogError naming `source` for anything else.
+
+    base_dir: where the disks of a scene are that has them beside it.
+    """
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
@@ -106,7 +117,7 @@ def provenance_from_text(text: str, source: str) -> Provenance:
             f"{source}: written in log format {data['format']!r}; this version of eventsim reads format {FORMAT}"
         )
     try:
-        scene = scene_from_dict(data["scene"], source=f"scene in {source}")
+        scene = scene_from_dict(data["scene"], base_dir, source=f"scene in {source}")
     except SceneError as error:
         raise LogError(f"{source}: the scene inside the log is damaged: {error}") from None
     try:

@@ -12,6 +12,7 @@ import struct
 import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
+from functools import lru_cache
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -147,22 +148,34 @@ class Deflated(Entry):
         raw = column.tobytes()
         if raw != self._last.raw:
             data = raw if self._labels is None else self._labels[column].tobytes()
-            deflate = zlib.compressobj(FASTEST, zlib.DEFLATED, -zlib.MAX_WBITS)
-            deflated = deflate.compress(data) + deflate.flush(zlib.Z_FULL_FLUSH)
-            self._last = _Piece(raw, deflated, len(data), zlib.crc32(data), _power(8 * len(data)))
-        self._file.write(self._last.deflated)
-        self.crc = _product(self._last.shift, self.crc) ^ self._last.crc
-        self.size += self._last.size
+            deflated = deflated_alone(data)
+            self._last = _Piece(raw, deflated, len(data), zlib.crc32(data))
+            self._add(data, deflated)
+        else:
+            self._file.write(self._last.deflated)
+            self.crc = _product(_shift(self._last.size), self.crc) ^ self._last.crc
+            self.size += self._last.size
+
+    def _add(self, data: bytes, deflated: bytes) -> None:
+        """Append a text; deflated: as it is in the archive."""
+        self._file.write(deflated)
+        self.crc = zlib.crc32(data, self.crc)
+        self.size += len(data)
 
 
 class _Piece(NamedTuple):
-    """A piece of an entry: its numbers; as it is in the archive; of its text: the length, the CRC, x^(8 length)."""
+    """A piece of an entry: its numbers; as it is in the archive; of its text: the length and the CRC."""
 
     raw: bytes
     deflated: bytes
     size: int
     crc: int
-    shift: int = 1 << 31
+
+
+def deflated_alone(data: bytes) -> bytes:
+    """A text in the deflate format that refers to nothing before it, up to a whole byte, and may be followed by more."""
+    deflate = zlib.compressobj(FASTEST, zlib.DEFLATED, -zlib.MAX_WBITS)
+    return deflate.compress(data) + deflate.flush(zlib.Z_FULL_FLUSH)
 
 
 def write_archive(path: Path, entries: Iterable[Entry]) -> None:
@@ -188,6 +201,12 @@ def combined_crc(first: int, second: int, length: int) -> int:
     A text moved by a bit is multiplied by x modulo the polynomial, so the first is multiplied by x^(8 length).
     """
     return _product(_power(8 * length), first) ^ second
+
+
+@lru_cache(maxsize=8)
+def _shift(length: int) -> int:
+    """What a text is multiplied by where one of this length follows; asked for the same few lengths again and again."""
+    return _power(8 * length)
 
 
 def _power(exponent: int) -> int:

@@ -1,7 +1,8 @@
-"""The journal of a binary log that grows: each column is a raw file in the directory NAME.part.
+"""The journal of a binary log that grows, in the directory NAME.part: each column is a raw file, steady ones are runs.
 
 Beside it the format's own file comes into being, of which a run that was killed would leave nothing to read.  The journal keeps
-every row that was written: the shortest column says how many are whole.
+every row that was written: the shortest file says how many are whole.  What it would not need to keep it does not: writing it,
+and removing it in the end, is a good part of what a log costs.
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ from __future__ import annotations
 import os
 import shutil
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain, islice
 from pathlib import Path
 from typing import IO, TypeAlias
 
@@ -17,16 +19,29 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows, blank_rows
+from eventsim.record.files.runs import STEADY, columns_of_runs, cut_runs, rows_in_runs, runs_of
 from eventsim.record.files.sink import FileSink, demand_same
 from eventsim.record.files.table import columns_kept
-from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
-from eventsim.scene.files import scene_to_json
+from eventsim.record.provenance import (
+    BEFORE_SCENE,
+    Provenance,
+    provenance_from_text,
+    provenance_text,
+    text_after_scene,
+)
+from eventsim.scene.files import scene_beside, scene_texts
 
 METADATA = "eventsim"
 """The file with the metadata beside the columns."""
 
 WHOLE = "whole"
 """The format's own file, in the making."""
+
+RUNS = "runs"
+"""The file with the runs of the steady columns."""
+
+NUMBER = "event"
+"""The column that is counted anew when a journal is read."""
 
 GROUP = 1 << 17
 """Rows held at a time."""
@@ -36,10 +51,14 @@ Columns: TypeAlias = dict[str, Column]
 
 
 class JournalSink(FileSink):
-    """Keeps a journal beside the format's own file, which a format supplies by `_begin`, `_put`, `_complete` and `_stop`."""
+    """Keeps a journal beside the format's own file.
+
+    A format supplies `_begin`, `_put`, `_describe`, `_complete` and `_stop`.  The metadata tell every disk of the scene:
+    their text is made in passing, a piece with every block of rows, where the writer's thread has time for it.
+    """
 
     _journal: dict[str, IO[bytes]]
-    _scene: str
+    _texts: Iterator[str]
 
     @abstractmethod
     def _begin(self) -> None:
@@ -50,8 +69,12 @@ class JournalSink(FileSink):
         """Append to it a block that the journal has."""
 
     @abstractmethod
-    def _complete(self, metadata: str) -> None:
-        """Have the whole file, with these metadata, at `self.part / WHOLE`."""
+    def _describe(self, text: str) -> None:
+        """Append to its metadata."""
+
+    @abstractmethod
+    def _complete(self) -> None:
+        """Have the whole file at `self.part / WHOLE`."""
 
     @abstractmethod
     def _stop(self) -> None:
@@ -65,13 +88,12 @@ class JournalSink(FileSink):
         # A run may be killed at any moment: the journal comes in one piece, and goes in one.
         begun = self._beside()
         begun.mkdir()
-        self._scene = scene_to_json(self.provenance.scene)
-        (begun / METADATA).write_text(provenance_text(self.provenance, self._scene), encoding="ascii")
-        for name in self.columns:
+        scene = scene_beside(self.provenance.scene, begun)
+        (begun / METADATA).write_text(provenance_text(self.provenance, scene), encoding="ascii")
+        for name in self._files:
             (begun / name).touch()
         begun.replace(self.part)
-        self._journal = {name: (self.part / name).open("ab", buffering=0) for name in self.columns}
-        self._begin()
+        self._go_on()
 
     def _reopen(self, rows: int) -> None:
         self._journal = {}
@@ -79,26 +101,39 @@ class JournalSink(FileSink):
         found = rows_in_journal(self.part, self.columns)
         if found < rows:
             raise LogError(f"{self.part}: holds {found} rows of {rows}")
-        for name in self.columns:
+        for name in raw(self.columns):
             os.truncate(self.part / name, rows * ROW[name].itemsize)
-        self._scene = scene_to_json(self.provenance.scene)
-        self._journal = {name: (self.part / name).open("ab", buffering=0) for name in self.columns}
-        self._begin()
+        cut_runs(self.part / RUNS, rows)
+        self._go_on()
         for columns in columns_of_journal(self.part, self.columns, rows):
             self._put(columns)
 
+    @property
+    def _files(self) -> tuple[str, ...]:
+        return (*raw(self.columns), RUNS)
+
+    def _go_on(self) -> None:
+        self._journal = {name: (self.part / name).open("ab", buffering=0) for name in self._files}
+        self._texts = chain([BEFORE_SCENE], scene_texts(self.provenance.scene))
+        self._begin()
+
     def _append(self, rows: Rows) -> None:
         columns = {name: np.ascontiguousarray(rows[name]) for name in self.columns}
-        for name, file in self._journal.items():
-            _write_all(file, columns[name])
+        for name in raw(self.columns):
+            _write_all(self._journal[name], columns[name])
+        _write_all(self._journal[RUNS], runs_of(columns, self._count).view(np.uint8))
         self._put(columns)
+        for text in islice(self._texts, 1):
+            self._describe(text)
 
     def _sync(self) -> None:
         for file in self._journal.values():
             os.fsync(file.fileno())
 
     def _finish(self, provenance: Provenance) -> Path:
-        self._complete(provenance_text(provenance, self._scene))
+        for text in chain(self._texts, [text_after_scene(provenance)]):
+            self._describe(text)
+        self._complete()
         self._release()
         return self.part / WHOLE
 
@@ -133,13 +168,19 @@ def journal_provenance(part: Path) -> Provenance:
         text = (part / METADATA).read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError):
         raise LogError(f"{part}: not an event log that grows: it has no readable metadata") from None
-    return provenance_from_text(text, str(part))
+    return provenance_from_text(text, str(part), part)
+
+
+def raw(columns: Iterable[str]) -> tuple[str, ...]:
+    """Those of some columns that have a file of their own."""
+    return tuple(name for name in columns if name != NUMBER and name not in STEADY)
 
 
 def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
-    """How many rows are whole; LogError where a column is missing."""
+    """How many rows are whole; LogError where a file is missing."""
     try:
-        return min((part / name).stat().st_size // ROW[name].itemsize for name in columns)
+        sizes = [(part / name).stat().st_size // ROW[name].itemsize for name in raw(columns)]
+        return min(*sizes, rows_in_runs(part / RUNS))
     except OSError as error:
         raise LogError(f"{part}: not an event log that grows: {error.strerror}: {error.filename}") from None
 
@@ -147,11 +188,12 @@ def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
 def columns_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterator[Columns]:
     """The columns of the first `count` rows, in blocks."""
     for first in range(0, count, GROUP):
-        found: Columns = {}
-        for name in names:
+        here = min(GROUP, count - first)
+        found: Columns = {NUMBER: np.arange(first, first + here), **columns_of_runs(part / RUNS, first, here)}
+        for name in raw(names):
             with open(part / name, "rb") as source:
                 source.seek(first * ROW[name].itemsize)
-                found[name] = np.frombuffer(source.read(min(GROUP, count - first) * ROW[name].itemsize), ROW[name])
+                found[name] = np.frombuffer(source.read(here * ROW[name].itemsize), ROW[name])
         yield found
 
 

@@ -20,12 +20,13 @@ import numpy as np
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column
 from eventsim.record.files.archive import Deflated, Entry, Stored, write_archive
-from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink
+from eventsim.record.files.counting import Counting
+from eventsim.record.files.journal import METADATA, NUMBER, WHOLE, Columns, JournalSink
+from eventsim.record.files.runs import STEADY
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import provenance_from_text
 
-DEFLATED = ("kind", "wall", "joint", "epoch")
 DEFLATED_FILE = ".deflated"
 
 
@@ -35,29 +36,34 @@ class NpzSink(JournalSink):
     _entries: Mapping[str, Entry] = MappingProxyType({})
 
     def _begin(self) -> None:
+        self._metadata = Deflated(f"{METADATA}.npy", self.part / (METADATA + DEFLATED_FILE))
+        self._length = 0
         self._entries = {name: self._entry(name) for name in self.columns}
 
     def _put(self, columns: Columns) -> None:
         for name, entry in self._entries.items():
             entry.write(columns[name])
 
-    def _complete(self, metadata: str) -> None:
-        text = np.frombuffer(metadata.encode("ascii"), dtype=np.uint8)
-        first = Deflated(f"{METADATA}.npy", self.part / (METADATA + DEFLATED_FILE))
-        first.write(text)
-        first.finish(_header(text.dtype, len(text)))
+    def _describe(self, text: str) -> None:
+        self._metadata.write(np.frombuffer(text.encode("ascii"), np.uint8))
+        self._length += len(text)
+
+    def _complete(self) -> None:
+        self._metadata.finish(_header(np.dtype(np.uint8), self._length))
         for name, entry in self._entries.items():
             labels = labels_of(name, self.provenance.wall_names)
             entry.finish(_header(ROW[name] if labels is None else labels.dtype, self._count))
-        write_archive(self.part / WHOLE, [first, *self._entries.values()])
+        write_archive(self.part / WHOLE, [self._metadata, *self._entries.values()])
 
     def _stop(self) -> None:
-        for entry in self._entries.values():
+        for entry in (self._metadata, *self._entries.values()) if self._entries else ():
             entry.close()
 
     def _entry(self, name: str) -> Entry:
         """What is stored as it is needs no other file than that of the journal."""
-        if name in DEFLATED:
+        if name == NUMBER:
+            return Counting(f"{name}.npy", self.part / (name + DEFLATED_FILE))
+        if name in STEADY:
             labels = labels_of(name, self.provenance.wall_names)
             return Deflated(f"{name}.npy", self.part / (name + DEFLATED_FILE), labels)
         return Stored(f"{name}.npy", self.part / name)

@@ -35,6 +35,7 @@ class ParquetSink(JournalSink):
         whole = {name: "DELTA_BINARY_PACKED" for name in self.columns if name not in TEXTS and ROW[name].kind == "i"}
         schema = _schema(self.columns)
         self._writer = pq.ParquetWriter(self.part / WHOLE, schema, store_schema=False, column_encoding=whole, **LEAN)
+        self._metadata: list[str] = []
         self._waiting: list[Columns] = []
         self._count_waiting = 0
 
@@ -44,10 +45,13 @@ class ParquetSink(JournalSink):
         if self._count_waiting >= GROUP:
             self._write_waiting(self._count_waiting // GROUP * GROUP)
 
-    def _complete(self, metadata: str) -> None:
+    def _describe(self, text: str) -> None:
+        self._metadata.append(text)
+
+    def _complete(self) -> None:
         if self._waiting:
             self._write_waiting(self._count_waiting)
-        self._writer.add_key_value_metadata({METADATA: metadata})
+        self._writer.add_key_value_metadata({METADATA: "".join(self._metadata)})
         self._stop()
 
     def _write_waiting(self, count: int) -> None:
