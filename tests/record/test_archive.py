@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eventsim.record.files.archive import PIECE, Deflated, Stored, write_archive
+from eventsim.record.files.counting import PAGE, Counting
 
 CODES = {
     "constant": np.zeros(5 * PIECE + 3, np.int64),
@@ -38,3 +39,20 @@ def test_entries_are_whole_and_do_not_tell_in_which_blocks_they_came(tmp_path, c
         assert archive.testzip() is None
         assert archive.read("s") == b"the head" + codes.tobytes()
         assert archive.read("d") == b"the head" + (codes if labels is None else labels[codes]).tobytes()
+
+
+@pytest.mark.parametrize("count", [0, 1, PAGE - 1, PAGE, 300 * PAGE + 7])
+def test_numbers_of_rows_are_read_back_whatever_blocks_they_came_in(tmp_path, count):
+    found = []
+    for block in (1, PAGE - 1, count + 1) if count < 10 * PAGE else (10 * PAGE + 1, count):
+        entry = Counting("n", tmp_path / "n")
+        for first in range(0, count, block):
+            entry.write(np.arange(first, min(first + block, count)))
+        entry.finish(b"the head")
+        write_archive(tmp_path / "whole", [entry])
+        with zipfile.ZipFile(tmp_path / "whole") as archive:
+            assert archive.testzip() is None
+            assert archive.read("n") == b"the head" + np.arange(count, dtype="<i8").tobytes()
+        found.append((tmp_path / "whole").read_bytes())
+    assert len(set(found)) == 1
+    assert len(found[0]) < 3 * count + 1000
