@@ -53,6 +53,26 @@ def images(m, rules, i, j, now, x, y):
 
 
 @inline
+def flight_of(m, i):
+    """x, y, vx, vy, t, radius."""
+    f = i * REALS
+    return (
+        real(m.disks, f + X),
+        real(m.disks, f + Y),
+        real(m.disks, f + VX),
+        real(m.disks, f + VY),
+        real(m.disks, f + T),
+        real(m.disks, f + RADIUS),
+    )
+
+
+@inline
+def low_place_of(m, i):
+    """The low parts of x and y."""
+    return real(m.low_places, 2 * i), real(m.low_places, 2 * i + 1)
+
+
+@inline
 def pair_time(m, rules, i, j, kx, ky):
     """The contact time of two disks; symmetric under their exchange, bit for bit."""
     return _pair_time(m, rules, i, j, kx, ky, m.low_places)
@@ -62,15 +82,15 @@ def pair_time(m, rules, i, j, kx, ky):
 def _pair_time(m, rules, i, j, kx, ky, low):
     if low is not None:
         return _wide_pair_time(m, rules, i, j, kx, ky)
-    f, g = i * REALS, j * REALS
-    ti, tj = real(m.disks, f + T), real(m.disks, g + T)
+    (xi, yi, ui, wi, ti, _), (xj, yj, uj, wj, tj, _) = flight_of(m, i), flight_of(m, j)
     begin = ti if ti > tj else tj
     ax, ay = pulls(m, rules, i)
     bx, by = pulls(m, rules, j)
     lag, other_lag = begin - ti, begin - tj
-    ui, wi, uj, wj = real(m.disks, f + VX), real(m.disks, f + VY), real(m.disks, g + VX), real(m.disks, g + VY)
-    dx = position(real(m.disks, f + X), ui, lag, ax) - position(real(m.disks, g + X), uj, other_lag, bx)
-    dy = position(real(m.disks, f + Y), wi, lag, ay) - position(real(m.disks, g + Y), wj, other_lag, by)
+    dx, dy = (
+        position(xi, ui, lag, ax) - position(xj, uj, other_lag, bx),
+        position(yi, wi, lag, ay) - position(yj, wj, other_lag, by),
+    )
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
@@ -80,28 +100,9 @@ def _pair_time(m, rules, i, j, kx, ky, low):
 @part
 def _wide_pair_time(m, rules, i, j, kx, ky):
     """The same from places with low parts."""
-    f, g = i * REALS, j * REALS
-    ti, tj = real(m.disks, f + T), real(m.disks, g + T)
-    delay = wide_pair_delay(
-        real(m.disks, f + X),
-        real(m.disks, f + Y),
-        real(m.disks, f + VX),
-        real(m.disks, f + VY),
-        ti,
-        real(m.disks, f + RADIUS),
-        real(m.low_places, 2 * i),
-        real(m.low_places, 2 * i + 1),
-        real(m.disks, g + X),
-        real(m.disks, g + Y),
-        real(m.disks, g + VX),
-        real(m.disks, g + VY),
-        tj,
-        real(m.disks, g + RADIUS),
-        real(m.low_places, 2 * j),
-        real(m.low_places, 2 * j + 1),
-        shift(kx, rules.length_x),
-        shift(ky, rules.length_y),
-    )
+    flight, other = flight_of(m, i) + low_place_of(m, i), flight_of(m, j) + low_place_of(m, j)
+    delay = wide_pair_delay(*flight, *other, shift(kx, rules.length_x), shift(ky, rules.length_y))
+    ti, tj = flight[4], other[4]
     return (ti if ti > tj else tj) + delay
 
 
@@ -132,23 +133,7 @@ def _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, reach):
     delay = rescaled_pair_delay(dx, dy, du, dw, reach)
     if delay == delay:
         return delay
-    f, g = i * REALS, j * REALS
-    return careful_pair_delay(
-        real(m.disks, f + X),
-        real(m.disks, f + Y),
-        real(m.disks, f + VX),
-        real(m.disks, f + VY),
-        real(m.disks, f + T),
-        real(m.disks, f + RADIUS),
-        real(m.disks, g + X),
-        real(m.disks, g + Y),
-        real(m.disks, g + VX),
-        real(m.disks, g + VY),
-        real(m.disks, g + T),
-        real(m.disks, g + RADIUS),
-        shift(kx, rules.length_x),
-        shift(ky, rules.length_y),
-    )
+    return careful_pair_delay(*flight_of(m, i), *flight_of(m, j), shift(kx, rules.length_x), shift(ky, rules.length_y))
 
 
 @inline
