@@ -22,10 +22,9 @@ from tests.benchmarks.table import Table, arguments
 
 COLUMNS = ("peer", "n", "eta", "unit", "peer_rate", "fast_rate", "ratio")
 STEP = 1e-3
-FASTER = 1000.0
-"""How much more work the fast engine gets than `billiards`, so that both can be timed."""
+PEER_CONTACTS, OWN_CONTACTS = 1000, 1_000_000
+"""The fast engine gets more work than `billiards`, so that both can be timed."""
 
-PEER_CONTACTS = 1000
 PEER_SECONDS, OWN_SECONDS = 0.5, 20.0
 """Simulated seconds of pymunk and of the fast engine."""
 
@@ -44,14 +43,13 @@ def gas(n: int, eta: float) -> es.Scene:
 def own_contacts(scene: es.Scene) -> Timed:
     """Contacts per second of the fast engine, walls included."""
     session = ENGINES["fast"].open(stage_of(scene), keep_rows=False)
-    contacts = int(PEER_CONTACTS * FASTER)
 
     def timed() -> float:
-        stop = Stop(events=session.counters.events + contacts)
+        stop = Stop(events=session.counters.events + OWN_CONTACTS)
         begun = process_time()
         while session.advance(stop, 1 << 20) is None:
             pass
-        return contacts / (process_time() - begun)
+        return OWN_CONTACTS / (process_time() - begun)
 
     return timed
 
@@ -119,6 +117,13 @@ def pymunk_seconds(scene: es.Scene) -> Timed:
         return PEER_SECONDS / (process_time() - begun)
 
     return timed
+
+
+def pymunk_contacts(scene: es.Scene) -> tuple[int, Timed]:
+    """How many contacts the gas has in the time that pymunk simulates in a turn, and those per second."""
+    seconds = pymunk_seconds(scene)
+    per_second = OWN_CONTACTS / (es.simulate(scene, events=OWN_CONTACTS, engine="fast").time - scene.start_time)
+    return round(PEER_SECONDS * per_second), lambda: per_second * seconds()
 
 
 def compare(

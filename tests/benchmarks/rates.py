@@ -1,9 +1,12 @@
-"""Rates side by side: fast, reference, yardstick where one is given; repeats in turn, medians of CPU time, ratios in one run.
+"""Rates side by side: fast, reference, yardstick where one is given, PyPI's `billiards` and pymunk where they are installed;
+repeats in turn, medians of CPU time, ratios in one run.
 
     python -m tests.benchmarks.rates [--n 1000 10000] [--eta 0.2 0.5 0.7] [--yardstick FOLDER] [--csv FILE]
 
-The gas: equal disks of diameter 1 from a triangular lattice with Maxwell velocities, in a periodic box.
-The yardstick is a folder with a module `yardstick` that has `System(n, eta)` with `advance(contacts)`.
+The gas: equal disks of diameter 1 from a triangular lattice with Maxwell velocities, in a periodic box.  Up to 1000 disks a
+second one, that of `peers` between hard walls, is for those two, with the fast engine beside them; pymunk's contacts are those
+that the gas has in the time that it simulates.  The reference engine is left out above 1e5 disks, where it would take minutes
+to begin.  The yardstick is a folder with a module `yardstick` that has `System(n, eta)` with `advance(contacts)`.
 """
 
 from __future__ import annotations
@@ -13,6 +16,7 @@ import math
 import statistics
 import sys
 from collections.abc import Callable
+from importlib.util import find_spec
 from time import process_time
 
 import numpy as np
@@ -21,21 +25,25 @@ import eventsim as es
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
 from eventsim.scene.stage import stage_of
+from tests.benchmarks import peers
 from tests.benchmarks.table import Table, arguments, whole
 
 COLUMNS = (
     "n",
     "eta",
+    "domain",
     "engine",
     "log",
     "contacts",
     "rate_median",
     "rate_min",
     "rate_max",
+    "of_fast",
     "of_yardstick",
     "bytes_per_disk",
 )
 BUDGET = 1 << 20
+MOST_FOR_REFERENCE, MOST_FOR_PEERS = 100_000, 1000
 Advance = Callable[[int], object]
 """Advance by so many contacts."""
 
@@ -90,7 +98,7 @@ def measure(
         ("fast", True): engine_advance("fast", scene, True),
     }
     share = dict.fromkeys(engines, 1.0)
-    if n <= 10_000:
+    if n <= MOST_FOR_REFERENCE:
         engines["reference", False] = engine_advance("reference", scene, False)
         share["reference", False] = 0.01
     if folder is not None:
@@ -104,30 +112,68 @@ def measure(
         for key, advance in engines.items():
             part = max(1, int(share[key] * contacts))
             rates[key].append(part / timed(advance, part))
-    base = statistics.median(rates["yardstick", False]) if folder is not None else None
-    rows = []
-    for key, found in rates.items():
-        middle = statistics.median(found)
-        rows.append(
-            {
-                "n": len(scene.disks),
-                "eta": eta,
-                "engine": key[0],
-                "log": "on" if key[1] else "off",
-                "contacts": max(1, int(share[key] * contacts)),
-                "rate_median": round(middle),
-                "rate_min": round(min(found)),
-                "rate_max": round(max(found)),
-                "of_yardstick": "" if base is None else round(middle / base, 3),
-                "bytes_per_disk": bytes_per_disk(scene) if key == ("fast", False) else "",
-            }
-        )
-    return rows
+    middle = {key: statistics.median(found) for key, found in rates.items()}
+    return [
+        {
+            "n": len(scene.disks),
+            "eta": eta,
+            "domain": "periodic",
+            "engine": key[0],
+            "log": "on" if key[1] else "off",
+            "contacts": max(1, int(share[key] * contacts)),
+            **spread(found),
+            "of_fast": round(middle[key] / middle["fast", False], 6),
+            "of_yardstick": round(middle[key] / middle["yardstick", False], 3) if folder is not None else "",
+            "bytes_per_disk": bytes_per_disk(scene) if key == ("fast", False) else "",
+        }
+        for key, found in rates.items()
+    ]
+
+
+def spread(found: list[float]) -> dict[str, object]:
+    """The columns of the rates that were found."""
+    return {
+        "rate_median": round(statistics.median(found)),
+        "rate_min": round(min(found)),
+        "rate_max": round(max(found)),
+    }
+
+
+def measure_peers(n: int, eta: float, repeats: int) -> list[dict[str, object]]:
+    """The rows of other people's engines; none where there are none."""
+    scene = peers.gas(n, eta)
+    pace: dict[str, tuple[int, peers.Timed]] = {"fast": (peers.OWN_CONTACTS, peers.own_contacts(scene))}
+    if find_spec("billiards"):
+        pace["billiards"] = peers.PEER_CONTACTS, peers.billiards_contacts(scene)
+    if find_spec("pymunk"):
+        pace["pymunk"] = peers.pymunk_contacts(scene)
+    if len(pace) == 1:
+        return []
+    pace["fast"][1]()  # loads the kernels
+    rates: dict[str, list[float]] = {name: [] for name in pace}
+    for _ in range(repeats):
+        for name, (_, timed) in pace.items():
+            rates[name].append(timed())
+    return [
+        {
+            "n": n,
+            "eta": eta,
+            "domain": "box",
+            "engine": name,
+            "log": "off",
+            "contacts": pace[name][0],
+            **spread(found),
+            "of_fast": round(statistics.median(found) / statistics.median(rates["fast"]), 6),
+            "of_yardstick": "",
+            "bytes_per_disk": "",
+        }
+        for name, found in rates.items()
+    ]
 
 
 def main() -> None:
     parser = arguments(__doc__)
-    parser.add_argument("--n", type=whole, nargs="+", default=[100, 1000, 10_000])
+    parser.add_argument("--n", type=whole, nargs="+", default=[100, 1000, 10_000, 100_000, 1_000_000])
     parser.add_argument("--eta", type=float, nargs="+", default=[0.2, 0.5, 0.7])
     parser.add_argument("--contacts", type=whole, default=1_000_000)
     parser.add_argument("--repeats", type=int, default=5)
@@ -139,6 +185,9 @@ def main() -> None:
         for eta in chosen.eta:
             for row in measure(n, eta, chosen.contacts, chosen.repeats, chosen.yardstick, chosen.warm_up):
                 table.add(row)
+            if n <= MOST_FOR_PEERS:
+                for row in measure_peers(n, eta, chosen.repeats):
+                    table.add(row)
     table.write(chosen.csv)
 
 

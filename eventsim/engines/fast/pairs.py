@@ -101,7 +101,8 @@ def _pair_time(m, rules, i, j, kx, ky, low):
 def _wide_pair_time(m, rules, i, j, kx, ky):
     """The same from places with low parts."""
     flight, other = flight_of(m, i) + low_place_of(m, i), flight_of(m, j) + low_place_of(m, j)
-    delay = wide_pair_delay(*flight, *other, shift(kx, rules.length_x), shift(ky, rules.length_y))
+    flights = flight + other
+    delay = wide_pair_delay(*flights, shift(kx, rules.length_x), shift(ky, rules.length_y))
     ti, tj = flight[4], other[4]
     return (ti if ti > tj else tj) + delay
 
@@ -133,7 +134,8 @@ def _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, reach):
     delay = rescaled_pair_delay(dx, dy, du, dw, reach)
     if delay == delay:
         return delay
-    return careful_pair_delay(*flight_of(m, i), *flight_of(m, j), shift(kx, rules.length_x), shift(ky, rules.length_y))
+    flights = flight_of(m, i) + flight_of(m, j)
+    return careful_pair_delay(*flights, shift(kx, rules.length_x), shift(ky, rules.length_y))
 
 
 @inline
