@@ -44,6 +44,12 @@ def shift(k, length):
 
 
 @inline
+def shifts(rules, kx, ky):
+    """The distance of an image, along x and y."""
+    return shift(kx, rules.length_x), shift(ky, rules.length_y)
+
+
+@inline
 def images(m, rules, i, j, now, x, y):
     """The image (kx, ky) of disk j that is nearest to disk i, which is at (x, y)."""
     if rules.length_x is None and rules.length_y is None:
@@ -91,7 +97,8 @@ def _pair_time(m, rules, i, j, kx, ky, low):
         position(xi, ui, lag, ax) - position(xj, uj, other_lag, bx),
         position(yi, wi, lag, ay) - position(yj, wj, other_lag, by),
     )
-    dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
+    shift_x, shift_y = shifts(rules, kx, ky)
+    dx, dy = dx - shift_x, dy - shift_y
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
     return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, _or(rules.classes, m.supports))
@@ -101,8 +108,8 @@ def _pair_time(m, rules, i, j, kx, ky, low):
 def _wide_pair_time(m, rules, i, j, kx, ky):
     """The same from places with low parts."""
     flight, other = flight_of(m, i) + low_place_of(m, i), flight_of(m, j) + low_place_of(m, j)
-    flights = flight + other
-    delay = wide_pair_delay(*flights, shift(kx, rules.length_x), shift(ky, rules.length_y))
+    flights = flight + other + shifts(rules, kx, ky)
+    delay = wide_pair_delay(*flights)
     ti, tj = flight[4], other[4]
     return (ti if ti > tj else tj) + delay
 
@@ -134,8 +141,8 @@ def _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, reach):
     delay = rescaled_pair_delay(dx, dy, du, dw, reach)
     if delay == delay:
         return delay
-    flights = flight_of(m, i) + flight_of(m, j)
-    return careful_pair_delay(*flights, shift(kx, rules.length_x), shift(ky, rules.length_y))
+    flights = flight_of(m, i) + flight_of(m, j) + shifts(rules, kx, ky)
+    return careful_pair_delay(*flights)
 
 
 @inline
