@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from numbers import Real
-from typing import Any
+from typing import Any, NamedTuple
 
 from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFieldInvalid, Schema
 
@@ -150,46 +150,58 @@ assert DOMAIN.keys() == DOMAINS.keys()
 assert WALL.keys() == WALLS.keys()
 
 
-def read_table(schema: Schema, table: object, where: str, problems: list[str]) -> dict[str, Any] | None:
-    """The values of a table in the types of a schema; None, and one problem for each, where some do not fit.
+class Read(NamedTuple):
+    """What of a table could be read: the values that fit, by key, and the keys whose values do not, or are missing."""
+
+    values: dict[str, Any]
+    broken: frozenset[str] = frozenset()
+
+
+NOTHING = Read({}, frozenset({"kind"}))
+"""What of something that is no table, or one of no known kind, can be read."""
+
+
+def read_table(schema: Schema, table: object, where: str, problems: list[str]) -> Read:
+    """The values of a table in the types of a schema; a problem for each that does not fit.
 
     `where` is the path of the table, empty for the scene itself. An unknown key is a problem, but the rest of
     the table is read all the same.
     """
     if not isinstance(table, Mapping):
         problems.append(f"{where} = {shown(table)}: must be a table")
-        return None
+        return NOTHING
     prefix = f"{where}." if where else ""
     known = [str(key) for key in schema.schema]
     report_unknown(table, known, prefix, problems)
+    given = {key: value for key, value in table.items() if key in known}
     try:
-        values: dict[str, Any] = schema({key: value for key, value in table.items() if key in known})
-    except MultipleInvalid as broken:
-        for error in broken.errors:
+        return Read(schema(given))
+    except MultipleInvalid as invalid:
+        broken = set()
+        for error in invalid.errors:
             key = str(error.path[0])
+            broken.add(key)
             if isinstance(error, RequiredFieldInvalid):
                 problems.append(f"{prefix}{key} is missing")
             else:
                 problems.append(f"{prefix}{key} = {shown(table[key])}: {error.error_message}")
-        return None
-    return values
+    fitting = Schema({Optional(str(key)): kept for key, kept in schema.schema.items()})
+    return Read(fitting({key: value for key, value in given.items() if key not in broken}), frozenset(broken))
 
 
-def read_kind(
-    schemas: Mapping[str, Schema], table: object, where: str, problems: list[str]
-) -> dict[str, Any] | None:
+def read_kind(schemas: Mapping[str, Schema], table: object, where: str, problems: list[str]) -> Read:
     """The same for a table whose keys depend on its `kind`."""
     if not isinstance(table, Mapping):
         problems.append(f"{where} = {shown(table)}: must be a table")
-        return None
+        return NOTHING
     if "kind" not in table:
         problems.append(f"{where}.kind is missing: one of " + ", ".join(f'"{kind}"' for kind in schemas))
-        return None
+        return NOTHING
     try:
         kind = one_of(*schemas)(table["kind"])
     except Invalid as error:
         problems.append(f"{where}.kind = {shown(table['kind'])}: {error.error_message}")
-        return None
+        return NOTHING
     return read_table(schemas[kind], table, where, problems)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,9 +19,14 @@ from eventsim.scene.fill import place_gas
 from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems, region_of
 from eventsim.scene.names import BlockNames
 from eventsim.scene.scene import Scene
-from eventsim.scene.validate import NO_DISKS
-from eventsim.scene.wall_rules import shape_problems
+from eventsim.scene.validate import NO_DISKS, domain_problems, number_problems
+from eventsim.scene.wall_rules import key_problems, shape_problems
 from eventsim.scene.walls import WALLS, Wall
+
+DISK_STAND_IN = {"position": (0.0, 0.0), "radius": 0.0}
+DOMAIN_STAND_IN = {"size": (1.0, 1.0)}
+GAS_STAND_IN = {"count": 1, "radius": 1.0, "packing_fraction": 0.1}
+"""What is put in the place of a value that cannot be read, so that the rules can be applied to the others of its table."""
 
 
 def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Scene:
@@ -94,16 +99,18 @@ def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str]) ->
     scalars = {key: value for key, value in data.items() if key in schema.SCALARS}
     if isinstance(scalars.get("restitution"), Mapping):
         table = scalars.pop("restitution")
-        parts.values["restitution"] = schema.read_table(schema.RESTITUTION, table, "restitution", problems)
+        parts.values["restitution"] = schema.read_table(schema.RESTITUTION, table, "restitution", problems).values
     # One by one: a bad one does not keep the rules from being applied to the others.
     for key, value in scalars.items():
-        parts.values |= schema.read_table(schema.SCENE, {key: value}, "", problems) or {}
+        parts.values |= schema.read_table(schema.SCENE, {key: value}, "", problems).values
     if "domain" not in data:
         problems.append("domain is missing: a table with kind and size, as in the scene file's description")
     else:
-        table = schema.read_kind(schema.DOMAIN, data["domain"], "domain", problems)
-        if table is not None:
-            parts.domain = DOMAINS[table.pop("kind")](**table)
+        values, broken = schema.read_kind(schema.DOMAIN, data["domain"], "domain", problems)
+        if not broken:
+            parts.domain = DOMAINS[values.pop("kind")](**values)
+        elif "kind" not in broken:
+            problems += domain_problems(DOMAINS[values.pop("kind")](**DOMAIN_STAND_IN | values))
     _read_walls(data, parts, problems)
     _read_disks(data, parts, problems)
     _read_disks_files(data, base_dir, parts, problems)
@@ -126,9 +133,11 @@ def _read_walls(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> 
     read: dict[int, Wall] = {}
     tables = _tables(data, "wall", problems)
     for i, wall in enumerate(tables):
-        table = schema.read_kind(schema.WALL, wall, f"wall[{i}]", problems)
-        if table is not None:
-            read[i] = WALLS[table.pop("kind")](**table)
+        values, broken = schema.read_kind(schema.WALL, wall, f"wall[{i}]", problems)
+        if broken:
+            problems += [f"wall[{i}]{problem}" for problem in key_problems(values)]
+        else:
+            read[i] = WALLS[values.pop("kind")](**values)
     if len(read) == len(tables):
         parts.walls = list(read.values())
     else:
@@ -138,35 +147,43 @@ def _read_walls(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> 
 def _read_disks(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> None:
     """The [[disk]] tables that can be read."""
     read: dict[int, dict[str, Any]] = {}
+    partly: dict[int, dict[str, Any]] = {}
     for i, disk in enumerate(_tables(data, "disk", problems)):
-        table = schema.read_table(schema.DISK, disk, f"disk[{i}]", problems)
-        if table is not None:
-            read[i] = table
+        values, broken = schema.read_table(schema.DISK, disk, f"disk[{i}]", problems)
+        if broken:
+            partly[i] = DISK_STAND_IN | values
+        else:
+            read[i] = values
+    if partly:
+        names, disks = BlockNames(), _disks_of(partly.values())
+        names.add(0, "disk[{}]", list(partly))
+        problems += number_problems(disks, names, np.ones(len(disks), dtype=np.bool_))
     if read:
-        tables = read.values()
         parts.names.add(0, "disk[{}]", list(read))
-        parts.disks.append(
-            Disks(
-                [table["position"] for table in tables],
-                [table.get("velocity", (0.0, 0.0)) for table in tables],
-                [table["radius"] for table in tables],
-                [table.get("mass", 1.0) for table in tables],
-            )
-        )
+        parts.disks.append(_disks_of(read.values()))
+
+
+def _disks_of(tables: Collection[dict[str, Any]]) -> Disks:
+    return Disks(
+        [table["position"] for table in tables],
+        [table.get("velocity", (0.0, 0.0)) for table in tables],
+        [table["radius"] for table in tables],
+        [table.get("mass", 1.0) for table in tables],
+    )
 
 
 def _read_disks_files(data: Mapping[str, Any], base_dir: Path, parts: _Parts, problems: list[str]) -> None:
     """The disks of the [[disks_file]] tables that can be read."""
     for i, entry in enumerate(_tables(data, "disks_file", problems)):
-        table = schema.read_table(schema.DISKS_FILE, entry, f"disks_file[{i}]", problems)
-        if table is None:
+        values, broken = schema.read_table(schema.DISKS_FILE, entry, f"disks_file[{i}]", problems)
+        if broken:
             continue
         try:
-            file = read_disks_file(base_dir / table["path"])
+            file = read_disks_file(base_dir / values["path"])
         except SceneError as error:
             problems += [f"disks_file[{i}].path: {problem}" for problem in error.problems]
             continue
-        parts.names.add(sum(map(len, parts.disks)), f"{table['path']} {file.row} {{}}", file.number)
+        parts.names.add(sum(map(len, parts.disks)), f"{values['path']} {file.row} {{}}", file.number)
         parts.disks.append(file.disks)
 
 
@@ -176,12 +193,15 @@ def _read_gases(
     """The [[gas]] tables that keep the rules, each with its index."""
     gases: list[tuple[int, Gas]] = []
     for i, entry in enumerate(_tables(data, "gas", problems)):
-        table = schema.read_table(schema.GAS, entry, f"gas[{i}]", problems)
-        if table is None:
+        values, broken = schema.read_table(schema.GAS, entry, f"gas[{i}]", problems)
+        if broken and not values:
             continue
-        gas = Gas(**table)
-        problems += gas_problems(gas, domain, f"gas[{i}]", seeded=seed is not None)
-        gases.append((i, gas))
+        stand_ins = {key: value for key, value in GAS_STAND_IN.items() if key in broken}
+        gas = Gas(**stand_ins | values)
+        found = gas_problems(gas, domain, f"gas[{i}]", seeded=seed is not None)
+        problems += [problem for problem in found if not problem.startswith(tuple(f"gas[{i}].{key}" for key in broken))]
+        if not broken:
+            gases.append((i, gas))
     total = sum(gas.count for _, gas in gases)
     if len(gases) > 1 and total > MOST_DISKS:
         problems.append(f"gas: {total} disks in all: must be at most {MOST_DISKS}")

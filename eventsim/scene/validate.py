@@ -53,12 +53,12 @@ def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
         names: how to call the disks; by index if None.
     """
     names = names or DiskNames()
-    shapes = [*_domain_problems(scene.domain), *wall_problems(scene)]
+    shapes = [*domain_problems(scene.domain), *wall_problems(scene)]
     problems = [*_scalar_problems(scene), *shapes]
     if not len(scene.disks):
         return [*problems, NO_DISKS]
     sound = np.ones(len(scene.disks), dtype=np.bool_)
-    problems += _number_problems(scene.disks, names, sound)
+    problems += number_problems(scene.disks, names, sound)
     problems += [] if problems else list(scale_problems(scene))
     # In a domain that is none, among walls that are none, a place would mean nothing.
     if not shapes:
@@ -112,7 +112,7 @@ def _scalar_problems(scene: Scene) -> Iterator[str]:
         yield f"events = {scene.events}: must be at least 0"
 
 
-def _domain_problems(domain: Domain) -> Iterator[str]:
+def domain_problems(domain: Domain) -> Iterator[str]:
     """Rules for size and origin."""
     if isinstance(domain, Open):
         return
@@ -122,7 +122,7 @@ def _domain_problems(domain: Domain) -> Iterator[str]:
         yield f"domain.origin = {list(domain.origin)}: must be two finite numbers, at most {LONGEST}"
 
 
-def _number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -> list[str]:
+def number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -> list[str]:
     """Rules for the single numbers of each disk; marks in `sound` (N,) the disks that break one."""
     with np.errstate(invalid="ignore"):
         rules = {

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
 
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.numbers import LENGTHS, LONGEST, SHORTEST, Point, is_length, is_place
@@ -43,23 +44,22 @@ def _name_problems(walls: tuple[Wall, ...]) -> Iterator[str]:
         owner |= dict.fromkeys(taken, i)
 
 
+def key_problems(values: Mapping[str, Any]) -> Iterator[str]:
+    """Rules of the single values of a wall, by key; some may be missing. Each problem begins with the key that breaks it."""
+    if "radius" in values and not is_length(values["radius"]):
+        yield f".radius = {values['radius']}: {LENGTHS}"
+    keys = {f".{key}": values[key] for key in ("center", "start", "through", "end") if key in values}
+    keys |= {f".points[{k}]": p for k, p in enumerate(values.get("points", ()))}
+    for key, p in keys.items():
+        if not is_place(p):
+            yield f"{key} = {list(p)}: must be two finite numbers, at most {LONGEST}"
+
+
 def shape_problems(wall: Wall) -> Iterator[str]:
     """Rules of one wall, each beginning with the key that breaks it."""
-    if isinstance(wall, Segment):
-        keys = {".start": wall.start, ".end": wall.end}
-    elif isinstance(wall, Arc):
-        keys = {".start": wall.start, ".through": wall.through, ".end": wall.end}
-    elif isinstance(wall, Circle):
-        keys = {".center": wall.center}
-        if not is_length(wall.radius):
-            yield f".radius = {wall.radius}: {LENGTHS}"
-    else:
-        keys = {f".points[{k}]": p for k, p in enumerate(wall.points)}
-    infinite = [key for key, p in keys.items() if not is_place(p)]
-    yield from (
-        f"{key} = {list(keys[key])}: must be two finite numbers, at most {LONGEST}" for key in infinite
-    )
-    if infinite:
+    broken = list(key_problems({item.name: getattr(wall, item.name) for item in fields(wall)}))
+    yield from broken
+    if broken:
         return
     if isinstance(wall, Segment) and wall.start == wall.end:
         yield f": start and end are the same point {wall.start}: a segment needs a length"

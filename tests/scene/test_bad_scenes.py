@@ -194,6 +194,35 @@ BAD = {
             ["wall[1].kind = 'line'"],
         ],
     ),
+    "several mistakes in one table": (
+        '[domain]\nkind = "box"\nsize = 10\norigin = [1e200, 0]\n[restitution]\npair = "x"\nwall = 2\n'
+        + '[[disk]]\nposition = [1]\nradius = "x"\nmass = -1\nvelocity = [nan, 0]\n'
+        + "[[gas]]\ncount = 0.5\nradius = -1\ntemperature = 1\nspeed = 1\nseed = 0.5\n"
+        + '[[wall]]\nkind = "segment"\nstart = 0\nend = [1e200, 0]\n'
+        + '[[wall]]\nkind = "circle"\ncenter = "x"\nradius = -1\n',
+        [
+            ["domain.size = 10", "two numbers"],
+            ["domain.origin = [1e+200, 0.0]", "at most"],
+            ["restitution.pair = 'x'", "a number"],
+            ["restitution.wall = 2.0", "from 0 to 1"],
+            ["disk[0].position = [1]", "two numbers"],
+            ["disk[0].radius = 'x'", "a number"],
+            ["disk[0].mass = -1.0", "at least 0"],
+            ["disk[0].velocity = [nan, 0.0]", "finite"],
+            ["gas[0].count = 0.5", "whole number"],
+            ["gas[0].seed = 0.5", "whole number"],
+            ["gas[0].radius = -1.0", "at least 0"],
+            ["gas[0]: has both temperature and speed", "one of them"],
+            ["wall[0].start = 0", "two numbers"],
+            ["wall[0].end = [1e+200, 0.0]", "at most"],
+            ["wall[1].center = 'x'", "two numbers"],
+            ["wall[1].radius = -1.0", "above 0"],
+        ],
+    ),
+    "a gas and a disk that are no tables": (
+        "gas = [3]\ndisk = [3]\n" + BOX,
+        [["gas[0] = 3", "must be a table"], ["disk[0] = 3", "must be a table"]],
+    ),
     "not TOML": ("until = \n", [["not valid TOML", "line 1"]]),
 }
 
