@@ -14,12 +14,17 @@ PATIENCE = 0.5
 """Seconds of work before a bar appears: short work shows none and does not pay for importing one."""
 
 
+IDLE = 2.0
+"""Seconds without an event after which the bar says so: disks that only wrap may do so for ever."""
+
+
 class ProgressBar:
     """A callback (fraction, events, time) that draws a bar; nothing where stderr is not a terminal."""
 
     def __init__(self, quiet: bool = False) -> None:
         self._wanted = not quiet and sys.stderr.isatty()
         self._begun = perf_counter()
+        self._last = (0, 0.0, self._begun)  # events, the scene's clock and ours when they last became more
         self._bar: Progress | None = None
         self._task: TaskID | None = None
 
@@ -28,7 +33,11 @@ class ProgressBar:
 
     def __call__(self, fraction: float | None, events: int, time: float) -> None:
         """Show the fraction done (None: unknown), the number of events so far and the scene's clock."""
-        self.show(fraction, f"{events:,} events, clock {time:.6g}")
+        if events != self._last[0]:
+            self._last = events, time, perf_counter()
+        _, last, seen = self._last
+        idle = f", none since clock {last:.6g}" if perf_counter() - seen > IDLE else ""
+        self.show(fraction, f"{events:,} events{idle}, clock {time:.6g}")
 
     def show(self, fraction: float | None, text: str) -> None:
         """Show the fraction done (None: unknown) and a text beside the bar."""

@@ -61,6 +61,13 @@ class CertifiedLoop(ReferenceSession):
         generation.sort(key=row_order)
         return generation
 
+    def _exact_velocities(self) -> tuple[Floats, Floats] | None:
+        """The velocities of all disks (n,), if their balls are floats."""
+        vx, vy = self.state.vx, self.state.vy
+        if any(deviation(speed, float(speed)) for speed in (*vx, *vy)):
+            return None
+        return np.array(list(map(float, vx))), np.array(list(map(float, vy)))
+
     @property
     def clock(self) -> tuple[int, float]:
         """Where the clock stands: (epoch, remainder), the remainder rounded."""

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop
+from eventsim.engines.drift import only_wraps
 from eventsim.engines.fast import layout, tally
 from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
 from eventsim.engines.fast.machine import FOREVER, Machine
@@ -26,9 +27,6 @@ LOW_COLUMNS = ("low_vx", "low_vy")
 
 LOW_PLACES = ("low_x", "low_y")
 """The same, where places have low parts."""
-
-ROUNDS = 2.0
-"""Times around the domain without an event after which disks that move along an axis are known to meet nothing."""
 
 LARGEST_BUDGET = 1 << 40
 
@@ -54,6 +52,7 @@ class FastSession:
         self.counters = Counters()
         self.compile_s = 0.0
         self._marked: object = False
+        self._idle = 0.0  # time since the end of the last window that had rows
         self._machine = Machine(stage, keep_rows, lanes, sizes)
         self.state = self._machine.state
         self._rulings = Rulings(self._machine, self.counters)
@@ -128,7 +127,10 @@ class FastSession:
                 if status == layout.STATUS_IDLE and not empty:
                     machine.schedule()
                 elif turns and not (empty and stop.until is None):
-                    if stop.until is None and state.window_rows == 0:
+                    if stop.until is not None or state.window_rows:
+                        self._idle = 0.0
+                    else:
+                        self._idle += state.window_end
                         if self._drifts():
                             return "quiet"
                         if self._only_looks():
@@ -155,19 +157,10 @@ class FastSession:
         return self._machine.grid.levels is not None and bool(np.isin(partners, (layout.LOOK, layout.NOTHING)).all())
 
     def _drifts(self) -> bool:
-        """Whether all disks have one velocity, for good, and nothing to meet: they would wrap for ever.
-
-        Along an axis they come by the same places again, where they have met nothing if this window was long enough.
-        """
-        stage, state = self.stage, self.state
-        vx, vy = state.vx.every(), state.vy.every()
-        if np.ptp(vx) != 0.0 or np.ptp(vy) != 0.0 or np.any(state.gravity_x.every()) or np.any(state.gravity_y.every()):
-            return False
-        if not (stage.boundaries or stage.features):
-            return True
-        around = max((length for length in stage.period if length is not None), default=math.inf)
-        rounds = state.window_end * max(abs(vx[0]), abs(vy[0])) / around
-        return bool(vx[0] * vy[0] == 0.0 and rounds > ROUNDS)
+        """Whether disks will wrap for ever, and never meet anything again."""
+        state = self.state
+        straight = not (np.any(state.gravity_x.every()) or np.any(state.gravity_y.every()))
+        return straight and only_wraps(self.stage, state.vx.every(), state.vy.every(), self._idle)
 
     def _pass_to(self, until: float) -> None:
         if self.state.now < until < math.inf:
@@ -220,7 +213,7 @@ class FastSession:
 
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot, this engine's or another's."""
-        s = self.state
+        s, self._idle = self.state, 0.0
         self._rulings.forget()
         self._machine.set_epoch(saved.epoch)
         s.window, s.window_rows = saved.window, saved.window_rows

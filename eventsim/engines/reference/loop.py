@@ -8,6 +8,7 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.collapse import LIES_STILL, named, remedy
+from eventsim.engines.drift import only_wraps
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
@@ -21,11 +22,11 @@ from eventsim.engines.reference.wide import WidePredictor
 from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
 from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import SqueezedError
-from eventsim.record.events import Rows
+from eventsim.record.events import Floats, Rows
 from eventsim.scene.stage import Stage
 
 VAIN_WRAPS = 8
-"""Wraps per disk without a contact after which it is worth asking whether all disks move alike."""
+"""Wraps per disk without a contact after which it is worth asking whether there will be one."""
 
 
 class ReferenceSession:
@@ -56,7 +57,7 @@ class ReferenceSession:
         self.reason: str | None = None
         self.refused = False
         self._check = check
-        self._wraps_in_vain = 0
+        self._wraps_in_vain, self._vain_since = 0, (0, 0.0)
         fine = self.state.low_places and self.predictor is Predictor
         self._predictor = (WidePredictor if fine else self.predictor)(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
@@ -97,11 +98,11 @@ class ReferenceSession:
                 counters.wraps += 1
                 wrap(state, cells, event, self.stage.period[event.b])  # type: ignore[arg-type]
                 self._predictor.predict(event.a, due)
+                if self._wraps_in_vain == 0:
+                    self._vain_since = state.epoch, float(due)
                 self._wraps_in_vain += 1
-                if self._wraps_in_vain > VAIN_WRAPS * state.n and stop.until is None:
-                    self._wraps_in_vain = 0
-                    if self._drifts():
-                        return "quiet"
+                if self._wraps_in_vain % (VAIN_WRAPS * state.n) == 0 and stop.until is None and self._drifts():
+                    return "quiet"
             elif event.rank == CROSSING:
                 calendar.pop()
                 counters.crossings += 1
@@ -178,15 +179,17 @@ class ReferenceSession:
         return stop.until is None
 
     def _drifts(self) -> bool:
-        """Whether all disks have one velocity, for good, and nothing to meet: they would wrap for ever.
+        """Whether disks will wrap for ever, and never meet anything again."""
+        state, (epoch, remainder) = self.state, self._vain_since
+        velocities = self._exact_velocities()
+        if velocities is None or not all(g is None or g == 0.0 for g in (*state.gravity_x, *state.gravity_y)):
+            return False
+        idle = (state.epoch - epoch) * self.stage.epoch_length + (float(state.now) - remainder)
+        return only_wraps(self.stage, *velocities, idle)
 
-        Along an axis they come by the same places again, where they have met nothing.
-        """
-        state, stage = self.state, self.stage
-        alike = len(set(zip(state.vx, state.vy, strict=True))) == 1
-        straight = all(g is None or g == 0.0 for g in (*state.gravity_x, *state.gravity_y))
-        again = state.vx[0] == 0.0 or state.vy[0] == 0.0
-        return alike and straight and (again or not (stage.boundaries or stage.features))
+    def _exact_velocities(self) -> tuple[Floats, Floats] | None:
+        """The velocities of all disks (n,), if they are floats."""
+        return np.array(self.state.vx), np.array(self.state.vy)
 
     def _pass_to(self, until: float) -> None:
         """Let time pass to `until`, a remainder; without a stop time it stays where it is."""
@@ -217,6 +220,7 @@ class ReferenceSession:
 
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of disk i from outside, now."""
+        self._wraps_in_vain = 0
         self._resolver.kick(i, vx, vy)
         self._predictor.predict(i, self.state.now)
 
@@ -231,6 +235,7 @@ class ReferenceSession:
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot, this engine's or another's."""
         self.state.restore(saved)
+        self._wraps_in_vain = 0
         self._predict_afresh()
 
 
