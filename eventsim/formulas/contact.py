@@ -82,15 +82,24 @@ def rescaled_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float
     They are scaled by a power of two, so that a scene whose velocities all are so has contact times of exactly its inverse.
     DOUBT where that is no help.
     """
-    speed = max(abs(du), abs(dw))
-    if SLOWEST < speed < FASTEST:
+    power = _unusual(du, dw)
+    if power == 0:
         return DOUBT
-    exponent = math.frexp(speed)[1]
-    delay = screened_pair_delay(dx, dy, math.ldexp(du, -exponent), math.ldexp(dw, -exponent), reach)
-    mantissa, power = math.frexp(delay)
+    return _later(screened_pair_delay(dx, dy, math.ldexp(du, -power), math.ldexp(dw, -power), reach), -power)
+
+
+def _unusual(u: float, w: float) -> int:
+    """The power of two of a speed whose square is no float; 0 of every other."""
+    speed = max(abs(u), abs(w))
+    return 0 if SLOWEST < speed < FASTEST else math.frexp(speed)[1]
+
+
+def _later(delay: float, power: int) -> float:
+    """A delay times a power of two; NEVER where that is no float."""
     if delay != delay:
         return DOUBT
-    return math.ldexp(mantissa, power - exponent) if power - exponent <= LARGEST_EXPONENT else NEVER
+    mantissa, exponent = math.frexp(delay)
+    return math.ldexp(mantissa, exponent + power) if exponent + power <= LARGEST_EXPONENT else NEVER
 
 
 def inner_delay(dx: Real, dy: Real, du: Real, dw: Real, radius: Real) -> Real:
@@ -130,11 +139,22 @@ def screened_inner_delay(dx: float, dy: float, du: float, dw: float, radius: flo
     return (math.sqrt(discriminant) - b) / a
 
 
+def rescaled_inner_delay(dx: float, dy: float, du: float, dw: float, radius: float) -> float:
+    """As `rescaled_pair_delay`, from inside of a circle."""
+    power = _unusual(du, dw)
+    if power == 0:
+        return DOUBT
+    return _later(screened_inner_delay(dx, dy, math.ldexp(du, -power), math.ldexp(dw, -power), radius), -power)
+
+
 def circle_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy: Real, circle: Real) -> Real:
     """The delay until a disk in straight flight meets a fixed circle around (cx, cy) from outside; floats to the last bit."""
     if not is_float(x):
         return pair_delay(x - cx, y - cy, u, w, radius + circle)
-    delay = screened_pair_delay(x - cx, y - cy, u, w, radius + circle)
+    dx, dy, reach = x - cx, y - cy, radius + circle
+    delay = screened_pair_delay(dx, dy, u, w, reach)
+    if delay != delay:
+        delay = rescaled_pair_delay(dx, dy, u, w, reach)
     if delay == delay:
         return delay
     return careful_pair_delay(x, y, u, w, 0.0, radius, cx, cy, 0.0, 0.0, 0.0, circle, 0.0, 0.0)
@@ -144,7 +164,10 @@ def leaving_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy
     """The delay until a disk in straight flight meets a fixed circle around (cx, cy) from inside; floats to the last bit."""
     if not is_float(x):
         return inner_delay(x - cx, y - cy, u, w, circle - radius)
-    delay = screened_inner_delay(x - cx, y - cy, u, w, circle - radius)
+    dx, dy, inner = x - cx, y - cy, circle - radius
+    delay = screened_inner_delay(dx, dy, u, w, inner)
+    if delay != delay:
+        delay = rescaled_inner_delay(dx, dy, u, w, inner)
     if delay == delay:
         return delay
     return careful_pair_delay(x, y, u, w, 0.0, -radius, cx, cy, 0.0, 0.0, 0.0, circle, 0.0, 0.0, -1.0)

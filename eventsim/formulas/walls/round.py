@@ -1,11 +1,10 @@
 """Round walls: a post (a point), a container (a circle from inside), an arc (hard on both sides; its ends are posts)."""
 
-import math
 from typing import NamedTuple
 
-from eventsim.formulas.contact import FASTEST, LARGEST_EXPONENT, SLOWEST, circle_delay, leaving_delay
+from eventsim.formulas.contact import circle_delay, leaving_delay
 from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, circle_delays
-from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
+from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
 
 
 class Post(NamedTuple):
@@ -75,7 +74,7 @@ def post_delay(
 def _straight_to_post(shape: Post, x: Real, y: Real, vx: Real, vy: Real, radius: Real, met: int) -> tuple[Real, int]:
     if met != 0:
         return NEVER, 1
-    return _entering(x, y, vx, vy, radius, shape.x, shape.y, 0.0), 1
+    return circle_delay(x, y, vx, vy, radius, shape.x, shape.y, 0.0), 1
 
 
 def container_delay(
@@ -91,9 +90,9 @@ def container_delay(
 ) -> tuple[Real, int]:
     """(delay, -1) of the next contact with the container from inside."""
     if gx is None:
-        return _leaving(x, y, vx, vy, radius, shape), -1
+        return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius), -1
     if gx == 0.0 and gy == 0.0:
-        return _leaving(x, y, vx, vy, radius, shape), -1
+        return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius), -1
     return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, shape.radius - radius, -1.0)[0], -1
 
 
@@ -160,7 +159,7 @@ def _straight_to_arc(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: R
     side = met if met != 0 else arc_side(shape, x, y, vx, vy)
     best, best_side = NEVER, side
     if side > 0 and met == 0:
-        delay = _entering(x, y, vx, vy, radius, shape.x, shape.y, shape.radius)
+        delay = circle_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius)
         if delay < best and on_arc(shape, x + vx * delay, y + vy * delay):
             best, best_side = delay, 1
     if shape.radius - radius > 0.0 and (side < 0 or best == NEVER):
@@ -173,38 +172,7 @@ def _straight_to_arc(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: R
 def _inner_from(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, side: int) -> Real:
     """Contact with the inside of a circle, for a disk that is inside or will be: a flight from outside must pass through it."""
     if side > 0:
-        entered = _entering(x, y, vx, vy, -radius, shape.x, shape.y, shape.radius)
+        entered = circle_delay(x, y, vx, vy, -radius, shape.x, shape.y, shape.radius)
         if not entered < NEVER:
             return NEVER
-    return _leaving(x, y, vx, vy, radius, shape)
-
-
-def _entering(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy: Real, circle: Real) -> Real:
-    """As `circle_delay`; at speeds whose squares are no floats it is that at a speed of about 1, times a power of two."""
-    power = _unusual(u, w)
-    if power == 0:
-        return circle_delay(x, y, u, w, radius, cx, cy, circle)
-    return _later(circle_delay(x, y, math.ldexp(u, -power), math.ldexp(w, -power), radius, cx, cy, circle), -power)
-
-
-def _leaving(x: Real, y: Real, u: Real, w: Real, radius: Real, shape: Container | Arc) -> Real:
-    """As `leaving_delay`, in the same way."""
-    power = _unusual(u, w)
-    if power == 0:
-        return leaving_delay(x, y, u, w, radius, shape.x, shape.y, shape.radius)
-    u, w = math.ldexp(u, -power), math.ldexp(w, -power)
-    return _later(leaving_delay(x, y, u, w, radius, shape.x, shape.y, shape.radius), -power)
-
-
-def _unusual(u: Real, w: Real) -> int:
-    """The power of two of a speed whose square is no float; 0 for every other."""
-    if not is_float(u):
-        return 0
-    speed = max(abs(u), abs(w))
-    return 0 if SLOWEST < speed < FASTEST else math.frexp(speed)[1]
-
-
-def _later(delay: float, power: int) -> float:
-    """A delay times a power of two; NEVER where that is no float."""
-    mantissa, exponent = math.frexp(delay)
-    return math.ldexp(mantissa, exponent + power) if exponent + power <= LARGEST_EXPONENT else NEVER
+    return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius)
