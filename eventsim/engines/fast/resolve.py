@@ -27,7 +27,7 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
-from eventsim.engines.fast.rows import write_row
+from eventsim.engines.fast.rows import write_pair, write_wall
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
@@ -178,7 +178,8 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
     overlap = (reach - distance) / reach
     _book_pair(sums, a, b, -(q * reduced) * dx, -(q * reduced) * dy, m.mass)
-    write_row(m, number, slot, a, b, -1, -(q * reduced) * distance, t, clock, m.rows)
+    flight_a, flight_b = (xa, ya, ua, wa), (xb, yb, ub, wb)
+    write_pair(m, number, slot, a, b, flight_a, flight_b, -(q * reduced) * distance, t, clock, m.rows)
     return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
 
 
@@ -261,7 +262,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     if not math.isinf(mass):
         sums[OUTER_X] += mass * (u - u0)
         sums[OUTER_Y] += mass * (w - w0)
-    write_row(m, number, slot, i, -1, wall, wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
+    write_wall(m, number, slot, i, wall, (x, y, u, w), wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
 
 
 @inline
