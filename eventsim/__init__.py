@@ -20,7 +20,8 @@ The names below are loaded when they are first used, so ``import eventsim`` itse
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+
+TYPE_CHECKING = False  # type checkers know better; `typing` itself takes ten times as long to import as all of this
 
 __version__ = "0.1.0"
 

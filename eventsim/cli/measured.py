@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from eventsim.cli.target import LOG_SUFFIXES
+from eventsim.cli.source import is_log, log_of
 from eventsim.cli.words import aligned, plural, short
 
 if TYPE_CHECKING:
@@ -30,8 +29,7 @@ def measured(
     """The measures of a log file, or of a scene that is simulated now; and the structure of its last state."""
     if structure:
         from eventsim.measure.structure import structure_of
-    if Path(source).suffix.lower() in LOG_SUFFIXES or source.endswith(".part"):
-        from eventsim.cli.source import log_of
+    if is_log(source):
         from eventsim.measure import measure
         from eventsim.record.replay import Replay
 

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim.cli.choose import SCENE_SUFFIXES
 from eventsim.cli.options import Verb, Whole
 from eventsim.cli.target import LOG_SUFFIXES
+from eventsim.errors import SceneError
 
 if TYPE_CHECKING:
     from eventsim.record.log import EventLog
@@ -24,6 +26,24 @@ def stop_options(verb: Verb) -> Verb:
     return until(events(verb))
 
 
+def is_log(source: str) -> bool:
+    """Whether a log file is meant, not a scene.
+
+    Raises SceneError for a file that, by its name, is neither.
+    """
+    file = Path(source)
+    suffix = file.suffix.lower()
+    if suffix in LOG_SUFFIXES or source.endswith(GROWING):
+        return True
+    if suffix not in SCENE_SUFFIXES and file.exists():
+        from eventsim.scene.gallery import names
+
+        if source not in names():
+            logs, scenes = ", ".join(LOG_SUFFIXES), " or ".join(SCENE_SUFFIXES)
+            raise SceneError(f"{source}: is neither a log nor a scene file: these end in {logs}, or in {scenes}")
+    return False
+
+
 def log_of(
     source: str,
     settings: Sequence[str],
@@ -36,7 +56,7 @@ def log_of(
 
     Raises click.UsageError where options of a scene are given with a log, or nothing says when a scene stops.
     """
-    if Path(source).suffix.lower() in LOG_SUFFIXES or source.endswith(GROWING):
+    if is_log(source):
         if settings or seed is not None or until is not None or events is not None:
             raise click.UsageError(f"{source} is a log: --set, --seed, --until and --events are for scenes")
         from eventsim.record.log import load_log

@@ -25,6 +25,8 @@ class EventLog:
 
     Every column is an attribute holding a read-only array (`log.time`, `log.vxa`, ...): `log.kind` holds codes
     (`log.kinds` the text), `log.wall` indices into `log.provenance.wall_names` (`log.wall_name` the text).
+    path: the file that it was read from, None where it comes from a run.
+
     In a compact log the columns that replay computes are missing (NaN); `expand()` gives the full log.
     """
 
@@ -50,6 +52,7 @@ class EventLog:
     def __init__(self, provenance: Provenance, rows: Rows) -> None:
         view = rows.view()
         view.flags.writeable = False
+        self.path: Path | None = None
         self.provenance = provenance
         self.rows = view
         for name in COLUMNS:
@@ -92,7 +95,9 @@ class EventLog:
             return self
         from eventsim.record.expand import expand_rows  # replay stands above the log it reads
 
-        return EventLog(replace(self.provenance, compact=False), expand_rows(self))
+        full = EventLog(replace(self.provenance, compact=False), expand_rows(self))
+        full.path = self.path
+        return full
 
     def verify(self, name: str) -> None:
         """Warn (LogWarning) where full rows are not those that the run closed the log with; `name` is how to call it.
@@ -177,4 +182,5 @@ def load_log(path: str | PathLike[str]) -> EventLog:
     read: Callable[[Path], EventLog] = reader_for(file)
     log = read(file)
     log.verify(str(file))
+    log.path = file
     return log

@@ -160,6 +160,21 @@ def wait_for(seen, patience=30.0):
         time.sleep(0.02)
 
 
+def test_an_interrupt_while_the_command_is_imported_ends_quietly():
+    code = """
+import sys
+class Interrupt:
+    def find_spec(self, name, path, target=None):
+        if name == "eventsim.cli.program":
+            exec("raise KeyboardInterrupt")  # as in a module that makes a dataclass
+sys.meta_path.insert(0, Interrupt())
+from eventsim.__main__ import main
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_keeps_its_log_and_goes_on(tmp_path, eventsim, number):
     log, checkpoint = tmp_path / "run.jsonl", tmp_path / "run.checkpoint"

@@ -40,6 +40,7 @@ def test_structure_of_the_last_state(eventsim):
         (["corner", "--discard", "1e9", "--events", 10], "discard"),
         (["gas", "--events", "0"], "no time passes"),
         (["two.csv"], "two.csv"),
+        (["/dev/null"], "neither a log nor a scene file: these end in .csv, .jsonl, .npz, .parquet, or in .toml or .json"),
     ],
 )
 def test_bad_measures_are_one_clear_message(eventsim, words, expected):

@@ -1,9 +1,11 @@
 """Figures: every kind of every scene, and the numbers in them."""
 
+import itertools
 from contextlib import suppress
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import eventsim as es
@@ -13,8 +15,9 @@ from eventsim.measure.free_paths import free_paths, mean_free_path, path_density
 from eventsim.record.flights import flight_table
 from eventsim.record.replay import Replay
 from eventsim.scene.gallery import names
-from eventsim.show.figures import TITLES, equation_of_state
+from eventsim.show.figures import TITLES, equation_of_state, trajectories
 from eventsim.show.figures.residuals import gaps_at_contact
+from eventsim.show.figures.style import name_of, new_figure
 from eventsim.show.figures.write import write_figure
 from eventsim.show.images import wrapped_pieces
 
@@ -134,6 +137,32 @@ def sweep_row(eta, z, error, theory, accuracy):
 
 def swept_row(count, eta, disks):
     return {"packing_fraction": eta, "n": count, "replica": 0, **sweep_row(eta, 2.0, 0.1, None, None), "disks": disks}
+
+
+def test_a_title_names_the_scene_or_else_the_file(still, tmp_path):
+    assert name_of(still) == (still.scene.name or "this scene")
+    run = es.simulate(es.Scene(es.Disks([(1.0, 1.0)], [(1.0, 0.5)], 0.5), es.Box((4.0, 3.0))), until=20.0, log=True)
+    assert name_of(run.log) == "this scene"
+    run.log.save(tmp_path / "mine.csv")
+    read = es.load_log(tmp_path / "mine.csv")
+    assert name_of(read) == "mine.csv"
+    figure = new_figure()
+    trajectories.draw(figure, read)
+    assert f"{len(read)} events (a dot for each disk)" in figure.axes[0].get_title(loc="left")
+
+
+@pytest.mark.parametrize("size", [(400_000.0, 3.0), (3.0, 400_000.0), (40.0, 1.5)])
+def test_ticks_of_a_very_flat_or_narrow_box_do_not_overlap(size):
+    scene = es.Scene(es.Disks([(1.0, 0.8)], [(1.0, 0.5)], 0.5), es.Box(size))
+    figure = new_figure()
+    FigureCanvasAgg(figure)
+    trajectories.draw(figure, es.simulate(scene, until=2.0, log=True).log)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        shown = [one.label1.get_window_extent() for one in axis.get_major_ticks() if low <= one.get_loc() <= high]
+        assert shown
+        assert not any(one.overlaps(other) for one, other in itertools.pairwise(shown))
 
 
 def test_a_second_key_of_a_sweep_has_its_own_series():

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from eventsim.errors import EventsimError
 from eventsim.measure.theory import KOLAFA_ROTTNER_UP_TO, compressibility_factor
 from eventsim.record.events import Floats
-from eventsim.show.figures.style import BLUE, GREEN, ORANGE, PINK, RED, label, name_of
+from eventsim.show.figures.style import BLUE, GREEN, ORANGE, PINK, RED, label
 from eventsim.show.figures.write import save_figure
 from eventsim.show.palette import LIGHT
 from eventsim.sweep.task import Row
@@ -41,7 +41,7 @@ def draw(figure: Figure, rows: Sequence[Row], name: str | None = None) -> None:
     verdict = "no prediction for these states; the curve is that of the fluid without walls"
     if offs:
         verdict = f"{np.sqrt(np.mean(np.square(offs))):.1f} standard errors from theory, root mean square"
-    label(above, "" if below else "packing fraction", "Z = P V / N kT", f"{name_of(name)}: {verdict}")
+    label(above, "" if below else "packing fraction", "Z = P V / N kT", f"{name or 'these runs'}: {verdict}")
     if below is not None:
         below.axhspan(-1.0, 1.0, color="#e3e6ea")
         below.axhline(0.0, color=ORANGE, lw=1.5)

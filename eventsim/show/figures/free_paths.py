@@ -51,7 +51,7 @@ def draw(figure: Figure, log: EventLog) -> None:
         axes,
         f"free path [{LENGTH}]",
         f"probability density [per {LENGTH}]",
-        f"{name_of(log.scene.name)}: {verdict}",
+        f"{name_of(log)}: {verdict}",
     )
     axes.set(yscale="log", xlim=(0.0, edges[-1]))
     axes.legend(frameon=False)

@@ -59,6 +59,6 @@ def draw(figure: Figure, log: EventLog) -> None:
     axes.set(xscale="log", yscale="log", ylim=(0.5 * mean.min(), 4.0 * mean.max()))
     label(
         axes, f"lag [{TIME}]", f"mean squared displacement [{LENGTH}$^2$]",
-        f"{name_of(log.scene.name)}: {len(moving):,} disks{verdict}",
+        f"{name_of(log)}: {len(moving):,} disks{verdict}",
     )  # fmt: skip
     axes.legend(frameon=False)

@@ -44,7 +44,7 @@ def draw(figure: Figure, log: EventLog) -> None:
         )  # fmt: skip
     counts, edges = np.histogram(log.time, bins=100, range=span)
     over.stairs(counts / (edges[1] - edges[0]), edges, color="#39424e", fill=True, alpha=0.35)
-    label(over, "", "events per\ntime unit", f"{name_of(log.scene.name)}: {len(log):,} events of {n:,} disks")
+    label(over, "", "events per\ntime unit", f"{name_of(log)}: {len(log):,} events of {n:,} disks")
     label(axes, f"time [{TIME}]", "disk", "")
     axes.set(xlim=span, ylim=(-0.7, n - 0.3))
     axes.grid(visible=False)

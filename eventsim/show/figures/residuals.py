@@ -38,7 +38,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     else:
         said = f"energy keeps to {np.abs(change).max():.1g}"
     deepest = max(float(-gap.min()), 0.0) if len(gap) else 0.0
-    name = name_of(log.scene.name)
+    name = name_of(log)
     label(
         above,
         "",

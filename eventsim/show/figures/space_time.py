@@ -50,6 +50,6 @@ def draw(figure: Figure, log: EventLog) -> None:
     which = f"{len(pairs):,}" if len(pairs) <= MOST_CONTACTS else f"the first {MOST_CONTACTS:,} of {len(pairs):,}"
     label(
         axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
-        f"{name_of(scene.name)}: {replay.stage.n:,} disks, {which} contacts between them (dots)",
+        f"{name_of(log)}: {replay.stage.n:,} disks, {which} contacts between them (dots)",
     )  # fmt: skip
     axes.grid(visible=False)

@@ -67,7 +67,7 @@ def draw(figure: Figure, log: EventLog) -> None:
         axes,
         f"speed [{SPEED}]" if not pace else f"speed [2^{pace} {SPEED}]",
         "probability density [time / length]" if not pace else f"probability density [2^{-pace} time / length]",
-        f"{name_of(log.scene.name)}: {verdict}",
+        f"{name_of(log)}: {verdict}",
     )
     axes.set(xlim=(0.0, edges[-1]), ylim=(0.0, None))
     axes.legend(frameon=False)

@@ -8,6 +8,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Floats
+from eventsim.record.log import EventLog
 from eventsim.show.colouring import amounts
 from eventsim.show.palette import KINDS, LIGHT
 
@@ -46,6 +47,7 @@ def shades_of(n: int) -> Floats:
     return shades
 
 
-def name_of(name: str | None) -> str:
-    """Return how a title calls a scene."""
-    return name or "this scene"
+def name_of(log: EventLog) -> str:
+    """Return how a title calls the run that a log tells: by its scene, or else by its file."""
+    file = None if log.path is None else log.path.name
+    return log.scene.name or file or "this scene"

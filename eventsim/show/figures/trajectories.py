@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
+from matplotlib.ticker import MaxNLocator
 
 from eventsim.record.flights import flight_table
 from eventsim.record.log import EventLog
@@ -22,9 +24,12 @@ MOST_DISKS = 16
 TALLEST, NARROWEST, LABELS = 6.4, 4.6, 0.8
 """Inches: of the scene in a figure, of a figure, and what labels take."""
 
+FLAT, SLIM = 0.6, 1.2
+"""Inches of a side on which numbers above each other, or beside each other, would overlap."""
+
 
 def draw(figure: Figure, log: EventLog) -> None:
-    """Draw the ways of up to MOST_DISKS disks; dots are contacts, circles the disks at the end."""
+    """Draw the ways of up to MOST_DISKS disks; dots are their events, circles the disks at the end."""
     replay = replay_with_time(log)
     scene, n = log.scene, replay.stage.n
     disks = np.unique(np.linspace(0, n - 1, min(n, MOST_DISKS)).astype(np.int64))
@@ -60,14 +65,20 @@ def draw(figure: Figure, log: EventLog) -> None:
     walls = [*lines_with_images(outlines.wall_lines(scene), scene), *hard]
     axes.add_collection(LineCollection(walls, colors=LIGHT.wall, linewidths=1.6), autolim=False)
     axes.add_collection(LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False)
+    events = int((np.isin(log.a, disks) | np.isin(log.b, disks)).sum())
     which = f"{len(disks)} of {n} disks" if len(disks) < n else "all disks" if n > 1 else "the disk"
     label(
         axes,
         f"x [{LENGTH}]",
         f"y [{LENGTH}]",
-        f"{name_of(scene.name)}: the ways of {which}, {int(hit.sum()):,} contacts (dots)",
+        f"{name_of(log)}: the ways of {which}, {events:,} events (a dot for each disk)",
     )
     axes.grid(visible=False)
+    width, height = sides_of(shown)
+    if height < FLAT:
+        _keep_one_tick(axes.yaxis, shown[1], shown[3])
+    if width < SLIM:
+        _keep_one_tick(axes.xaxis, shown[0], shown[2])
 
 
 def inches_for(shown: outlines.Rectangle) -> tuple[float, float]:
@@ -75,3 +86,16 @@ def inches_for(shown: outlines.Rectangle) -> tuple[float, float]:
     aspect = (shown[3] - shown[1]) / (shown[2] - shown[0])
     width = min(max(TALLEST / aspect, NARROWEST), SIZE[0])
     return width, min(max((width - LABELS) * aspect, 1.0), TALLEST) + LABELS
+
+
+def sides_of(shown: outlines.Rectangle) -> tuple[float, float]:
+    """Return about how many inches wide and high the rectangle itself is drawn."""
+    width, height = (side - LABELS for side in inches_for(shown))
+    aspect = (shown[3] - shown[1]) / (shown[2] - shown[0])
+    return min(width, height / aspect), min(height, width * aspect)
+
+
+def _keep_one_tick(axis: Axis, low: float, high: float) -> None:
+    """Label one place of an axis that is too short for more, a round number if there is one."""
+    inside = [tick for tick in MaxNLocator(1).tick_values(low, high) if low <= tick <= high]
+    axis.set_ticks(inside[:1] or [0.5 * (low + high)])
