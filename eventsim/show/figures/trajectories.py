@@ -96,6 +96,6 @@ def sides_of(shown: outlines.Rectangle) -> tuple[float, float]:
 
 
 def _keep_one_tick(axis: Axis, low: float, high: float) -> None:
-    """Label one place of an axis that is too short for more, a round number if there is one."""
-    inside = [tick for tick in MaxNLocator(1).tick_values(low, high) if low <= tick <= high]
-    axis.set_ticks(inside[:1] or [0.5 * (low + high)])
+    """Label one place of an axis that is too short for more, a round number near its middle."""
+    middle = 0.5 * (low + high)
+    axis.set_ticks([min(MaxNLocator(2).tick_values(low, high), key=lambda tick: abs(tick - middle))])
