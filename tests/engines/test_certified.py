@@ -1,85 +1,24 @@
-"""Proofs on balls: how many events a bit buys, ties, and what float64 has right."""
+"""Proofs: how many events a bit buys, what is done while they go on, and how long float64 has the order right."""
 
 import math
 import signal
 from dataclasses import replace
-from fractions import Fraction
 from time import process_time
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.certified import CertifiedSession
-from eventsim.engines.certified.ball import Undecided, ball, traced
 from eventsim.engines.certified.proof import prove
 from eventsim.engines.drive import Wishes, drive
 from eventsim.errors import EventsimError
 from eventsim.record.compare import agreement, deviations
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
+from tests.engines.proofs import certified
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
-
-NUMBERS = st.fractions(-100, 100, max_denominator=1000)
-
-
-def certified(scene, events=None, until=None, **options):
-    """(session, reason to stop) of a certified run."""
-    session = CertifiedSession(stage_of(scene), **options)
-    stopped = None
-    while stopped is None:
-        stopped = session.advance(Stop(until, events), 1 << 62)
-    return session, stopped
-
-
-def line(x, v, **scene):
-    """Disks of diameter 1 on a line, at x plus one diameter each."""
-    n = len(x)
-    return es.Scene(
-        disks=es.Disks(np.column_stack([np.add(x, range(n)), np.zeros(n)]), [(u, 0.0) for u in v], 0.5),
-        domain=es.Open(),
-        **scene,
-    )
-
-
-@settings(max_examples=60, deadline=None)
-@given(NUMBERS, NUMBERS, st.sampled_from(["+", "-", "*", "/"]))
-def test_traced_numbers_are_the_rational_numbers_that_they_stand_for(a, b, operation):
-    one, other = traced(float(a)), traced(float(b))
-    a, b = Fraction(float(a)), Fraction(float(b))
-    if operation == "/" and b == 0:
-        return
-    number = {"+": lambda: one + other, "-": lambda: one - other, "*": lambda: one * other, "/": lambda: one / other}
-    true = {"+": lambda: a + b, "-": lambda: a - b, "*": lambda: a * b, "/": lambda: a / b}
-    result, exact = number[operation](), true[operation]()
-    assert result.rational == exact
-    assert (result < 1.0) == (exact < 1)
-    assert (result == other) == (exact == b)
-
-
-def test_equal_expressions_are_equal_and_others_undecided():
-    root2, root3 = traced(2.0).sqrt(), traced(3.0).sqrt()
-    assert root2 * root3 == root3 * root2
-    assert root2 - root3 == -(root3 - root2)
-    assert (root2 + 1.0) - root3 == 1.0 + root2 - root3
-    assert root2 - root2 == 0.0
-    assert not root2 < root2
-    with pytest.raises(Undecided):
-        bool(root2 * root3 == traced(6.0).sqrt())
-
-
-def test_balls_answer_or_raise():
-    third = ball(1.0) / 3.0
-    assert third < 0.5
-    assert third > 0.25
-    assert third <= third
-    with pytest.raises(Undecided):
-        bool(third * 3.0 < 1.0)
-    with pytest.raises(TypeError):
-        hash(third)
 
 
 @pytest.mark.parametrize(("n", "least", "cost"), [(8, 1000, 0.2), (16, 1500, 0.2), (32, 2500, 0.4)])
@@ -198,77 +137,6 @@ def test_float64_follows_the_true_order_for_330_events(place, seeds):
         # 0.133 bits an event (REFERENCES: time reversal), from 2**-50; a few bits for the luck of single seeds
         bound = 2.0 ** (-50 + 0.133 * np.arange(len(deviation)) + 14)
         assert np.all(deviation <= np.maximum(bound, 2.0**-40)), event
-
-
-@pytest.mark.parametrize("k", [20, 40, 52])
-@pytest.mark.parametrize("sign", [1, -1])
-def test_the_sign_of_the_smallest_gap_decides(k, sign):
-    eps = sign * 2.0**-k
-    scene = es.Scene(
-        disks=es.Disks(
-            [(0.0, 0.0), (0.5, 0.0), (1.0 + eps, 0.0)], [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)], 0.125, (1.0, 3.0, 1.0)
-        ),
-        domain=es.Open(),
-    )
-    session, stopped = certified(scene, until=10.0)
-    expected = (-0.5, -0.25, 1.25) if sign > 0 else (-1.25, 0.25, 0.5)
-    assert stopped in ("until", "quiet")
-    assert session.motion().vx.tolist() == list(expected)
-
-
-@pytest.mark.parametrize(("e", "events"), [(0.08, 11), (0.0719, 89), (0.0718, 504)])
-def test_a_chain_that_just_does_not_collapse_is_counted(e, events):
-    session, stopped = certified(
-        line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0)), until=100.0
-    )
-    assert (stopped, session.proven) == ("quiet", events)
-
-
-@pytest.mark.parametrize(("e", "time"), [(0.05, 12.0 / 7.0), (0.0717, 1.78303658286)])
-def test_a_collapse_is_told(e, time):
-    """The times from 900 decimal digits; the second restitution is just below the limit 7 - 4 sqrt 3 of a collapse."""
-    scene = line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0))
-    session, stopped = certified(scene, until=100.0)
-    assert stopped == "collapse"
-    assert "collapse" in session.reason
-    epoch, remainder = session.clock
-    assert epoch * session.stage.epoch_length + remainder == pytest.approx(time, abs=1e-11)
-
-
-@pytest.mark.parametrize("name", ["corner", "newton-cradle", "tie", "two-disks"])
-def test_ties_of_rational_flights_are_decided(name):
-    scene = gallery(name)
-    session, stopped = certified(scene, until=scene.until)
-    assert stopped in ("until", "quiet")
-    found = rows_of(scene, until=scene.until)
-    assert len(agreement(session.take_rows(), found).pairs) == len(found)
-
-
-def test_ties_of_equal_expressions_are_decided():
-    position = [(0.0, 0.0), (4.0, 0.25), (0.0, 8.0), (4.0, 7.75)]
-    scene = es.Scene(disks=es.Disks(position, [(1.0, 0.0), (-1.0, 0.0)] * 2, 0.5), domain=es.Open())
-    session, stopped = certified(scene, until=10.0)
-    assert (stopped, session.traced) == ("quiet", True)
-    rows = session.take_rows()
-    assert rows["a"].tolist()[:2] == [0, 2]
-    assert rows["remainder"][0] == rows["remainder"][1]
-    assert rows["vya"][0] == -rows["vya"][1]
-
-
-def test_a_tie_that_nothing_decides_is_said_to_be_one():
-    """Two pairs meet after the same time, which their own formulas write differently: by sqrt(3)/2, and by sqrt(12)/4."""
-    scene = es.Scene(
-        disks=es.Disks(
-            [(0.0, 0.0), (4.0, 0.5), (0.0, 9.0), (8.0, 10.0)],
-            [(1.0, 0.0), (0.0, 0.0), (2.0, 0.0), (0.0, 0.0)],
-            (0.5, 0.5, 1.0, 1.0),
-        ),
-        domain=es.Open(),
-    )
-    session, stopped = certified(scene, until=10.0)
-    assert (stopped, session.proven) == ("undecided tie", 0)
-    assert session.bits <= 4096
-    assert "more bits do not help" in session.reason
 
 
 def test_what_cannot_be_proven_is_refused():

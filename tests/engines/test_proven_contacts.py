@@ -1,0 +1,80 @@
+"""What only a proof can say: which gap is the smallest, how many contacts there are, which ties are ones."""
+
+import pytest
+
+import eventsim as es
+from eventsim.record.compare import agreement
+from eventsim.scene.gallery import gallery
+from tests.engines.proofs import certified, line
+from tests.engines.scenes import rows_of
+
+
+@pytest.mark.parametrize("k", [20, 40, 52])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_sign_of_the_smallest_gap_decides(k, sign):
+    eps = sign * 2.0**-k
+    scene = es.Scene(
+        disks=es.Disks(
+            [(0.0, 0.0), (0.5, 0.0), (1.0 + eps, 0.0)], [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)], 0.125, (1.0, 3.0, 1.0)
+        ),
+        domain=es.Open(),
+    )
+    session, stopped = certified(scene, until=10.0)
+    expected = (-0.5, -0.25, 1.25) if sign > 0 else (-1.25, 0.25, 0.5)
+    assert stopped in ("until", "quiet")
+    assert session.motion().vx.tolist() == list(expected)
+
+
+@pytest.mark.parametrize(("e", "events"), [(0.08, 11), (0.0719, 89), (0.0718, 504)])
+def test_a_chain_that_just_does_not_collapse_is_counted(e, events):
+    session, stopped = certified(
+        line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0)), until=100.0
+    )
+    assert (stopped, session.proven) == ("quiet", events)
+
+
+@pytest.mark.parametrize(("e", "time"), [(0.05, 12.0 / 7.0), (0.0717, 1.78303658286)])
+def test_a_collapse_is_told(e, time):
+    """The times from 900 decimal digits; the second restitution is just below the limit 7 - 4 sqrt 3 of a collapse."""
+    scene = line((-1.0, 0.0, 2.0), (1.0, 0.0, -1.0), restitution=es.Restitution(e, 1.0))
+    session, stopped = certified(scene, until=100.0)
+    assert stopped == "collapse"
+    assert "collapse" in session.reason
+    epoch, remainder = session.clock
+    assert epoch * session.stage.epoch_length + remainder == pytest.approx(time, abs=1e-11)
+
+
+@pytest.mark.parametrize("name", ["corner", "newton-cradle", "tie", "two-disks"])
+def test_ties_of_rational_flights_are_decided(name):
+    scene = gallery(name)
+    session, stopped = certified(scene, until=scene.until)
+    assert stopped in ("until", "quiet")
+    found = rows_of(scene, until=scene.until)
+    assert len(agreement(session.take_rows(), found).pairs) == len(found)
+
+
+def test_ties_of_equal_expressions_are_decided():
+    position = [(0.0, 0.0), (4.0, 0.25), (0.0, 8.0), (4.0, 7.75)]
+    scene = es.Scene(disks=es.Disks(position, [(1.0, 0.0), (-1.0, 0.0)] * 2, 0.5), domain=es.Open())
+    session, stopped = certified(scene, until=10.0)
+    assert (stopped, session.traced) == ("quiet", True)
+    rows = session.take_rows()
+    assert rows["a"].tolist()[:2] == [0, 2]
+    assert rows["remainder"][0] == rows["remainder"][1]
+    assert rows["vya"][0] == -rows["vya"][1]
+
+
+def test_a_tie_that_nothing_decides_is_said_to_be_one():
+    """Two pairs meet after the same time, which their own formulas write differently: by sqrt(3)/2, and by sqrt(12)/4."""
+    scene = es.Scene(
+        disks=es.Disks(
+            [(0.0, 0.0), (4.0, 0.5), (0.0, 9.0), (8.0, 10.0)],
+            [(1.0, 0.0), (0.0, 0.0), (2.0, 0.0), (0.0, 0.0)],
+            (0.5, 0.5, 1.0, 1.0),
+        ),
+        domain=es.Open(),
+    )
+    session, stopped = certified(scene, until=10.0)
+    assert (stopped, session.proven) == ("undecided tie", 0)
+    assert session.bits <= 4096
+    assert "more bits do not help" in session.reason

@@ -1,0 +1,140 @@
+"""Log files that grow: what can be read of them, who may go on with them, when they are whole."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from eventsim.errors import LogError
+from eventsim.record import Ending, load_log
+from eventsim.record.files import SUFFIXES, Mark, continued_sink, open_sink, rows_so_far
+from tests.record.logs import provenance, random_log, random_rows, scene
+
+TEXT = (".csv", ".jsonl")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there the second run fails by itself")
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_second_run_that_writes_the_same_log_is_refused(tmp_path: Path, suffix: str) -> None:
+    log = random_log(20)
+    path = tmp_path / f"log{suffix}"
+    first = open_sink(path, provenance())
+    first.write(log.rows)
+    with pytest.raises(LogError, match=f"log{suffix}.part: another run is writing this log"):
+        open_sink(path, provenance())
+    first.close()
+    assert load_log(path).rows.tobytes() == log.rows.tobytes()
+    left = open_sink(path, provenance())
+    left.write(log.rows)
+    left.leave()  # what a run leaves is nobody's
+    log.save(path)
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_file_appears_only_when_it_is_whole(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"log{suffix}"
+    path.write_text("what was there before")
+    sink = open_sink(path, provenance())
+    sink.write(random_rows(10))
+    assert path.read_text() == "what was there before"
+    sink.abandon()
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+    assert path.read_text() == "what was there before"
+
+
+@pytest.mark.parametrize("suffix", TEXT)
+def test_a_growing_text_log_can_be_read_up_to_its_last_whole_line(tmp_path: Path, suffix: str) -> None:
+    rows = random_rows(10)
+    sink = open_sink(tmp_path / f"log{suffix}", provenance())
+    sink.write(rows)
+    part = tmp_path / f"log{suffix}.part"
+    assert load_log(part).rows.tobytes() == rows.tobytes()
+    cut = tmp_path / f"cut{suffix}.part"
+    cut.write_bytes(part.read_bytes()[:-20])
+    assert load_log(cut).rows.tobytes() == rows[:9].tobytes()
+    assert load_log(cut).provenance.ending is None
+    sink.abandon()
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".parquet"])
+def test_a_growing_binary_log_can_be_read_up_to_its_last_whole_row(tmp_path: Path, suffix: str) -> None:
+    rows = random_rows(10)
+    sink = open_sink(tmp_path / f"log{suffix}", provenance())
+    sink.write(rows)
+    part = tmp_path / f"log{suffix}.part"
+    assert load_log(part).rows.tobytes() == rows.tobytes()
+    with (part / "remainder").open("r+b") as column:
+        column.truncate(9 * 8 - 3)
+    assert load_log(part).rows.tobytes() == rows[:8].tobytes()
+    assert load_log(part).provenance.ending is None
+    with pytest.raises(LogError, match=r"no such file; .*\.part is there"):
+        load_log(tmp_path / f"log{suffix}")
+    sink.abandon()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("compact", [False, True])
+@pytest.mark.parametrize("ended", ["killed", "closed"])
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_log_that_is_continued_is_the_same_file_as_one_written_at_once(
+    tmp_path: Path, suffix: str, ended: str, compact: bool
+) -> None:
+    log = random_log(300)
+    log.save(tmp_path / f"once{suffix}", compact=compact)
+    whole = load_log(tmp_path / f"once{suffix}")
+    path = tmp_path / f"log{suffix}"
+    kept = replace(log.provenance, kicks=(), ending=None, rows=None)
+    for rows in (0, 1, 117, 300):
+        written = log.rows[: max(rows, 200)]
+        sink = open_sink(path, replace(log.provenance, kicks=()), compact)
+        sink.write(written[:rows])
+        mark = sink.sync()
+        sink.write(written[rows:])
+        if ended == "killed":
+            sink.leave()
+        else:
+            sink.close(Ending(1, 0.5, "interrupted"))
+        sink = continued_sink(path, kept, compact, mark)
+        if not compact:  # random rows do not follow from their scene, so they cannot be expanded
+            assert b"".join(block.tobytes() for block in rows_so_far(sink)) == log.rows[:rows].tobytes()
+        sink.write(log.rows[rows:])
+        sink.close(whole.provenance.ending)
+        assert load_log(path).rows.tobytes() == whole.rows.tobytes()
+        assert load_log(path).provenance == whole.provenance
+        if suffix not in TEXT:  # there the room for so many kicks was made at another time
+            assert path.read_bytes() == (tmp_path / f"once{suffix}").read_bytes()
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_is_not_the_log_of_a_run_is_not_continued(tmp_path: Path, suffix: str) -> None:
+    path, log = tmp_path / f"log{suffix}", random_log(20)
+    with pytest.raises(LogError, match="neither this log nor"):
+        continued_sink(path, log.provenance, False, Mark(5, ()))
+    log.save(path)
+    with pytest.raises(LogError, match="holds 20 rows of 21"):
+        continued_sink(path, log.provenance, False, Mark(21, ()))
+    with pytest.raises(LogError, match="not the log of the run"):
+        continued_sink(path, provenance(scene(5)), False, Mark(5, ()))
+    sink = open_sink(path, log.provenance)
+    sink.write(log.rows[:4])
+    sink.leave()
+    with pytest.raises(LogError, match=r"holds 4 .*holds 20 rows of 21"):
+        continued_sink(path, log.provenance, False, Mark(21, ()))
+    assert load_log(path).rows.tobytes() == log.rows.tobytes()
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_vanished_directory_is_noticed_with_the_next_rows(tmp_path: Path, suffix: str) -> None:
+    place = tmp_path / "place"
+    place.mkdir()
+    sink = open_sink(place / f"log{suffix}", provenance())
+    sink.write(random_rows(10))
+    shutil.rmtree(place)
+    with pytest.raises(LogError, match="directory has vanished"):
+        sink.write(random_rows(10))
+    sink.leave()
