@@ -83,7 +83,7 @@ def measures_text(asked: str, measures: Measures, structure: Structure | None) -
 def _row(quantity: Quantity) -> tuple[str, str, str, str, str]:
     digits = _digits(quantity.value, quantity.error)
     theory = "" if quantity.theory is None else f"{quantity.theory:.{digits}g}"
-    name = f"{quantity.name} [{quantity.unit}]" if quantity.unit.startswith("2^") else quantity.name
+    name = quantity.name if quantity.plain else f"{quantity.name} [{quantity.unit}]"
     return name, value_with_error(quantity), theory, _difference(quantity), quantity.source or ""
 
 

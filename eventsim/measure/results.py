@@ -49,7 +49,8 @@ class Records(NamedTuple):
 class Quantity:
     """A measured number, its standard error, and what theory says.
 
-    name: unique.  unit: in the scene's units.  error: NaN where none can be given.  blocks: how many were averaged.
+    name: unique.  unit: in the scene's units, or a power of two of these ("2^1800 energy") where the value is no float in
+    them.  error: NaN where none can be given.  blocks: how many were averaged.
     block_length: time.  theory: None where there is none; accuracy: of the theory, absolute; NaN: a guide, not a prediction.
     source: of the theory.
     """
@@ -63,6 +64,11 @@ class Quantity:
     theory: float | None = None
     accuracy: float = 0.0
     source: str | None = None
+
+    @property
+    def plain(self) -> bool:
+        """Whether the unit is one of the scene's, not a power of two of it."""
+        return not self.unit.startswith("2^")
 
     @property
     def deviation(self) -> float | None:

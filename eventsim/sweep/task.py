@@ -75,6 +75,8 @@ def _measured(plan: Plan, task: Task) -> Row:
         "doubts": "; ".join(measures.doubts) or None,
     }
     for quantity in measures.quantities:
+        if not quantity.plain:  # a column has one unit: what is no float in it is missing
+            continue
         row[quantity.name] = quantity.value
         row[f"{quantity.name}_error"] = quantity.error
         if quantity.theory is not None:
