@@ -1,4 +1,4 @@
-"""Parquet logs, by pyarrow: one row group per block, the metadata as JSON under the key `eventsim`."""
+"""Parquet logs, by pyarrow: row groups of one length, the metadata as JSON under the key `eventsim`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, blank_rows
-from eventsim.record.files.journal import GROUP, METADATA, WHOLE, Columns, JournalSink
+from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text
@@ -21,6 +21,9 @@ except ImportError:
     raise LogError("parquet logs need pyarrow: install eventsim-disks[parquet]") from None
 
 TEXTS = ("kind", "wall")
+GROUP = 1 << 15
+"""Rows in a group, which are held at a time: more would push what the engine needs out of the caches that cores share."""
+
 LEAN: dict[str, Any] = {"use_dictionary": list(TEXTS), "write_statistics": False, "compression": "none"}
 """How columns are written: whole numbers as small differences, floats as they are.  Statistics, dictionaries of numbers and
 compression would take longer than the simulation, and gain less."""
@@ -36,33 +39,32 @@ class ParquetSink(JournalSink):
         schema = _schema(self.columns)
         self._writer = pq.ParquetWriter(self.part / WHOLE, schema, store_schema=False, column_encoding=whole, **LEAN)
         self._metadata: list[str] = []
-        self._waiting: list[Columns] = []
-        self._count_waiting = 0
+        self._group: Columns = {name: np.empty(GROUP, ROW[name]) for name in self.columns}
+        self._filled = 0
 
     def _put(self, columns: Columns) -> None:
-        self._waiting.append(columns)
-        self._count_waiting += len(columns["event"])
-        if self._count_waiting >= GROUP:
-            self._write_waiting(self._count_waiting // GROUP * GROUP)
+        count, taken = len(columns["event"]), 0
+        while taken < count:
+            taking = min(count - taken, GROUP - self._filled)
+            for name, column in self._group.items():
+                column[self._filled : self._filled + taking] = columns[name][taken : taken + taking]
+            self._filled, taken = self._filled + taking, taken + taking
+            if self._filled == GROUP:
+                self._write_group()
 
     def _describe(self, text: str) -> None:
         self._metadata.append(text)
 
     def _complete(self) -> None:
-        if self._waiting:
-            self._write_waiting(self._count_waiting)
+        if self._filled:
+            self._write_group()
         self._writer.add_key_value_metadata({METADATA: "".join(self._metadata)})
         self._stop()
 
-    def _write_waiting(self, count: int) -> None:
-        """Write the first `count` of the rows that wait, in groups."""
-        waiting = {name: np.concatenate([columns[name] for columns in self._waiting]) for name in self.columns}
-        for first in range(0, count, GROUP):
-            group = {name: column[first : min(first + GROUP, count)] for name, column in waiting.items()}
-            arrays = [_array(column, name, self.provenance) for name, column in group.items()]
-            self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
-        self._waiting = [{name: column[count:] for name, column in waiting.items()}]
-        self._count_waiting -= count
+    def _write_group(self) -> None:
+        arrays = [_array(column[: self._filled], name, self.provenance) for name, column in self._group.items()]
+        self._writer.write_table(pa.Table.from_arrays(arrays, schema=_schema(self.columns)))
+        self._filled = 0
 
     def _stop(self) -> None:
         writer, self._writer = self._writer, None
