@@ -41,6 +41,21 @@ def test_entries_are_whole_and_do_not_tell_in_which_blocks_they_came(tmp_path, c
         assert archive.read("d") == b"the head" + (codes if labels is None else labels[codes]).tobytes()
 
 
+@pytest.mark.parametrize("count", [0, 1000])
+def test_an_archive_grows_from_the_file_of_an_entry_wherever_that_comes(tmp_path, count):
+    codes, room = np.arange(count), 512
+    (tmp_path / "base").write_bytes(b"?" * room + codes.tobytes())
+    entries = Deflated("d", tmp_path / "d"), Stored("base", tmp_path / "base", room)
+    for entry in entries:
+        entry.write(codes)
+        entry.finish(b"the head")
+    write_archive(tmp_path / "base", entries)
+    with zipfile.ZipFile(tmp_path / "base") as archive:
+        assert archive.testzip() is None
+        assert archive.namelist() == ["d", "base"]
+        assert archive.read("base") == archive.read("d") == b"the head" + codes.tobytes()
+
+
 @pytest.mark.parametrize("count", [0, 1, PAGE - 1, PAGE, 300 * PAGE + 7])
 def test_numbers_of_rows_are_read_back_whatever_blocks_they_came_in(tmp_path, count):
     found = []

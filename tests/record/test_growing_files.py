@@ -12,6 +12,7 @@ import pytest
 from eventsim.errors import LogError
 from eventsim.record import Ending, load_log
 from eventsim.record.files import SUFFIXES, Mark, continued_sink, open_sink, rows_so_far
+from eventsim.record.files.journal import ROOM
 from tests.record.logs import provenance, random_log, random_rows, scene
 
 TEXT = (".csv", ".jsonl")
@@ -69,7 +70,7 @@ def test_a_growing_binary_log_can_be_read_up_to_its_last_whole_row(tmp_path: Pat
     part = tmp_path / f"log{suffix}.part"
     assert load_log(part).rows.tobytes() == rows.tobytes()
     with (part / "remainder").open("r+b") as column:
-        column.truncate(9 * 8 - 3)
+        column.truncate(ROOM + 9 * 8 - 3)
     assert load_log(part).rows.tobytes() == rows[:8].tobytes()
     assert load_log(part).provenance.ending is None
     with pytest.raises(LogError, match=r"no such file; .*\.part is there"):
@@ -108,6 +109,27 @@ def test_a_log_that_is_continued_is_the_same_file_as_one_written_at_once(
         assert load_log(path).provenance == whole.provenance
         if suffix not in TEXT:  # there the room for so many kicks was made at another time
             assert path.read_bytes() == (tmp_path / f"once{suffix}").read_bytes()
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".parquet"])
+def test_a_log_stays_as_it_is_though_its_journal_was_left_over_and_is_continued(tmp_path: Path, suffix: str) -> None:
+    log = random_log(300)
+    path = tmp_path / f"log{suffix}"
+    kept = replace(log.provenance, kicks=(), ending=None, rows=None)
+    sink = open_sink(path, kept)
+    sink.write(log.rows[:150])
+    mark = sink.sync()
+    sink.write(log.rows[150:200])
+    sink._discard = lambda: None  # the run is killed before it comes to that
+    sink.close(Ending(1, 0.5, "interrupted"))
+    bytes_of_log = path.read_bytes()
+    assert load_log(path).rows.tobytes() == load_log(sink.part).rows.tobytes() == log.rows[:200].tobytes()
+    sink = continued_sink(path, kept, False, mark)
+    sink.write(log.rows[150:])
+    assert path.read_bytes() == bytes_of_log
+    log.save(tmp_path / f"once{suffix}")
+    sink.close(load_log(tmp_path / f"once{suffix}").provenance.ending)
+    assert path.read_bytes() == (tmp_path / f"once{suffix}").read_bytes()
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)

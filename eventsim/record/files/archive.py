@@ -7,11 +7,12 @@ no length is a special case).
 
 from __future__ import annotations
 
+import os
 import shutil
 import struct
 import zlib
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import IO, NamedTuple
@@ -29,6 +30,7 @@ DATE = (1 << 5) | 1
 IN_ZIP64 = 0xFFFFFFFF
 FASTEST = 1
 COPY = 1 << 20
+PADDING, GROWTH_HINT = 0xA220, 0xA028
 STORED_BLOCK = 65535
 """The longest stored block of the deflate format."""
 
@@ -43,6 +45,8 @@ class Entry(ABC):
     """An entry that grows at `path`; `head`, which is known last, goes before what was written."""
 
     method: int
+    room = 0
+    """Bytes of the file before those of the entry."""
 
     def __init__(self, name: str, path: Path) -> None:
         self.name = name.encode("ascii")
@@ -71,24 +75,47 @@ class Entry(ABC):
     def copy_to(self, target: IO[bytes]) -> bytes:
         """Write the finished entry where `target` stands; the record of it for the directory of the archive."""
         offset = target.tell()
+        packed = self.path.stat().st_size - self.room
+        header, record = self._headers(packed, offset, b"")
+        target.write(header)
+        with self.path.open("rb") as source:
+            source.seek(self.room)
+            shutil.copyfileobj(source, target, COPY)
+        return record
+
+    def begin_with(self, target: IO[bytes]) -> bytes:
+        """The same where the archive is to grow from the file of the finished entry: nothing is copied."""
+        packed = self.path.stat().st_size - self.room
+        bare, _ = self._headers(packed, 0, b"")
+        blank = self.room - len(bare) - struct.calcsize("<HHHH")
+        padding = struct.pack("<HHHH", PADDING, blank + 4, GROWTH_HINT, blank) + bytes(blank)
+        header, record = self._headers(packed, 0, padding)
+        target.write(header)
+        target.seek(0, os.SEEK_END)
+        return record
+
+    def _headers(self, packed: int, offset: int, padding: bytes) -> tuple[bytes, bytes]:
+        """What stands before `packed` bytes of the entry at an offset, and the record for the directory."""
         head = self.packed_head()
         crc = combined_crc(zlib.crc32(self.head), self.crc, self.size)
-        sizes = struct.pack("<QQ", len(self.head) + self.size, len(head) + self.path.stat().st_size)
+        sizes = struct.pack("<QQ", len(self.head) + self.size, len(head) + packed)
         common = struct.pack("<HHHHHIIIH", VERSION, 0, self.method, 0, DATE, crc, IN_ZIP64, IN_ZIP64, len(self.name))
-        target.write(b"PK\x03\x04" + common + struct.pack("<H", 4 + len(sizes)) + self.name)
-        target.write(struct.pack("<HH", 1, len(sizes)) + sizes + head)
-        with self.path.open("rb") as source:
-            shutil.copyfileobj(source, target, COPY)
+        header = b"PK\x03\x04" + common + struct.pack("<H", 4 + len(sizes) + len(padding)) + self.name
+        header += struct.pack("<HH", 1, len(sizes)) + sizes + padding + head
         sizes += struct.pack("<Q", offset)
         record = b"PK\x01\x02" + struct.pack("<H", VERSION) + common
         record += struct.pack("<HHHHII", 4 + len(sizes), 0, 0, 0, 0, IN_ZIP64)
-        return record + self.name + struct.pack("<HH", 1, len(sizes)) + sizes
+        return header, record + self.name + struct.pack("<HH", 1, len(sizes)) + sizes
 
 
 class Stored(Entry):
-    """Bytes that somebody else writes at `path`, as they are; here they are only noted."""
+    """Bytes that somebody else writes at `path`, as they are, behind so much room; here they are only noted."""
 
     method = 0
+
+    def __init__(self, name: str, path: Path, room: int = 0) -> None:
+        super().__init__(name, path)
+        self.room = room
 
     def write(self, column: Column) -> None:
         """Take note of an array that is written at `path`."""
@@ -178,10 +205,12 @@ def deflated_alone(data: bytes) -> bytes:
     return deflate.compress(data) + deflate.flush(zlib.Z_FULL_FLUSH)
 
 
-def write_archive(path: Path, entries: Iterable[Entry]) -> None:
-    """Write an archive of finished entries."""
-    with path.open("wb") as target:
-        records = [entry.copy_to(target) for entry in entries]
+def write_archive(path: Path, entries: Sequence[Entry]) -> None:
+    """Write an archive of finished entries; where one has grown at `path` itself, the file becomes the archive."""
+    there = next((entry for entry in entries if entry.path == path), None)
+    with path.open("wb" if there is None else "r+b") as target:
+        first = None if there is None else there.begin_with(target)
+        records = [first if entry is there and first is not None else entry.copy_to(target) for entry in entries]
         count, begin = len(records), target.tell()
         target.write(b"".join(records))
         end = target.tell()

@@ -20,7 +20,7 @@ import numpy as np
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows, blank_rows
 from eventsim.record.files.runs import STEADY, columns_of_runs, cut_runs, rows_in_runs, runs_of
-from eventsim.record.files.sink import FileSink, demand_same
+from eventsim.record.files.sink import PART, FileSink, demand_same
 from eventsim.record.files.table import columns_kept
 from eventsim.record.provenance import (
     BEFORE_SCENE,
@@ -42,6 +42,9 @@ RUNS = "runs"
 
 NUMBER = "event"
 """The column that is counted anew when a journal is read."""
+
+ROOM = 512
+"""Bytes that the raw file of a column begins with, for what a format may want to stand before the numbers."""
 
 GROUP = 1 << 17
 """Rows held at a time."""
@@ -90,8 +93,10 @@ class JournalSink(FileSink):
         begun.mkdir()
         scene = scene_beside(self.provenance.scene, begun)
         (begun / METADATA).write_text(provenance_text(self.provenance, scene), encoding="ascii")
-        for name in self._files:
+        (begun / RUNS).touch()
+        for name in raw(self.columns):
             (begun / name).touch()
+            os.truncate(begun / name, ROOM)
         begun.replace(self.part)
         self._go_on()
 
@@ -102,18 +107,16 @@ class JournalSink(FileSink):
         if found < rows:
             raise LogError(f"{self.part}: holds {found} rows of {rows}")
         for name in raw(self.columns):
-            os.truncate(self.part / name, rows * ROW[name].itemsize)
+            _part_from_others(self.part / name)
+            os.truncate(self.part / name, ROOM + rows * ROW[name].itemsize)
         cut_runs(self.part / RUNS, rows)
         self._go_on()
         for columns in columns_of_journal(self.part, self.columns, rows):
             self._put(columns)
 
-    @property
-    def _files(self) -> tuple[str, ...]:
-        return (*raw(self.columns), RUNS)
-
     def _go_on(self) -> None:
-        self._journal = {name: (self.part / name).open("ab", buffering=0) for name in self._files}
+        files = (*raw(self.columns), RUNS)
+        self._journal = {name: (self.part / name).open("ab", buffering=0) for name in files}
         self._texts = chain([BEFORE_SCENE], scene_texts(self.provenance.scene))
         self._begin()
 
@@ -162,6 +165,14 @@ def _write_all(file: IO[bytes], column: Column) -> None:
         left = left[file.write(left) :]
 
 
+def _part_from_others(path: Path) -> None:
+    """Let a file have its bytes for itself, where a log that was just finished has them too."""
+    if path.stat().st_nlink > 1:
+        alone = path.with_name(path.name + PART)
+        shutil.copyfile(path, alone)
+        alone.replace(path)
+
+
 def journal_provenance(part: Path) -> Provenance:
     """The metadata of a log that grows, or grew until its run was killed; LogError where there are none."""
     try:
@@ -179,8 +190,9 @@ def raw(columns: Iterable[str]) -> tuple[str, ...]:
 def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
     """How many rows are whole; LogError where a file is missing."""
     try:
-        sizes = [(part / name).stat().st_size // ROW[name].itemsize for name in raw(columns)]
-        return min(*sizes, rows_in_runs(part / RUNS))
+        sizes = {name: max((part / name).stat().st_size - ROOM, 0) for name in raw(columns)}
+        counts = [size // ROW[name].itemsize for name, size in sizes.items()]
+        return min(*counts, rows_in_runs(part / RUNS))
     except OSError as error:
         raise LogError(f"{part}: not an event log that grows: {error.strerror}: {error.filename}") from None
 
@@ -192,7 +204,7 @@ def columns_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterat
         found: Columns = {NUMBER: np.arange(first, first + here), **columns_of_runs(part / RUNS, first, here)}
         for name in raw(names):
             with open(part / name, "rb") as source:
-                source.seek(first * ROW[name].itemsize)
+                source.seek(ROOM + first * ROW[name].itemsize)
                 found[name] = np.frombuffer(source.read(here * ROW[name].itemsize), ROW[name])
         yield found
 

@@ -1,13 +1,14 @@
 """NPZ logs: one array per column (kind and wall as text) and the array `eventsim` with the metadata as JSON.
 
-Columns grow as raw files in the directory NAME.npz.part (the journal) and are put together when the log is closed.  What hardly
-changes from row to row is deflated, in passing, and what repeats itself only once; the rest would shrink little and take more
-time than the simulation.
+Columns grow as raw files in the directory NAME.npz.part (the journal) and are put together when the log is closed: the file of
+the last one becomes the archive, and the others are copied behind it.  What hardly changes from row to row is deflated, in
+passing, and what repeats itself only once; the rest would shrink little and take more time than the simulation.
 """
 
 from __future__ import annotations
 
 import io
+import os
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -21,7 +22,7 @@ from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column
 from eventsim.record.files.archive import Deflated, Entry, Stored, write_archive
 from eventsim.record.files.counting import Counting
-from eventsim.record.files.journal import METADATA, NUMBER, WHOLE, Columns, JournalSink
+from eventsim.record.files.journal import METADATA, NUMBER, ROOM, WHOLE, Columns, JournalSink
 from eventsim.record.files.runs import STEADY
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
@@ -53,7 +54,14 @@ class NpzSink(JournalSink):
         for name, entry in self._entries.items():
             labels = labels_of(name, self.provenance.wall_names)
             entry.finish(_header(ROW[name] if labels is None else labels.dtype, self._count))
-        write_archive(self.part / WHOLE, [self._metadata, *self._entries.values()])
+        last = self.part / self.columns[-1]
+        write_archive(last, [self._metadata, *self._entries.values()])
+        whole = self.part / WHOLE
+        whole.unlink(missing_ok=True)
+        try:
+            os.link(last, whole)  # so the journal stays whole until the file has its name
+        except OSError:  # there are file systems that know no second name
+            last.replace(whole)
 
     def _stop(self) -> None:
         for entry in (self._metadata, *self._entries.values()) if self._entries else ():
@@ -66,7 +74,7 @@ class NpzSink(JournalSink):
         if name in STEADY:
             labels = labels_of(name, self.provenance.wall_names)
             return Deflated(f"{name}.npy", self.part / (name + DEFLATED_FILE), labels)
-        return Stored(f"{name}.npy", self.part / name)
+        return Stored(f"{name}.npy", self.part / name, ROOM)
 
 
 def read_npz(path: Path) -> EventLog:
