@@ -108,11 +108,22 @@ def _schema(names: tuple[str, ...]) -> Any:
 
 
 def _array(values: Column, name: str, provenance: Provenance) -> Any:
+    """A column as pyarrow has it, the same memory.  `pa.array` would look whether it is one of pandas, and load all of that."""
     labels = labels_of(name, provenance.wall_names)
     if labels is None:
-        return pa.array(values, mask=np.isnan(values) if values.dtype.kind == "f" else None)
+        return _numbers(values)
     codes = values.astype(np.int32) % len(labels)  # -1 is the last label
-    return pa.DictionaryArray.from_arrays(pa.array(codes), pa.array(labels.tolist()))
+    texts = [text.encode() for text in labels.tolist()]
+    ends = np.cumsum([0, *map(len, texts)], dtype=np.int32)
+    dictionary = pa.StringArray.from_buffers(len(texts), pa.py_buffer(ends), pa.py_buffer(b"".join(texts)))
+    return pa.DictionaryArray.from_arrays(_numbers(codes), dictionary)
+
+
+def _numbers(values: Column) -> Any:
+    """Numbers (n,), NaN as null."""
+    there = ~np.isnan(values) if values.dtype.kind == "f" else None
+    known = None if there is None or there.all() else pa.py_buffer(np.packbits(there, bitorder="little"))
+    return pa.Array.from_buffers(pa.from_numpy_dtype(values.dtype), len(values), [known, pa.py_buffer(values)])
 
 
 def _column(column: Any) -> Column:
