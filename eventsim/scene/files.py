@@ -167,7 +167,9 @@ def _read(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise SceneError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     try:
-        data = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
+        data = json.loads(text, object_pairs_hook=_once) if path.suffix.lower() == ".json" else tomllib.loads(text)
+    except _TwiceError as error:
+        raise SceneError(f"{path}: gives the key {error.args[0]!r} twice in one table") from None
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"{path}: is not valid TOML: {error}") from None
     except json.JSONDecodeError as error:
@@ -180,6 +182,20 @@ def _read(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise SceneError(f"{path}: must be a JSON object with the keys of a scene")
     return data
+
+
+class _TwiceError(Exception):
+    """A table of a JSON file has a key more than once; args: the key."""
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A table, each key of which is given once, as TOML demands."""
+    table: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in table:
+            raise _TwiceError(key)
+        table[key] = value
+    return table
 
 
 def _domain_table(domain: Domain) -> dict[str, Any]:

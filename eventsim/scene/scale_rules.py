@@ -19,13 +19,22 @@ MOST, LARGEST = 1e300, 1e305
 """A number of which many can be added; one of which a few can, and whose inverse has all its digits."""
 
 
+LEAST = 1e-300
+"""A number, parts of which still have all their digits."""
+
+USUAL_LENGTHS = 1e-9, 1e9
+"""Between these, a speed times a length or over it has as many digits as the speed."""
+
+
 def scale_problems(scene: Scene) -> Iterator[str]:
     """Rules for numbers together, of a scene whose numbers each keep their own.
 
     Straight flights take no squares of speeds, parabolas do.
     """
     extent, shortest = _lengths(scene)
-    fastest = float(np.abs(scene.disks.velocity).max())
+    speed = np.abs(scene.disks.velocity).max(axis=1)
+    fastest = float(speed.max())
+    yield from _slow_problems(float(speed[speed > 0.0].min(initial=math.inf)), extent, shortest)
     mass = scene.disks.mass[(scene.disks.mass > 0.0) & np.isfinite(scene.disks.mass)]
     lightest, heaviest = (float(mass.min()), float(mass.max())) if len(mass) else (1.0, 0.0)
     if scene.gravity is not None:
@@ -50,6 +59,21 @@ def scale_problems(scene: Scene) -> Iterator[str]:
         yield (
             f"mass: {heaviest:g}: the momentum of such a disk over the shortest length, {shortest:g}, must be at most"
             f" {LARGEST}"
+        )
+
+
+def _slow_problems(slowest: float, extent: float, shortest: float) -> Iterator[str]:
+    """Rules for the slowest disk that moves: what it exchanges in contacts is made of products with lengths, and quotients."""
+    least, most = USUAL_LENGTHS
+    if shortest < least and slowest * shortest < LEAST:
+        yield (
+            f"velocity: {slowest:g}, the slowest that is not 0, times the shortest length, {shortest:g}, must be at least"
+            f" {LEAST}"
+        )
+    if extent > most and slowest / extent < LEAST:
+        yield (
+            f"velocity: {slowest:g}, the slowest that is not 0, over the largest length, {extent:g}, must be at least"
+            f" {LEAST}"
         )
 
 

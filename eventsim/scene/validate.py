@@ -165,6 +165,7 @@ def _place_problems(disks: Disks, scene: Scene, names: DiskNames) -> list[str]:
             f" {BOUNDARY_NAMES[side]} side: must be inside the domain {_extent(domain)}"
         ),
     )
+    problems += _room_problems(disks, domain, names)
     pieces = features(scene.walls)
     problems += _summary(
         feature_overlaps(disks, domain, pieces).broken(),
@@ -188,6 +189,23 @@ def _place_problems(disks: Disks, scene: Scene, names: DiskNames) -> list[str]:
                 " disks may touch, not overlap"
             ),
         )
+    return problems
+
+
+def _room_problems(disks: Disks, domain: Domain, names: DiskNames) -> list[str]:
+    """A rule for disks as wide as the domain between two hard walls: they may not move from one to the other."""
+    problems: list[str] = []
+    for axis, letter in enumerate("xy"):
+        if isinstance(domain, Open) or domain.periodic[axis]:
+            continue
+        length = domain.size[axis]
+        caught = np.flatnonzero((2.0 * disks.radius >= length) & (disks.velocity[:, axis] != 0.0))
+        problems += [
+            f"{names.disk(int(i))} is as wide as the domain, {length}, and has a velocity along {letter}: it would meet both"
+            " walls at every instant; give it room, or no velocity along there"
+            for i in caught[: _written(len(caught))]
+        ]
+        problems += _rest(len(caught), f"disks without room in {letter}")
     return problems
 
 

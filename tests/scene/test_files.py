@@ -255,3 +255,10 @@ def test_the_equilibration_comes_back_and_must_be_a_time():
     assert scene_from_dict(scene_to_dict(scene)) == scene
     with pytest.raises(SceneError, match=r"equilibration = -1\.0: must be a finite time"):
         scene_from_dict({**data, "equilibration": -1.0})
+
+
+def test_a_key_that_json_gives_twice_is_told(tmp_path):
+    path = tmp_path / "twice.json"
+    path.write_text('{"domain": {"kind": "open"}, "disk": [{"radius": 1, "position": [0, 0], "radius": 2}]}')
+    with pytest.raises(SceneError, match=r"twice.json: gives the key 'radius' twice in one table"):
+        load_scene(path)

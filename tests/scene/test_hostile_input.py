@@ -227,3 +227,39 @@ def test_a_row_at_the_end_of_time_is_refused_at_once(tmp_path):
     (tmp_path / "log.jsonl").write_text(text.replace('"epoch": 0', f'"epoch": {2**62}'))
     with pytest.raises(es.LogError, match="turns of the clock"):
         es.load_log(tmp_path / "log.jsonl").expand()
+
+
+@pytest.mark.parametrize(
+    ("speed", "unit", "words"),
+    [
+        (1e-250, 1e-101, "velocity: 1e-250, the slowest that is not 0, times the shortest length, 1e-101, must be at least"),
+        (1e-250, 1e100, "velocity: 1e-250, the slowest that is not 0, over the largest length, 5e.100, must be at least"),
+        (1e-190, 1e-101, None),
+        (1e-150, 1e100, None),
+    ],
+)
+def test_contacts_whose_numbers_would_vanish_are_refused_and_no_others(speed, unit, words):
+    disks = [
+        {"position": [-5.0 * unit, 0.0], "velocity": [speed, 0.0], "radius": unit},
+        {"position": [2.5 * unit, 0.5 * unit], "velocity": [0.0, 0.0], "radius": unit},
+    ]
+    tables = {"domain": {"kind": "open"}, "disk": disks}
+    if words is not None:
+        with pytest.raises(es.SceneError, match=words):
+            scene_from_dict(tables)
+        return
+    log = es.simulate(scene_from_dict(tables), events=1, engine="reference", log=True).log
+    assert log.vxb[0] == pytest.approx(0.9375 * speed, rel=1e-12)
+
+
+@pytest.mark.parametrize(("domain", "axis"), [("box", 0), ("box", 1), ("channel", 1)])
+def test_a_disk_without_room_between_walls_may_not_move_there(domain, axis):
+    velocity = [0.25, 0.25]
+    tables = {
+        "domain": {"kind": domain, "size": [4.0, 1.0] if axis else [1.0, 4.0]},
+        "disk": [{"position": [0.5, 0.5], "velocity": velocity, "radius": 0.5}],
+    }
+    with pytest.raises(es.SceneError, match=rf"disk\[0\] is as wide as the domain, 1.0, and has a velocity along {'xy'[axis]}"):
+        scene_from_dict(tables)
+    velocity[axis] = 0.0
+    assert scene_from_dict(tables).disks.radius.tolist() == [0.5]
