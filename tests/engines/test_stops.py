@@ -53,3 +53,24 @@ def test_a_prediction_that_came_to_nothing_is_no_event_ahead(engine):
     disks = es.Disks([[0.0, 0.0], [-21.0, 0.0], [0.0, -3.0]], [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], 0.5, [1, 1, 3])
     run = es.simulate(es.Scene(disks, es.Open()), until=10.0, engine=engine)
     assert (run.counters.events, run.stopped) == (1, "quiet")
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_a_clock_that_ends_before_the_next_contact_says_so(engine):
+    """After 49 ever lower bounces only the wall is ahead, in 1e19 time units, of which the clock counts some 2^61."""
+    if engine == "fast":
+        pytest.importorskip("numba")
+    slow = es.Disks([[1.0, 1.0]], [[1e-19, 0.0]], 0.5)
+    scene = es.Scene(slow, es.Box((2.5, 2.0)), gravity=(0.0, -1.0), restitution=0.5)
+    run = es.simulate(scene, events=90, engine=engine)
+    assert (run.counters.events, run.stopped) == (49, "digits")
+    assert "the clock of this scene ends at t = 4.61169e+18, and a contact is still ahead, due at t = 1e+19" in run.reason
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_disks_that_part_for_ever_need_no_clock(engine):
+    if engine == "fast":
+        pytest.importorskip("numba")
+    apart = es.Disks([[0.0, 0.0], [3.0, 0.0]], [[0.0, 0.0], [1.0, 0.0]], 0.5)
+    run = es.simulate(es.Scene(apart, es.Open()), events=9, engine=engine)
+    assert (run.stopped, run.reason) == ("quiet", None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.engines.base import Motion
 from eventsim.engines.fast import layout
@@ -170,15 +171,28 @@ class Machine:
 
     def renew_stale(self) -> bool:
         """Whether nothing but stale predictions was ahead; they are made anew then."""
+        stale = self._stale()
+        if not np.array_equal(stale, np.isfinite(self.due)):
+            return False
+        self._renew(stale)
+        return True
+
+    def next_contact(self) -> float:
+        """When the earliest contact that is predicted is due, a remainder; inf without one. Stale ones are made anew."""
+        self._renew(self._stale())
+        partner = self.state.words[: self.state.n, layout.PARTNER]
+        return float(self.due[(partner >= 0) | (partner <= layout.WALL)].min(initial=np.inf))
+
+    def _stale(self) -> NDArray[np.bool_]:
         words, n = self.state.words, self.state.n
         partner = words[:n, layout.PARTNER]
         count = words[np.maximum(partner, 0), layout.COUNT]
-        stale = (partner >= 0) & (words[:n, layout.PARTNER_COUNT] & (layout.COUNTS - 1) != count)
-        if not np.array_equal(stale, np.isfinite(self.due)):
-            return False
+        stale: NDArray[np.bool_] = (partner >= 0) & (words[:n, layout.PARTNER_COUNT] & (layout.COUNTS - 1) != count)
+        return stale
+
+    def _renew(self, stale: NDArray[np.bool_]) -> None:
         for i in np.flatnonzero(stale).tolist():
             self._predict(i, i + 1, self.state.now)
-        return True
 
     def _predict(self, begin: int, end: int, floor: float) -> None:
         predict_some(self.arrays, self.grid, self.rules, self.counts, begin, end, self.state.now, floor)

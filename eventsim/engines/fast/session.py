@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop
+from eventsim.engines.clock_end import at_the_last_epoch
 from eventsim.engines.drift import only_wraps
 from eventsim.engines.fast import layout, tally
 from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
@@ -137,7 +138,8 @@ class FastSession:
                             machine.give_up_cells()
                             continue
                     if state.epoch >= MOST_EPOCHS:
-                        return "quiet"
+                        stopped, self._rulings.reason = at_the_last_epoch(self.stage, state.epoch, machine.next_contact())
+                        return stopped
                     self._rulings.forget()
                     machine.turn_over()
                     self.counters.turnovers += 1

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
+from eventsim.engines.clock_end import at_the_last_epoch
 from eventsim.engines.collapse import LIES_STILL, named, remedy
 from eventsim.engines.drift import only_wraps
 from eventsim.engines.reference.advance import cross, refill, wrap
@@ -77,8 +78,9 @@ class ReferenceSession:
             event = calendar.first()
             due = float("inf") if event is None else event.time
             if due >= state.window_end <= until and not (event is None and self._quiet(stop)):
-                if state.epoch >= MOST_EPOCHS:  # nothing more can be logged; only disks that part for ever come here
-                    return "quiet"
+                if state.epoch >= MOST_EPOCHS:  # nothing more can be logged
+                    word, self.reason = at_the_last_epoch(self.stage, state.epoch, self._next_contact())
+                    return word
                 self._turn_over()
                 until = self._remainder(stop.until)
                 continue
@@ -173,6 +175,11 @@ class ReferenceSession:
         if self.cells is not None:
             refill(self.state, self.cells)
         self._predictor.predict_all(self.state.now)
+
+    def _next_contact(self) -> float:
+        """When the earliest contact that is predicted is due, rounded; inf without one."""
+        ahead = (event.time for event in self.calendar if event.rank == CONTACT and not self.is_stale(event))
+        return min(map(float, ahead), default=float("inf"))
 
     def _quiet(self, stop: Stop) -> bool:
         """With an empty calendar nothing happens for ever; only a stop time makes it worth while to let the clock turn."""
