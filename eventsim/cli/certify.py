@@ -13,9 +13,13 @@ from eventsim.cli.target import LOG_SUFFIXES, writable
 
 if TYPE_CHECKING:
     from eventsim.engines.certified.proof import Proof
+    from eventsim.engines.certified.rounded import Rounded
 
 DISKS_SHOWN = 8
 USUAL_EVENTS = 1000
+
+STOPPED = {"until": "its next contact is due after the stop", "quiet": "it sees no event ahead"}
+"""Why float64 has no further event where it says no more itself."""
 
 
 @click.command()
@@ -48,8 +52,9 @@ def command(
     \b
     Examples:
       eventsim certify gas --events 500
-      eventsim certify break --log certified.csv
+      eventsim certify gas --log certified.csv
       eventsim certify newton-cradle --json
+      eventsim certify break         proves 35 events, up to a cluster of irrational numbers
 
     \b
     Keys of --json:
@@ -59,9 +64,14 @@ def command(
       attempts                 the other ones: [{bits, traced, events}]
       enclosures               of the end: [{x, y, vx, vy, x_error, y_error, vx_error, vy_error}], one a disk;
                                the true number lies within its error
-      difference               {event, time}: the first event that float64 has otherwise (null: none)
-      agreed, deviation        events that float64 has in the same order; its largest error of a
-                               coordinate at these contacts
+      difference               {event, time}: the first event that float64 has otherwise, or not, since
+                               it stopped before (null: none)
+      float64_stopped, float64_reason   why it did (collapse, digits, ...); null where it did not
+      agreed                   events that float64 has in the same order
+      deviation                its largest error of a coordinate at these contacts, and
+      deviation_share          the same as a part of the scene's largest length
+      velocity_deviation       its largest error of a component of a velocity after them, and
+      velocity_deviation_share the same as a part of the fastest speed
       stopped, reason          until | events | quiet | collapse | undecided tie | interrupted; and why
       elapsed_s, log           seconds of the proof; the file written (null without)
 
@@ -69,6 +79,8 @@ def command(
     1 is kept for comparisons that fail: where float64 differs from the proof is a result, not a failure.
     """
     path = writable(log, "--log", LOG_SUFFIXES)
+    if most_bits < bits:
+        raise click.UsageError(f"--most-bits {most_bits}: the last attempt cannot have fewer bits than the first, --bits {bits}")
 
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.progress import ProgressBar
@@ -108,9 +120,9 @@ def _data(asked: str, proof: Proof, log: Path | None) -> dict[str, object]:
     for place, speed, errors in zip(state.position, state.velocity, proof.enclosures, strict=True):
         values = dict(zip(names, (*place.tolist(), *speed.tolist()), strict=True))
         enclosures.append(values | {f"{name}_error": error for name, error in zip(names, errors.tolist(), strict=True)})
-    difference = None
-    if proof.difference is not None:
-        difference = {"event": proof.difference, "time": proof.difference_time}
+    float64, difference = proof.float64, None
+    if float64.difference is not None:
+        difference = {"event": float64.difference, "time": proof.difference_time}
     return {
         "scene": asked,
         "name": proof.run.scene.name,
@@ -121,8 +133,13 @@ def _data(asked: str, proof: Proof, log: Path | None) -> dict[str, object]:
         "attempts": [attempt._asdict() for attempt in proof.attempts],
         "enclosures": enclosures,
         "difference": difference,
-        "agreed": proof.agreed,
-        "deviation": proof.deviation,
+        "float64_stopped": float64.stopped,
+        "float64_reason": float64.reason,
+        "agreed": float64.agreed,
+        "deviation": float64.deviation,
+        "deviation_share": float64.deviation_share,
+        "velocity_deviation": float64.velocity_deviation,
+        "velocity_deviation_share": float64.velocity_deviation_share,
         "stopped": proof.run.stopped,
         "reason": proof.run.reason,
         "elapsed_s": proof.run.elapsed_s,
@@ -131,6 +148,7 @@ def _data(asked: str, proof: Proof, log: Path | None) -> dict[str, object]:
 
 
 def _text(asked: str, proof: Proof, log: Path | None) -> str:
+    from eventsim.cli.summary import stop_words
     from eventsim.cli.words import aligned, plural, scene_line, short, title
 
     run = proof.run
@@ -139,15 +157,16 @@ def _text(asked: str, proof: Proof, log: Path | None) -> str:
         ("proven", f"{plural(proof.proven, 'event')}, to t = {short(run.state.time)}{each}"),
         ("bits", f"{proof.bits}{', numbers traced' if proof.traced else ''}{_attempts(proof)}"),
         ("float64", _float64(proof)),
-        ("end", f"every coordinate known to {proof.enclosures[:, :2].max():.1e}"),
-        ("stopped", run.stopped if run.reason is None else f"early ({run.stopped}): {run.reason}"),
+        ("errors", _errors(proof.float64)),
+        ("end", f"every coordinate known {_within(proof.enclosures[:, :2].max(), 'to')}"),
+        ("stopped", stop_words(run)),
     ]
     if log is not None:
         rows.append(("log", f"{log}: {plural(proof.proven, 'row')}"))
     lines = [f"{title(asked, run.scene.name)}: {scene_line(run.scene)}", aligned(rows)]
     if len(run.state.position) <= DISKS_SHOWN:
         for i, (place, errors) in enumerate(zip(run.state.position, proof.enclosures, strict=True)):
-            x, y = (f"{value!r} +- {error:.1e}" for value, error in zip(place.tolist(), errors[:2], strict=True))
+            x, y = (f"{value!r} {_within(error, '+-')}" for value, error in zip(place.tolist(), errors[:2], strict=True))
             lines.append(f"  disk {i}: x = {x}, y = {y}")
     return "\n".join(lines)
 
@@ -162,8 +181,26 @@ def _attempts(proof: Proof) -> str:
 def _float64(proof: Proof) -> str:
     from eventsim.cli.words import plural, short
 
-    error = f"largest error at a contact until there {proof.deviation:.1e}"
-    if proof.difference is None:
-        return f"has {plural(proof.agreed, 'event')} in the same order; {error}"
+    float64 = proof.float64
+    if float64.difference is None:
+        return f"has {plural(float64.agreed, 'event')} in the same order"
     assert proof.difference_time is not None
-    return f"first differs at event {proof.difference}, t = {short(proof.difference_time)}; {error}"
+    place = f"event {float64.difference}, t = {short(proof.difference_time)}"
+    if float64.stopped is None:
+        return f"first differs at {place}"
+    why = float64.reason or STOPPED.get(float64.stopped, float64.stopped)
+    return f"has {plural(float64.agreed, 'event')} in the same order, then stopped ({float64.stopped}) before {place}: {why}"
+
+
+def _errors(float64: Rounded) -> str:
+    """How far float64 is off where it has the same contacts."""
+    if float64.deviation == float64.velocity_deviation == 0.0:
+        return "none at these contacts: float64 is right to the last bit"
+    places = f"{float64.deviation:.1e} in a coordinate ({float64.deviation_share:.1e} of the largest length)"
+    velocities = f"{float64.velocity_deviation:.1e} in a velocity ({float64.velocity_deviation_share:.1e} of the fastest)"
+    parts = [text for error, text in ((float64.deviation, places), (float64.velocity_deviation, velocities)) if error]
+    return f"of float64 at these contacts: up to {' and '.join(parts)}"
+
+
+def _within(error: float, sign: str) -> str:
+    return f"{sign} {error:.1e}" if error else "exactly"

@@ -124,6 +124,13 @@ def command(
     if resume is not None and scene is None and (settings or seed is not None):
         raise click.UsageError("--set and --seed shape a scene, and that of a checkpoint is what it is")
 
+    if horizon and engine in KNOWN:
+        raise click.UsageError(
+            f"--horizon is about the last bits of an event-driven trajectory; that of {engine} is off by its time steps: "
+            "eventsim validate tells how far"
+        )
+    if horizon and engine == "certified":
+        raise click.UsageError("--horizon: what the certified engine has simulated is proven; eventsim certify compares float64")
     options = engine_options(engine or "auto", dt, engine_settings)
     if resume is not None and options:
         raise click.UsageError("--dt and --option: engines with time steps have no checkpoints")

@@ -57,7 +57,7 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
         ("energy", _energy(residuals.energy)),
         ("momentum", _momentum(residuals.momentum)),
         ("overlap", _overlap(residuals.max_overlap)),
-        ("stopped", _stop(run)),
+        ("stopped", stop_words(run)),
     ]
     if counters.pair_contacts == 0:
         rows = [row for row in rows if row[0] != "overlap"]
@@ -130,7 +130,8 @@ def _overlap(deepest: float) -> str:
     return "none at any contact" if deepest <= 0 else f"deepest at a contact {deepest:.1e} of the reach"
 
 
-def _stop(run: Run) -> str:
+def stop_words(run: Run) -> str:
+    """Return why a run stopped, in words."""
     if run.reason is not None:
         return f"early ({run.stopped}): {run.reason}"
     words = {

@@ -12,6 +12,10 @@ from eventsim.record.events import Floats, Rows
 
 Contact: TypeAlias = tuple[int, int, int, int]
 
+COORDINATES = ("xa", "ya", "xb", "yb")
+VELOCITIES = ("vxa", "vya", "vxb", "vyb")
+"""Columns that say where the disks of a contact are, and how they fly after it."""
+
 
 class Agreement(NamedTuple):
     """Which rows of two logs are the same contact: row pairs[k, 0] of the one is row pairs[k, 1] of the other, (K, 2).
@@ -72,10 +76,12 @@ def agreement(one: Rows, other: Rows) -> Agreement:
     return comparison.agreement()
 
 
-def deviations(one: Rows, other: Rows, pairs: NDArray[np.int64]) -> Floats:
-    """The largest difference of a coordinate, one a pair of rows that are the same contact; length."""
+def deviations(
+    one: Rows, other: Rows, pairs: NDArray[np.int64], columns: tuple[str, ...] = COORDINATES
+) -> Floats:
+    """The largest difference in one of the columns, one a pair of rows that are the same contact; in the columns' unit."""
     mine, theirs = one[pairs[:, 0]], other[pairs[:, 1]]
-    largest: Floats = np.fmax.reduce([np.abs(mine[name] - theirs[name]) for name in ("xa", "ya", "xb", "yb")])
+    largest: Floats = np.fmax.reduce([np.abs(mine[name] - theirs[name]) for name in columns])
     return largest
 
 

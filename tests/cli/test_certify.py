@@ -10,7 +10,7 @@ from eventsim.record.log import load_log
 def test_a_proof_is_told(eventsim, scene_file):
     result = eventsim("certify", scene_file)
     assert result.exit_code == 0
-    for words in ("proven", "bits", "float64", "disk 1: x = ", "stopped  until"):
+    for words in ("proven", "bits", "float64", "disk 1: x = ", "stopped  at the time asked for"):
         assert words in result.stdout
 
 
@@ -59,3 +59,47 @@ def test_the_horizon_is_in_the_json(eventsim, verb):
     words = (verb, "two-disks", "--json")
     assert json.loads(eventsim(*words).stdout)["horizon"] is None
     assert json.loads(eventsim(*words, "--horizon").stdout)["horizon"]["event"] is None
+
+
+def test_what_float64_stops_before_is_a_difference(eventsim):
+    """A contact is due at the end of the clock: in float64 just not before it, in exact numbers just before it."""
+    proof = json.loads(eventsim("certify", "bounce", "--events", 300, "--json").stdout)
+    assert proof["proven"] == 169
+    assert (proof["agreed"], proof["difference"]["event"], proof["float64_stopped"]) == (167, 167, "digits")
+    assert "the clock of this scene ends" in proof["float64_reason"]
+    said = eventsim("certify", "bounce", "--events", 300).stdout
+    assert "has 167 events in the same order, then stopped (digits) before event 167" in said
+    assert ", y = 0.5 exactly" in said
+
+
+def test_the_errors_of_float64_have_a_scale(eventsim, tmp_path):
+    """The same scene a power of two smaller has errors that much smaller, and they are the same part of it."""
+    found = []
+    for size in (1.0, 2.0**-200):
+        path = tmp_path / "pair.json"
+        disks = [
+            {"position": [0.25 * size, 0.3 * size], "velocity": [size, 0.3 * size], "radius": 0.1 * size},
+            {"position": [0.7 * size, 0.4 * size], "velocity": [-0.9 * size, 0.1 * size], "radius": 0.1 * size},
+        ]
+        domain = {"kind": "box", "size": [size, 0.7 * size]}
+        path.write_text(json.dumps({"events": 40, "domain": domain, "disk": disks}))
+        found.append(json.loads(eventsim("certify", path, "--json").stdout))
+    here, there = found
+    assert here["deviation"] * 2.0**-200 == there["deviation"] > 0.0
+    assert here["deviation_share"] == there["deviation_share"] == here["deviation"]
+    assert here["velocity_deviation"] * 2.0**-200 == there["velocity_deviation"] > 0.0
+    assert here["velocity_deviation_share"] == there["velocity_deviation_share"]
+    assert here["velocity_deviation_share"] < here["velocity_deviation"]
+
+
+def test_bits_that_contradict_each_other_are_refused(eventsim):
+    result = eventsim("certify", "gas", "--bits", 128, "--most-bits", 64)
+    assert result.exit_code == 2
+    assert "cannot have fewer bits than the first" in result.stderr
+
+
+@pytest.mark.parametrize(("engine", "word"), [("frames", "time steps"), ("certified", "proven")])
+def test_a_horizon_belongs_to_float64_and_events(eventsim, engine, word):
+    result = eventsim("run", "break", "--engine", engine, "--horizon")
+    assert result.exit_code == 2
+    assert word in result.stderr

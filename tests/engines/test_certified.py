@@ -166,6 +166,7 @@ def test_a_compact_log_of_it_is_refused(tmp_path):
 def test_a_proof_says_where_float64_leaves_it():
     proof = prove(lattice_gas(8, 0.3, seed=1), Stop(None, 350))
     assert proof.proven >= 350
-    assert proof.difference == proof.agreed
-    assert 100 < proof.difference < 350
+    assert proof.float64.difference == proof.float64.agreed
+    assert 100 < proof.float64.difference < 350
+    assert (proof.float64.stopped, proof.float64.reason) == (None, None)
     assert proof.enclosures.max() < 1e-14

@@ -8,17 +8,14 @@ from os import PathLike
 import numpy as np
 
 from eventsim.engines.base import Progress, Run, Stop
+from eventsim.engines.certified.rounded import Rounded, rounded
 from eventsim.engines.certified.session import FIRST_BITS, MOST_BITS, Attempt, CertifiedSession
 from eventsim.engines.drive import Wishes, drive
-from eventsim.engines.reference import ReferenceSession
 from eventsim.formulas.clock import clock_time
-from eventsim.record.compare import agreement, deviations
 from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.times import two_sum
 from eventsim.scene import Scene
-from eventsim.scene.stage import Stage, stage_of
-
-AHEAD = 4
-"""Rows per disk that float64 is simulated beyond the proven ones, so that a contact which comes late there is found."""
+from eventsim.scene.stage import stage_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +27,8 @@ class Proof:
         proven: events whose order is certain.
         bits, traced: of the attempt that came farthest; attempts: the other ones.
         enclosures: (n, 4); how far the true x, y, vx, vy may be from those of the final state; length, length / time.
-        difference: the first proven event that float64 has otherwise, None where it has none.
-        difference_time: its time on the scene's clock.
-        agreed: events that float64 has in the same order.
-        deviation: largest distance of a float64 coordinate at an agreed contact from the certified one, length.
+        float64: what float64 makes of the scene.
+        difference_time: of the first event that float64 has otherwise, or not, on the scene's clock; None: there is none.
     """
 
     run: Run
@@ -42,10 +37,8 @@ class Proof:
     traced: bool
     attempts: tuple[Attempt, ...]
     enclosures: Floats
-    difference: int | None
+    float64: Rounded
     difference_time: float | None
-    agreed: int
-    deviation: float
 
 
 def prove(
@@ -67,11 +60,10 @@ def prove(
     wishes = Wishes(log=log, progress=progress, on_event=blocks.append, command=command)
     run = drive(session, "certified", scene, stop, wishes)
     certified = np.concatenate(blocks)
-    plain = _float64(stage, Stop(stop.until, len(certified) + AHEAD * stage.n))
-    common = agreement(certified, plain)
+    float64 = rounded(stage, scene.domain.size, certified, stop.until)
     time = None
-    if common.difference is not None:
-        row = certified[common.difference]
+    if float64.difference is not None:
+        row = certified[float64.difference]
         time = clock_time(int(row["epoch"]), float(row["remainder"]), stage.epoch_length, stage.start_time)
     return Proof(
         run=run,
@@ -79,22 +71,17 @@ def prove(
         bits=session.bits,
         traced=session.traced,
         attempts=tuple(session.attempts),
-        enclosures=_on_axes(session.distances(), run, stage),
-        difference=common.difference,
+        enclosures=_on_axes(session, run),
+        float64=float64,
         difference_time=time,
-        agreed=len(common.pairs),
-        deviation=float(deviations(certified, plain, common.pairs).max(initial=0.0)),
     )
 
 
-def _on_axes(distances: Floats, run: Run, stage: Stage) -> Floats:
-    """Distances that allow for the last bit that positions lose when they are put onto the scene's axes."""
-    if stage.corner == (0.0, 0.0):
-        return distances
-    return np.column_stack([distances[:, :2] + np.spacing(np.abs(run.state.position)), distances[:, 2:]])
-
-
-def _float64(stage: Stage, stop: Stop) -> Rows:
-    session = ReferenceSession(stage)
-    session.advance(stop, 1 << 62)
-    return session.take_rows()
+def _on_axes(session: CertifiedSession, run: Run) -> Floats:
+    """How far the true numbers are from those of the final state: positions may lose a last bit on the scene's axes."""
+    distances, motion, corner = session.distances(), session.motion(), session.stage.corner
+    for axis, place in enumerate((motion.x, motion.y)):
+        shown = run.state.position[:, axis]
+        moved, lost = two_sum(place, corner[axis])
+        distances[:, axis] += np.where((moved == shown) & (lost == 0.0), 0.0, np.spacing(np.abs(shown)))
+    return distances

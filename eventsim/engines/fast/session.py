@@ -138,8 +138,11 @@ class FastSession:
                             machine.give_up_cells()
                             continue
                     if state.epoch >= MOST_EPOCHS:
-                        stopped, self._rulings.reason = at_the_last_epoch(self.stage, state.epoch, machine.next_contact())
-                        return stopped
+                        due, end = machine.next_contact(), state.window_end
+                        word, self._rulings.reason = at_the_last_epoch(self.stage, state.epoch, end, due)
+                        if word != "quiet":
+                            self._pass_to(end)
+                        return word
                     self._rulings.forget()
                     machine.turn_over()
                     self.counters.turnovers += 1

@@ -79,7 +79,10 @@ class ReferenceSession:
             due = float("inf") if event is None else event.time
             if due >= state.window_end <= until and not (event is None and self._quiet(stop)):
                 if state.epoch >= MOST_EPOCHS:  # nothing more can be logged
-                    word, self.reason = at_the_last_epoch(self.stage, state.epoch, self._next_contact())
+                    due, end = self._next_contact(), state.window_end
+                    word, self.reason = at_the_last_epoch(self.stage, state.epoch, end, due)
+                    if word != "quiet":
+                        self._pass_to(end)
                     return word
                 self._turn_over()
                 until = self._remainder(stop.until)
