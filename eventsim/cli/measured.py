@@ -114,7 +114,7 @@ def _difference(quantity: Quantity) -> str:
 
 def _verdict(measures: Measures) -> str:
     if not measures.steady:
-        return "  no steady state: contacts or moving obstacles change the energy; averages are over the whole run"
+        return f"  no steady state: {measures.doubts[0]}; averages are over the whole run"
     if not measures.doubts:
         return "  equilibrated, as far as this run can tell"
     return "  NOT known to be equilibrated: " + ";\n    ".join(measures.doubts)

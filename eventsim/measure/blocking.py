@@ -48,6 +48,9 @@ def block_average(series: Floats) -> ErrorBar:
         return ErrorBar(mean, math.nan, len(series), 1, independent=False)
     count, variance, surprise = [], [], []
     x = series - mean
+    # in units of a power of two, in which fourth powers are floats and no bit changes
+    unit = int(np.frexp(np.abs(x).max())[1])
+    x = np.ldexp(x, -unit)
     while len(x) >= FEWEST_BLOCKS:
         n = len(x)
         spread = float(x.var())
@@ -63,7 +66,7 @@ def block_average(series: Floats) -> ErrorBar:
     k = levels - 1 if chosen is None else chosen
     n = count[k]
     # the scatter of few blocks is itself uncertain: Student's distribution, one standard deviation's worth
-    error = math.sqrt(variance[k] / (n - 1)) * (1.0 + 0.5 / (n - 1))
+    error = math.ldexp(math.sqrt(variance[k] / (n - 1)) * (1.0 + 0.5 / (n - 1)), unit)
     return ErrorBar(mean, error, n, 1 << k, independent=chosen is not None and n >= TRUSTED_BLOCKS)
 
 

@@ -17,6 +17,9 @@ MOST_LEVELS = 40
 FEWEST_ORIGINS = 4
 """Non-overlapping stretches of the run that a lag must have."""
 
+FROM_LAG, TO_LAG = 10.0, 40.0
+"""Lags, in mean free times, between which the mean squared displacement is taken to be a line."""
+
 
 class Correlations(NamedTuple):
     """Arrays (lags,): lag, time; mean squared displacement, length^2, and its error; <v(0) v(t)> and its error."""
@@ -33,6 +36,8 @@ class Correlator:
 
     def __init__(self, interval: float) -> None:
         self.interval = interval
+        # squares of squared displacements are sums of floats in a unit of length that speeds, which are moderate, make here
+        self._unit = int(np.frexp(interval)[1])
         self._taken = [0] * MOST_LEVELS
         self._kept: list[tuple[Floats, Floats] | None] = [None] * MOST_LEVELS
         # per level and lag: number of origins, sums and sums of squares of both means over disks
@@ -40,6 +45,7 @@ class Correlator:
 
     def add(self, way: Floats, velocity: Floats) -> None:
         """Add samples (S, W, 2)."""
+        way = way * 2.0**-self._unit
         for level in range(MOST_LEVELS):
             if not len(way):
                 return
@@ -78,4 +84,22 @@ class Correlator:
             spread = np.maximum(second / origins - mean * mean, 0.0)
             means.append(mean)
             errors.append(np.sqrt(spread / np.maximum(origins / steps - 1.0, 1.0)))
-        return Correlations(steps * 2.0**levels * self.interval, means[0], errors[0], means[1], errors[1])
+        with np.errstate(over="ignore", under="ignore"):  # areas may be no floats in the scene's unit: inf or 0
+            msd, msd_error = (np.ldexp(area, 2 * self._unit) for area in (means[0], errors[0]))
+        return Correlations(steps * 2.0**levels * self.interval, msd, msd_error, means[1], errors[1])
+
+
+def diffusion(correlations: Correlations, free_time: float, widest: float) -> tuple[float, float] | None:
+    """(D, its standard error) from the slope 4 D of the mean squared displacement; None where there are too few lags.
+
+    free_time: mean, of disks.  widest: displacements beyond it, root mean square, are left out; length.
+    """
+    lag, msd = correlations.lag, correlations.msd
+    early = np.isfinite(msd) & (msd <= widest * widest)
+    usable = early & (lag >= FROM_LAG * free_time) & (lag <= TO_LAG * free_time)
+    if usable.sum() < 2:
+        return None
+    first, last = np.flatnonzero(usable)[[0, -1]]
+    span = 4.0 * (lag[last] - lag[first])
+    # the displacement at the short lag is part of that at the long one: their errors do not add
+    return float((msd[last] - msd[first]) / span), float(correlations.msd_error[last] / span)

@@ -21,9 +21,14 @@ class MeanSquare(NamedTuple):
 def mean_square(table: FlightTable, disks: NDArray[np.intp], times: Floats, lags: NDArray[np.intp]) -> MeanSquare:
     """Return the mean over some disks and all starts, at lags counted in evenly spread times."""
     way = np.stack([displacements(table, disk, times) for disk in disks.tolist()], axis=1)  # (T, M, 2)
+    # in units of a power of two, in which squares of squares are floats and no bit changes
+    unit = int(np.frexp(np.abs(way).max())[1])
+    way = np.ldexp(way, -unit)
     squared = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2) for lag in lags.tolist()]
     scatter = [part.mean(axis=0).std(ddof=1) if len(disks) > 1 else 0.0 for part in squared]
-    return MeanSquare(np.array([part.mean() for part in squared]), np.array(scatter) / np.sqrt(len(disks)))
+    mean, error = np.array([part.mean() for part in squared]), np.array(scatter) / np.sqrt(len(disks))
+    with np.errstate(over="ignore", under="ignore"):  # an area may be no float in the scene's unit
+        return MeanSquare(np.ldexp(mean, 2 * unit), np.ldexp(error, 2 * unit))
 
 
 def displacements(table: FlightTable, disk: int, times: Floats) -> Floats:

@@ -17,6 +17,9 @@ from eventsim.scene.scene import Scene
 MOST_SPECIES = 8
 """More kinds of disks than this are measured together only."""
 
+LAST_DIGITS = 2.0**-40
+"""A share of the energy that is mostly rounding: sums of squares over a long run are good to some 2**-45."""
+
 
 class Species(NamedTuple):
     """Disks of one radius and one mass."""
@@ -55,10 +58,19 @@ class Ensemble:
         return self.scene.restitution is None
 
     @property
-    def steady(self) -> bool:
-        """Whether an equilibrium can be reached at all: elastic, at least two disks, and nothing drives them."""
+    def unsteady(self) -> str | None:
+        """Why no equilibrium can be reached, a clause; None where it can: elastic, not driven, and held together."""
         moved = np.isinf(self.scene.disks.mass) & (self.scene.disks.velocity != 0.0).any(axis=1)
-        return self.elastic and not moved.any()
+        if not self.elastic or moved.any():
+            return "contacts or moving obstacles change the energy"
+        if self.area is None and not self.scene.walls:
+            return "on the open plane disks fly apart"
+        return None
+
+    @property
+    def steady(self) -> bool:
+        """Whether an equilibrium can be reached at all."""
+        return self.unsteady is None
 
     @property
     def simple(self) -> bool:
@@ -121,12 +133,18 @@ class Ensemble:
         disks = self.scene.disks
         momentum = (disks.mass[self.counted, None] * disks.velocity[self.counted]).sum(axis=0)
         kept = momentum[: self.kept_momenta]
-        return float((kept**2).sum() / (2.0 * self.total_mass)) if self.n else 0.0
+        # not p^2 / 2 M: the square of a momentum of very light or very heavy disks is no float
+        return float((0.5 * kept * (kept / self.total_mass)).sum()) if self.n else 0.0
 
     @property
     def at_rest(self) -> bool:
         """Whether the common motion is nothing but rounding."""
         return self.drift_energy <= 1e-20 * self.start_energy
+
+    @property
+    def drowned(self) -> bool:
+        """Whether the common motion has so much of the energy that rounding leaves nothing of the thermal one."""
+        return self.drift_energy > (1.0 - LAST_DIGITS) * self.start_energy
 
     @cached_property
     def start_energy(self) -> float:

@@ -52,6 +52,8 @@ def doubts(ensemble: Ensemble, virial: Floats, bar: ErrorBar, late: bool, moved:
     moved: root mean square displacement over the run, length.
     """
     found = []
+    if ensemble.drowned:
+        found.append("the energy of the common motion leaves no digits of the thermal energy")
     if late:
         found.append("the pressure still changes in the second half of the run")
     if math.isnan(bar.error):

@@ -108,7 +108,9 @@ class Meter:
         settled = self.discard
         if settled is None:
             settled = settled_after(bins[:, VIRIAL]) * series.width if self.ensemble.steady else 0.0
-        moved = float(np.sqrt((self._follower.way[self._watched] ** 2).sum(axis=1).mean()))
+        way = np.hypot(*self._follower.way[self._watched].T)
+        longest = float(way.max())
+        moved = longest * float(np.sqrt(((way / longest) ** 2).mean())) if longest > 0.0 else 0.0
         records = Records(
             ensemble=self.ensemble,
             tally=self._tally,

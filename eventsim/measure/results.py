@@ -12,7 +12,7 @@ import numpy as np
 from eventsim.measure import tally
 from eventsim.measure.blocking import ErrorBar, block_average, ratio_average
 from eventsim.measure.cooling import Cooling
-from eventsim.measure.correlation import Correlations
+from eventsim.measure.correlation import Correlations, diffusion
 from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.equilibration import doubts, strangers, transient
 from eventsim.measure.expected import Expected, expected_of
@@ -87,7 +87,7 @@ class Measures:
     """What was measured in a run.
 
     duration: of the run; discarded: at its beginning, time.  steady: whether the scene can have a steady state at all.
-    doubts: reasons why it may not have been reached.  quantities: in order.  speeds: histograms, one a species.
+    doubts: reasons why it cannot be, or may not have been, reached.  quantities: in order.  speeds: histograms, one a species.
     correlations: mean squared displacement and velocity autocorrelation.
     """
 
@@ -138,15 +138,20 @@ class Measures:
 def results_of(records: Records) -> Measures:
     """The measures that records amount to."""
     ensemble = records.ensemble
-    series = dict(_bars(records))
-    temperature = series["temperature"][0].mean
+    # what nothing was seen of has no mean, and is left out
+    series = {name: measured for name, measured in _bars(records) if math.isfinite(measured[0].mean)}
+    temperature = series["temperature"][0].mean if "temperature" in series else math.nan
     expected = expected_of(ensemble, temperature, {name: bar.mean for name, (bar, _) in series.items()})
     quantities = [_quantity(name, bar, unit, records, expected) for name, (bar, unit) in series.items()]
     quantities += _fitted(records, expected, series)
     virial = records.channel(tally.VIRIAL)
     late = not records.discard_given and transient(records.discarded, records.duration)
-    found = doubts(ensemble, virial, block_average(virial), late, records.moved) if ensemble.steady else []
-    if ensemble.steady:
+    if ensemble.unsteady is not None:
+        found = [ensemble.unsteady]
+    elif not records.channel(tally.ENERGY).any():
+        found = ["nothing moves"]
+    else:
+        found = doubts(ensemble, virial, block_average(virial), late, records.moved)
         found += strangers((quantity.name, quantity.deviation, quantity.source) for quantity in quantities)
     return Measures(
         disks=ensemble.n,
@@ -174,8 +179,9 @@ def _bars(records: Records) -> Iterator[Measured]:
     virial, walls = records.channel(tally.VIRIAL), records.channel(tally.WALL_CONTACTS)
     freedoms = max(ensemble.freedoms, 1)
     heat = 2.0 * (energy - ensemble.drift_energy * time) / freedoms  # kT x time
-    yield "temperature", (ratio_average(heat, time), "energy")
-    if ensemble.area is not None and ensemble.scene.gravity is None and ensemble.alone:
+    if not ensemble.drowned:
+        yield "temperature", (ratio_average(heat, time), "energy")
+    if ensemble.area is not None and ensemble.scene.gravity is None and ensemble.alone and not ensemble.drowned:
         yield from _pressures(records, time, heat, virial)
     yield "collision_rate", (ratio_average(2.0 * pairs / n, time), "1 / time")
     if walls.any():
@@ -218,8 +224,9 @@ def _by_species(records: Records, time: Floats) -> Iterator[Measured]:
         share = ensemble.thermal_share(species.mass)
         square = records.species(kind, tally.SPEED2)
         drift = 2.0 * ensemble.drift_energy / ensemble.total_mass
-        heat = 0.5 * species.mass * (square - drift * flown) / share
-        yield f"temperature_{kind}", (ratio_average(heat, flown), "energy")
+        if share > 0.0 and not ensemble.drowned:
+            heat = 0.5 * species.mass * (square - drift * flown) / share
+            yield f"temperature_{kind}", (ratio_average(heat, flown), "energy")
         yield f"mean_speed_{kind}", (ratio_average(records.species(kind, tally.PATH), flown), "length / time")
         contacts = records.species(kind, tally.CONTACTS)
         yield f"collision_rate_{kind}", (ratio_average(contacts / species.number, time), "1 / time")
@@ -257,9 +264,6 @@ def _fitted(
             yield _quantity("cooling_exponent", fall, "1 / contact of a disk", records, expected)
 
 
-FROM_LAG, TO_LAG = 10.0, 40.0
-"""Lags, in mean free times, between which the mean squared displacement is taken to be a line."""
-
 BOUNDED = 0.1
 """Between walls displacements end somewhere: the fit stays below this share of the width, root mean square."""
 
@@ -268,19 +272,6 @@ def _widest(ensemble: Ensemble) -> float:
     """The displacement up to which diffusion is free of walls."""
     size = ensemble.scene.domain.size
     return math.inf if size is None or ensemble.torus else BOUNDED * min(size)
-
-
-def diffusion(correlations: Correlations, free_time: float, widest: float) -> tuple[float, float] | None:
-    """(D, its standard error) from the slope 4 D of the mean squared displacement; None where there are too few lags."""
-    lag = correlations.lag
-    usable = (lag >= FROM_LAG * free_time) & (lag <= TO_LAG * free_time) & (correlations.msd <= widest * widest)
-    if usable.sum() < 2:
-        return None
-    first, last = np.flatnonzero(usable)[[0, -1]]
-    span = 4.0 * (lag[last] - lag[first])
-    rise = correlations.msd[last] - correlations.msd[first]
-    # the displacement at the short lag is part of that at the long one: their errors do not add
-    return float(rise / span), float(correlations.msd_error[last] / span)
 
 
 COOLING_PARTS = 16

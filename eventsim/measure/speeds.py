@@ -66,7 +66,7 @@ def speed_histograms(ensemble: Ensemble, tally: Tally, bins: Floats, kt: float) 
         bars = [ratio_average(bins[:, first + k], flown) for k in range(SPEED_BINS)]
         width = edges[1]
         theory = None
-        if ensemble.simple and ensemble.at_rest and ensemble.freedoms >= FEWEST_FREEDOMS:
+        if ensemble.simple and ensemble.at_rest and kt > 0.0 and ensemble.freedoms >= FEWEST_FREEDOMS:
             above = [_above(ensemble, speed, kt, species.mass) for speed in edges.tolist()]
             theory = -np.diff(above) / width
         density = np.array([bar.mean for bar in bars]) / width

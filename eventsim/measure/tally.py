@@ -40,10 +40,11 @@ class Tally:
         self._radius = disks.radius
         self._mass = np.where(ensemble.counted, disks.mass, 0.0)
         start = ensemble.temperature(ensemble.start_energy)
+        start = start if start > 0.0 and not ensemble.drowned else 1.0
         thermal = np.sqrt(np.divide(start, self._mass, out=np.ones_like(self._mass), where=self._mass > 0.0))
-        self.thermal_speed = start**0.5 if start > 0.0 else 1.0
+        self.thermal_speed = start**0.5
         # histogram bins per unit of speed, for each disk
-        self._speed_scale = SPEED_BINS / (FASTEST * np.where(thermal > 0.0, thermal, 1.0))
+        self._speed_scale = SPEED_BINS / (FASTEST * thermal)
         # how hard a disk of unit mass presses on each wall that it rests on
         across = np.array(stage.gravity or (0.0, 0.0)) - stage.slopes
         self._press = np.hypot(across[:, 0], across[:, 1])
@@ -108,7 +109,7 @@ class Tally:
         _add(series, place + DISK_TIME, flights, flights.duration)
         _add(series, place + PATH, flights, speed * flights.duration)
         _add(series, place + SPEED2, flights, square * flights.duration)
-        bin_ = np.minimum((speed * self._speed_scale[flights.disk]).astype(np.int64), SPEED_BINS)
+        bin_ = np.minimum(speed * self._speed_scale[flights.disk], SPEED_BINS).astype(np.int64)
         _add(series, self.first_speed + (SPEED_BINS + 1) * kind + bin_, flights, flights.duration)
 
     def energy_changes(self, flights: Flights, count: int) -> Floats:

@@ -187,10 +187,12 @@ def two_disk_box(a: float, b: float, d: float, kt: float, mass: float) -> TwoDis
 
     From Z2 = a^2 b^2 - pi d^2 a b + (4/3) d^3 (a + b) - d^4 / 2, the configuration integral.
     """
-    z2 = a * a * b * b - math.pi * d * d * a * b + 4.0 / 3.0 * d**3 * (a + b) - 0.5 * d**4
-    by_a = (2.0 * a * b * b - math.pi * d * d * b + 4.0 / 3.0 * d**3) / z2
-    by_b = (2.0 * a * a * b - math.pi * d * d * a + 4.0 / 3.0 * d**3) / z2
-    by_d = (-2.0 * math.pi * d * a * b + 4.0 * d * d * (a + b) - 2.0 * d**3) / z2
+    # in shares of the sides, since fourth powers of lengths may be no floats: z2 = Z2 / (a b)^2
+    u, v = d / a, d / b
+    z2 = 1.0 - math.pi * u * v + 4.0 / 3.0 * u * v * (u + v) - 0.5 * (u * v) ** 2
+    by_a = (2.0 - math.pi * u * v + 4.0 / 3.0 * u * v * v) / (z2 * a)
+    by_b = (2.0 - math.pi * u * v + 4.0 / 3.0 * u * u * v) / (z2 * b)
+    by_d = (-2.0 * math.pi * u * v + 4.0 * u * v * (u + v) - 2.0 * (u * v) ** 2) / (z2 * d)
     speed = math.sqrt(2.0 * kt / (math.pi * mass)) * fixed_energy_speed(4)
     return TwoDisksInABox(
         z=1.0 - by_d * d / 4.0,

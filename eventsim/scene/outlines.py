@@ -136,6 +136,7 @@ def _arc_distance(arc: Arc, position: Floats) -> Floats:
     chord_x, chord_y = arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]
     through_x, through_y = arc.through[0] - arc.start[0], arc.through[1] - arc.start[1]
     turn = chord_x * through_y - chord_y * through_x
-    on_arc = (chord_x * foot_y - chord_y * foot_x) * turn >= 0.0
+    # only the sign of turn, whose product with another area may be no float
+    on_arc = (chord_x * foot_y - chord_y * foot_x) * np.sign(turn) >= 0.0
     ends = np.minimum(_distance(position, arc.start), _distance(position, arc.end))
     return np.where((from_center == 0.0) | on_arc, np.abs(from_center - radius), ends)

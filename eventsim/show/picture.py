@@ -104,7 +104,9 @@ class Picture:
             self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
             self._axes.draw_artist(self._arrows)
         self._bars.clock.set_text(f"t = {frame.state.time:{self._clock_format}}")
-        self._bars.counter.set_text(f"{frame.events:,} events   energy {in_words(frame.energy, *self._energy_words)}")
+        energy = in_words(frame.energy, *self._energy_words)
+        word = "event" if frame.events == 1 else "events"
+        self._bars.counter.set_text(f"{frame.events:,} {word}   energy {energy}")
         for text in (self._bars.clock, self._bars.counter):
             self._figure.draw_artist(text)
         return np.asarray(self._canvas.buffer_rgba())

@@ -62,3 +62,10 @@ def test_a_ratio_of_sums_knows_that_its_parts_go_together():
     bar = ratio_average(3.0 * below, below)
     assert bar.mean == pytest.approx(3.0, rel=1e-15)
     assert bar.error < 1e-15
+
+
+@pytest.mark.parametrize("unit", [-900, -300, 300, 900])
+def test_error_bars_scale_exactly_with_the_unit_of_the_series(unit):
+    series = correlated(np.random.default_rng(3), 2048, 0.8)
+    one, other = block_average(series), block_average(np.ldexp(series, unit))
+    assert other == one._replace(mean=math.ldexp(one.mean, unit), error=math.ldexp(one.error, unit))

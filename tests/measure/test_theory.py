@@ -71,3 +71,13 @@ def test_many_disks_have_maxwells_speeds():
     assert theory.survival(1.0, 1.0, 1.0, 1.0, 1e7) == pytest.approx(math.exp(-0.5), rel=1e-6)
     assert theory.mean_speed(1.0, 1.0, 1.0, 1e7) == pytest.approx(math.sqrt(0.5 * math.pi), rel=1e-6)
     assert theory.fixed_energy_speed(1000) == pytest.approx(1.0 + 0.25 / 1000, abs=1e-7)
+
+
+@pytest.mark.parametrize("unit", [1e-150, 1e-90, 1e90, 1e150])
+def test_two_disks_in_a_box_are_the_same_in_any_unit_of_length(unit):
+    one = theory.two_disk_box(2.0, 3.0, 1.0, kt=1.0, mass=1.0)
+    # Z2 = 36 - 6 pi + 20/3 - 1/2, d ln Z2 / d ln d = (-12 pi + 20 - 2) / Z2
+    assert one.z == pytest.approx(1.0 + (12.0 * math.pi - 18.0) / (36.0 - 6.0 * math.pi + 37.0 / 6.0) / 4.0, rel=1e-14)
+    other = theory.two_disk_box(2.0 * unit, 3.0 * unit, unit, kt=1.0, mass=1.0)
+    assert other.z == pytest.approx(one.z, rel=1e-14)
+    assert [rate * unit for rate in other[1:]] == pytest.approx(list(one[1:]), rel=1e-14)

@@ -15,7 +15,7 @@ from eventsim.measure.free_paths import free_paths, mean_free_path, path_density
 from eventsim.record.flights import flight_table
 from eventsim.record.replay import Replay
 from eventsim.scene.gallery import names
-from eventsim.show.figures import TITLES, equation_of_state, trajectories
+from eventsim.show.figures import TITLES, equation_of_state, msd, trajectories
 from eventsim.show.figures.residuals import gaps_at_contact
 from eventsim.show.figures.style import name_of, new_figure
 from eventsim.show.figures.write import write_figure
@@ -194,3 +194,35 @@ def test_replicas_are_averaged_and_theory_keeps_its_accuracy():
     equation_of_state.draw(figure, rows)
     (off,) = figure.axes[1].lines[1].get_ydata()  # a guide is not compared with
     assert off == pytest.approx((2.1 - 2.06) / np.hypot(0.1 / np.sqrt(2.0), 0.01))
+
+
+def test_disks_that_nothing_deflects_have_no_mean_squared_displacement(tmp_path):
+    scene = es.Scene(es.Disks([[1.0, 1.0]], [[1.0, 0.0]], 0.1, mass=np.inf), es.Box((2.0, 2.0)))
+    log = es.simulate(scene, until=3.0, log=True).log
+    with pytest.raises(EventsimError, match="0 finite masses"):
+        write_figure(log, "msd", tmp_path / "a.png")
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("unit", [1e-100, 1e100])
+def test_displacements_are_squared_in_any_unit_of_length(tmp_path, unit):
+    disks = es.Disks(unit * np.array([[0.2, 0.3], [0.7, 0.6]]), [[1.0, 0.3], [-1.0, 0.2]], 0.1 * unit)
+    log = es.simulate(es.Scene(disks, es.Periodic((unit, unit))), until=30.0 * unit, log=True).log
+    write_figure(log, "msd", tmp_path / "a.png")
+
+
+@pytest.mark.parametrize(("until", "seen"), [(40.0, 3), (2000.0, 1)])
+def test_the_legend_lists_the_curves_that_are_seen(until, seen):
+    # walls end what disks can do, so both theories are far above all lags of a long run
+    disks = es.Disks([[0.25, 0.3], [0.75, 0.7]], [[1.0, 0.3], [-1.0, 0.2]], 0.1)
+    log = es.simulate(es.Scene(disks, es.Box((1.0, 1.0))), until=until, log=True).log
+    figure = new_figure()
+    msd.draw(figure, log)
+    assert len(figure.axes[0].get_legend().get_texts()) == seen
+
+
+def test_one_event_is_called_one_event():
+    disks = es.Disks([[0.0, 0.0], [10.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], 0.5)
+    figure = new_figure()
+    trajectories.draw(figure, es.simulate(es.Scene(disks, es.Open()), until=20.0, log=True).log)
+    assert ", 1 event (" in figure.axes[0].get_title(loc="left")

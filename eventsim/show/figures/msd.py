@@ -28,6 +28,8 @@ def draw(figure: Figure, log: EventLog) -> None:
     replay = replay_with_time(log)
     mass = log.scene.disks.mass
     moving = np.flatnonzero(np.isfinite(mass))
+    if not len(moving):
+        raise LogError("msd: 0 finite masses in this scene; the figure is of disks that contacts deflect")
     start, end = replay.span
     times = np.linspace(start, end, SAMPLES)
     table = flight_table(replay)
@@ -56,7 +58,12 @@ def draw(figure: Figure, log: EventLog) -> None:
             label=r"Enskog, $4 D \tau$, $D = kT / (m \cdot$ rate)",
         )
         verdict = f", Enskog's D = {in_words(diffusion, pace, 3)} {LENGTH}$^2$ / {TIME}"
-    axes.set(xscale="log", yscale="log", ylim=(0.5 * mean.min(), 4.0 * mean.max()))
+    low, high = 0.5 * float(mean.min()), 4.0 * float(mean.max())
+    for curve in axes.lines:
+        heights = np.asarray(curve.get_ydata())
+        if not ((heights > low) & (heights < high)).any():
+            curve.set_label("_outside")  # the legend lists what is seen
+    axes.set(xscale="log", yscale="log", ylim=(low, high))
     label(
         axes, f"lag [{TIME}]", f"mean squared displacement [{LENGTH}$^2$]",
         f"{name_of(log)}: {len(moving):,} disks{verdict}",

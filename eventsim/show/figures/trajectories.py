@@ -66,12 +66,13 @@ def draw(figure: Figure, log: EventLog) -> None:
     axes.add_collection(LineCollection(walls, colors=LIGHT.wall, linewidths=1.6), autolim=False)
     axes.add_collection(LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False)
     events = int((np.isin(log.a, disks) | np.isin(log.b, disks)).sum())
+    word = "event" if events == 1 else "events"
     which = f"{len(disks)} of {n} disks" if len(disks) < n else "all disks" if n > 1 else "the disk"
     label(
         axes,
         f"x [{LENGTH}]",
         f"y [{LENGTH}]",
-        f"{name_of(log)}: the ways of {which}, {events:,} events (a dot for each disk)",
+        f"{name_of(log)}: the ways of {which}, {events:,} {word} (a dot for each disk)",
     )
     axes.grid(visible=False)
     width, height = sides_of(shown)
