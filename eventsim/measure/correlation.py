@@ -37,7 +37,7 @@ class Correlator:
     def __init__(self, interval: float) -> None:
         self.interval = interval
         # squares of squared displacements are sums of floats in a unit of length that speeds, which are moderate, make here
-        self._unit = int(np.frexp(interval)[1])
+        self._unit = max(int(np.frexp(interval)[1]), -1000)  # 2^1000 is a float
         self._taken = [0] * MOST_LEVELS
         self._kept: list[tuple[Floats, Floats] | None] = [None] * MOST_LEVELS
         # per level and lag: number of origins, sums and sums of squares of both means over disks
