@@ -41,8 +41,8 @@ class Tally:
         self._mass = np.where(ensemble.counted, disks.mass, 0.0)
         start = ensemble.temperature(ensemble.start_energy)
         start = start if start > 0.0 and not ensemble.drowned else 1.0
-        thermal = np.sqrt(np.divide(start, self._mass, out=np.ones_like(self._mass), where=self._mass > 0.0))
-        self.thermal_speed = start**0.5
+        self.thermal_speed = start**0.5  # of a unit mass
+        thermal = self.thermal_speed / np.sqrt(np.where(self._mass > 0.0, self._mass, 1.0))
         # histogram bins per unit of speed, for each disk
         self._speed_scale = SPEED_BINS / (FASTEST * thermal)
         # how hard a disk of unit mass presses on each wall that it rests on

@@ -50,6 +50,14 @@ def test_a_disk_too_heavy_to_be_moved_leaves_no_temperature():
     assert "common motion" in measures.doubts[0]
 
 
+def test_the_speeds_of_a_very_light_disk_have_bins():
+    scene = two_disks(es.Box, velocity=[[1.0, 0.0], [-1.0, 0.2]], mass=[1e-300, 1e300])
+    light, heavy = es.simulate(scene, until=30.0, measure=True).measures.speeds
+    assert light.edges[-1] > 1e299
+    assert heavy.edges[-1] == pytest.approx(5.0 * math.hypot(1.0, 0.2) / 2.0, rel=1e-12)  # kT = E / 2
+    assert light.density[0] * light.edges[1] == pytest.approx(1.0, rel=1e-12)
+
+
 def test_the_open_plane_has_no_steady_state():
     scene = es.Scene(es.Disks([[0.0, 0.0], [100.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], 0.5), es.Open())
     measures = es.simulate(scene, until=1000.0, measure=True).measures
