@@ -238,3 +238,15 @@ def test_drawing_needs_neither_a_display_nor_pyplot(tmp_path):
 )
 def test_the_clock_of_a_frame_is_not_rounded_to_another_place(times, shown):
     assert f"{times[-1]:{_clock_format(np.array(times))}}" == shown
+
+
+def test_one_event_is_counted_as_one_event():
+    scene = es.Scene(es.Disks([[0.0, 0.0], [10.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], 0.5), es.Open())
+    replay = Replay(es.simulate(scene, until=20.0, log=True).log)
+    times = np.array([0.0, 20.0])
+    picture = Picture(replay, SMALL, (320, 200), times)
+    told = []
+    for frame in frames_at(replay, times, 1.0):
+        picture.draw(frame)
+        told.append(picture._bars.counter.get_text().split("   ")[0])
+    assert told == ["0 events", "1 event"]
