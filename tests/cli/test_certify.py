@@ -43,7 +43,7 @@ def test_a_scene_that_cannot_be_proven_is_refused_with_a_reason(eventsim):
 def test_an_end_of_the_bits_is_told_and_keeps_what_is_proven(eventsim):
     result = eventsim("certify", "gas", "--set", "n=16", "--events", 500, "--bits", 128, "--most-bits", 128)
     assert result.exit_code == 3
-    assert "128 bits are the most allowed" in result.stdout
+    assert "a comparison for disk 4 is not decided; 128 bits are the most allowed: allow more" in result.stdout
 
 
 @pytest.mark.parametrize("verb", ["run", "check"])
@@ -103,3 +103,30 @@ def test_a_horizon_belongs_to_float64_and_events(eventsim, engine, word):
     result = eventsim("run", "break", "--engine", engine, "--horizon")
     assert result.exit_code == 2
     assert word in result.stderr
+
+
+def scene_of(tmp_path, **changes):
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps({"events": 40, "domain": {"kind": "box", "size": [1.0, 0.7]}} | changes))
+    return path
+
+
+def test_a_tie_is_told_by_its_disks_and_walls(eventsim, tmp_path):
+    """Mirror images in x that meet at another height reach left and right at one time, by different expressions."""
+    disks = [
+        {"position": [0.25, 0.3], "velocity": [1.0, 0.3], "radius": 0.1},
+        {"position": [0.75, 0.4], "velocity": [-1.0, 0.1], "radius": 0.1},
+    ]
+    result = eventsim("certify", scene_of(tmp_path, disk=disks))
+    assert result.exit_code == 3
+    (stopped,) = (line for line in result.stdout.splitlines() if "stopped" in line)
+    assert "after 1 proven event, at t = 0.525762466 whether the contact of disk 0 with left" in stopped
+    assert "or the contact of disk 1 with right comes first is not decided; more bits do not help" in stopped
+    assert len(stopped) < 400
+
+
+def test_a_cluster_that_cannot_be_proven_is_told_by_its_disks(eventsim):
+    result = eventsim("certify", "break")
+    assert result.exit_code == 3
+    assert "after 35 proven events, at t = 0.794884692 the contacts of disks 8, 9, 13 at one instant" in result.stdout
+    assert "what comes before is proven" in result.stdout

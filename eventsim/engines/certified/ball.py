@@ -3,20 +3,47 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq
 
 from eventsim.engines.certified.fingerprint import Fingerprint, product, quotient, root, total
 from eventsim.engines.certified.fingerprint import of_rational as fingerprint_of
 
+if TYPE_CHECKING:
+    from eventsim.engines.reference.calendar import Event
+
 LONGEST_RATIONAL = 4096
 """Bits of a numerator or denominator beyond which a traced number is no longer kept as a rational."""
 
 
 class Undecided(ArithmeticError):
-    """Two balls overlap: at this precision it is not known which of the numbers is larger."""
+    """Two balls overlap: at this precision it is not known which of the numbers is larger.
+
+    events: two events whose order hangs on it; disks: those that it is about; both empty where nobody has said.
+    """
+
+    def __init__(self, comparison: str, events: tuple[Event, ...] = ()) -> None:
+        super().__init__(comparison)
+        self.events = events
+        self.disks: tuple[int, ...] = ()
+
+
+class Irrational(Undecided):
+    """A number is not known to be rational where only rational ones are of use."""
+
+
+@contextmanager
+def about(disks: Iterable[int]) -> Iterator[None]:
+    """Let an Undecided from within know which disks it is about, unless it knows more."""
+    try:
+        yield
+    except Undecided as undecided:
+        undecided.disks = undecided.disks or tuple(sorted(disks))
+        raise
 
 
 class Ball:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterator
 
-from eventsim.engines.certified.ball import bounds
+from eventsim.engines.certified.ball import Undecided, bounds
 from eventsim.engines.reference.calendar import Event
 
 
@@ -72,7 +72,7 @@ class CertifiedCalendar:
                 self._known.discard(entry[3][1:])
             elif best is None:
                 best = entry
-            elif entry[3] < best[3]:
+            elif _is_earlier(entry[3], best[3]):
                 later.append(best)
                 best = entry
             else:
@@ -87,3 +87,10 @@ class CertifiedCalendar:
     def __iter__(self) -> Iterator[Event]:
         self._put_back()
         return (entry[3] for entry in sorted(self._heap))
+
+
+def _is_earlier(one: Event, other: Event) -> bool:
+    try:
+        return one < other
+    except Undecided as undecided:
+        raise Undecided(str(undecided), (other, one)) from None

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.engines.certified.ball import Ball, bounds, radius_of
+from eventsim.engines.certified.ball import Ball, about, bounds, radius_of
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.predict import Predictor
@@ -98,17 +98,20 @@ class CertifiedPredictor(Predictor):
     def predict(self, i: int, now: Ball) -> None:
         """Push every event of disk i."""
         self._screen.note(i, self._state)
-        self._alone(i, now)
-        self._contacts(i, self._nearby(i))
+        with about([i]):
+            self._alone(i, now)
+            self._contacts(i, self._nearby(i))
 
     def predict_all(self, now: Ball) -> None:
         """Push every event of every disk; a pair once."""
         everyone = range(self._state.n)
         for i in everyone:
             self._screen.note(i, self._state)
-            self._alone(i, now)
+            with about([i]):
+                self._alone(i, now)
         for i in everyone:
-            self._contacts(i, [([j for j in members if j > i], image) for members, image in self._nearby(i)])
+            with about([i]):
+                self._contacts(i, [([j for j in members if j > i], image) for members, image in self._nearby(i)])
 
     def _nearby(self, i: int) -> Iterable[Group]:
         return zip(self._screen.may_meet(i), self._images, strict=True)

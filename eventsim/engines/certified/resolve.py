@@ -6,8 +6,9 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from eventsim.engines.certified.ball import Ball, Undecided, of_rational
+from eventsim.engines.certified.ball import Ball, Irrational, about, of_rational
 from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.generation import disks_of
 from eventsim.engines.reference.ledger import Ledger
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.formulas.impulse import mass_fractions
@@ -48,6 +49,14 @@ class CertifiedResolver(Resolver):
     at_once = AT_ONCE
     ledger = CertifiedLedger
 
+    def resolve(self, component: list[Event]) -> list[int]:
+        """Resolve contacts that are connected; the disks that fly on changed.
+
+        Raises Undecided, which knows their disks.
+        """
+        with about({i for event in component for i in disks_of(event)}):
+            return super().resolve(component)
+
     def _time_of(self, component: list[Event]) -> Any:
         """The time of a cluster, which is proven to be that of all its contacts."""
         return component[0].time
@@ -80,9 +89,9 @@ class CertifiedResolver(Resolver):
 def _rational(number: Any) -> Any:
     """The number as a Fraction.
 
-    Raises Undecided where it is not known to be rational.
+    Raises Irrational where it is not known to be rational.
     """
     rational = number.rational if isinstance(number, Ball) else Fraction(number)
     if rational is None:
-        raise Undecided("the contacts of a cluster involve numbers that are not known to be rational")
+        raise Irrational("the contacts of a cluster involve numbers that are not known to be rational")
     return rational

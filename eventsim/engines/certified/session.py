@@ -9,6 +9,7 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop
 from eventsim.engines.certified.ball import Undecided, ball, traced, working_precision
+from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
 from eventsim.errors import EventsimError
 from eventsim.formulas.walls.face import Face
@@ -31,11 +32,12 @@ class Attempt(NamedTuple):
 
 
 class _Ended(NamedTuple):
-    """An attempt that could not go on, its loop, and those of its rows that nobody has taken."""
+    """An attempt that could not go on, its loop, those of its rows that nobody has taken, and what it could not decide."""
 
     attempt: Attempt
     loop: CertifiedLoop
     held: list[Rows]
+    doubt: str
 
 
 class CertifiedSession:
@@ -95,46 +97,51 @@ class CertifiedSession:
                 self._stopped = self._go_on_from(undecided, self._loop.counters.events)
             else:
                 if self._stopped is not None and not self._is_settled() and 2 * self.bits <= self._most_bits:
-                    self._note_attempt(self._loop.counters.events)
+                    self._note_attempt(self._loop.counters.events, "its numbers were not known well enough")
                     self._begin(2 * self.bits, self.traced)
                     self._stopped = None
         return self._stopped
 
-    def _note_attempt(self, events: int) -> None:
+    def _note_attempt(self, events: int, doubt: str) -> None:
         attempt = Attempt(self.bits, self.traced, events)
         self.attempts.append(attempt)
         if self._farthest is None or events > self._farthest.attempt.events:
-            self._farthest = _Ended(attempt, self._loop, [*self._held, self._loop.take_rows()])
+            self._farthest = _Ended(attempt, self._loop, [*self._held, self._loop.take_rows()], doubt)
 
     def break_off(self) -> None:
         """End here: what any attempt has proven is kept."""
         self._stopped = "interrupted"
         self._go_back_to_the_farthest()
 
-    def _go_back_to_the_farthest(self) -> None:
-        """Be the attempt that came farthest, if that is an earlier one."""
+    def _go_back_to_the_farthest(self) -> bool:
+        """Be the attempt that came farthest, if that is an earlier one; whether it is."""
         events, farthest = self._loop.counters.events, self._farthest
         if farthest is not None and farthest.attempt.events > events:
             self.attempts.append(Attempt(self.bits, self.traced, events))
             self.attempts.remove(farthest.attempt)
             self.bits, self.traced, _ = farthest.attempt
             self._loop, self._held = farthest.loop, farthest.held
+            return True
+        return False
 
     def _go_on_from(self, undecided: Undecided, events: int) -> str | None:
         """Begin again in a way that may decide; the reason to stop where there is none left."""
+        doubt = in_words(undecided, self.stage, self.clock)
         before = [attempt.events for attempt in self.attempts if attempt.traced == self.traced]
         farther = not before or events > max(before)
         if farther and 2 * self.bits <= self._most_bits:
-            self._note_attempt(events)
+            self._note_attempt(events, doubt)
             self._begin(2 * self.bits, self.traced)
             return None
         if not farther and not self.traced:
-            self._note_attempt(events)
+            self._note_attempt(events, doubt)
             self._begin(self._first_bits, True)
             return None
-        cause = "more bits do not help" if not farther else f"{self.bits} bits are the most allowed"
-        self._go_back_to_the_farthest()
-        self.reason = f"after {self.proven} proven events a comparison has no answer, and {cause}: {str(undecided)[:120]}"
+        why = cause(undecided, self.bits if farther else None)
+        if self._go_back_to_the_farthest():
+            assert self._farthest is not None
+            doubt = self._farthest.doubt
+        self.reason = f"after {self.proven} proven event{'' if self.proven == 1 else 's'}, {doubt}; {why}"
         return "undecided tie"
 
     def take_rows(self) -> Rows:
