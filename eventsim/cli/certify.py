@@ -157,10 +157,11 @@ def _text(asked: str, proof: Proof, log: Path | None) -> str:
         ("proven", f"{plural(proof.proven, 'event')}, to t = {short(run.state.time)}{each}"),
         ("bits", f"{proof.bits}{', numbers traced' if proof.traced else ''}{_attempts(proof)}"),
         ("float64", _float64(proof)),
-        ("errors", _errors(proof.float64)),
         ("end", f"every coordinate known {_within(proof.enclosures[:, :2].max(), 'to')}"),
         ("stopped", stop_words(run)),
     ]
+    if proof.float64.agreed:
+        rows.insert(3, ("errors", _errors(proof.float64)))
     if log is not None:
         rows.append(("log", f"{log}: {plural(proof.proven, 'row')}"))
     lines = [f"{title(asked, run.scene.name)}: {scene_line(run.scene)}", aligned(rows)]

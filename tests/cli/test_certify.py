@@ -7,6 +7,12 @@ import pytest
 from eventsim.record.log import load_log
 
 
+def scene_of(tmp_path, **changes):
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps({"events": 40, "domain": {"kind": "box", "size": [1.0, 0.7]}} | changes))
+    return path
+
+
 def test_a_proof_is_told(eventsim, scene_file):
     result = eventsim("certify", scene_file)
     assert result.exit_code == 0
@@ -92,6 +98,20 @@ def test_the_errors_of_float64_have_a_scale(eventsim, tmp_path):
     assert here["velocity_deviation_share"] < here["velocity_deviation"]
 
 
+def test_on_the_open_plane_the_extent_of_all_places_is_the_scale(eventsim, tmp_path):
+    """Two disks in a circle of radius 0.6: their centres keep within 1, and what they fill is between 0.2 and 1.2 wide."""
+    disks = [
+        {"position": [-0.25, 0.05], "velocity": [1.0, 0.3], "radius": 0.1},
+        {"position": [0.2, 0.1], "velocity": [-0.9, 0.1], "radius": 0.1},
+    ]
+    wall = {"kind": "circle", "center": [0.0, 0.0], "radius": 0.6}
+    scene = scene_of(tmp_path, domain={"kind": "open"}, disk=disks, wall=[wall])
+    proof = json.loads(eventsim("certify", scene, "--json").stdout)
+    assert proof["agreed"] == proof["proven"] == 40
+    assert proof["deviation"] / 1.2 <= proof["deviation_share"] <= proof["deviation"] / 0.2
+    assert proof["deviation"] > 0.0
+
+
 def test_bits_that_contradict_each_other_are_refused(eventsim):
     result = eventsim("certify", "gas", "--bits", 128, "--most-bits", 64)
     assert result.exit_code == 2
@@ -103,12 +123,6 @@ def test_a_horizon_belongs_to_float64_and_events(eventsim, engine, word):
     result = eventsim("run", "break", "--engine", engine, "--horizon")
     assert result.exit_code == 2
     assert word in result.stderr
-
-
-def scene_of(tmp_path, **changes):
-    path = tmp_path / "scene.json"
-    path.write_text(json.dumps({"events": 40, "domain": {"kind": "box", "size": [1.0, 0.7]}} | changes))
-    return path
 
 
 def test_a_tie_is_told_by_its_disks_and_walls(eventsim, tmp_path):
