@@ -1,12 +1,16 @@
 """What only a proof can say: which gap is the smallest, how many contacts there are, which ties are ones."""
 
+import warnings
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 import eventsim as es
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from tests.engines.proofs import certified, line
-from tests.engines.scenes import rows_of
+from tests.engines.scenes import lattice_gas, rows_of
 
 
 @pytest.mark.parametrize("k", [20, 40, 52])
@@ -78,3 +82,16 @@ def test_a_tie_that_nothing_decides_is_said_to_be_one():
     assert (stopped, session.proven) == ("undecided tie", 0)
     assert session.bits <= 4096
     assert "more bits do not help" in session.reason
+
+
+@pytest.mark.parametrize("k", [-900, -530, 530, 900])
+def test_the_screen_judges_no_speeds_whose_squares_are_no_floats(k):
+    """The proof at any speed is that at speeds of about 1, and nobody warns."""
+    scene = lattice_gas(8, 0.3, seed=1)
+    fast = replace(scene, disks=replace(scene.disks, velocity=np.ldexp(scene.disks.velocity, k)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rows, found = (certified(each, events=60)[0].take_rows() for each in (scene, fast))
+    for name in ("kind", "a", "b", "xa", "ya"):
+        assert found[name].tolist() == rows[name].tolist()
+    assert found["vxa"].tolist() == np.ldexp(rows["vxa"], k).tolist()

@@ -20,6 +20,9 @@ from eventsim.scene.stage import Stage
 MARGIN, SURE = 2.0**-24, 2.0**-34
 """What the screen allows for, relative to the numbers; its own rounding is far below it, and so are the balls that it trusts."""
 
+LEAST, MOST = 2.0**-120, 2.0**120
+"""Lengths and speeds within which the screen's products are floats with all their digits; it does not judge others."""
+
 
 class Screen:
     """The flights as arrays of floats; it tells which pairs may meet before one of the two is stopped by a wall."""
@@ -51,6 +54,10 @@ class Screen:
         """For each image, the disks that the balls have to decide on."""
         if self.falls or not self.trusted[i]:
             return [list(range(len(self.x))) for _ in self._shift]
+        with np.errstate(all="ignore"):
+            return self._not_missed(i)
+
+    def _not_missed(self, i: int) -> list[list[int]]:
         begin = np.maximum(self.t, self.t[i])
         lag, since = begin - self.t[i], begin - self.t
         dx = (self.x[i] + self.vx[i] * lag) - (self.x + self.vx * since)
@@ -61,6 +68,7 @@ class Screen:
         fast = np.abs(self.vx) + abs(self.vx[i]) + np.abs(self.vy) + abs(self.vy[i])
         far = far + fast * (lag + since + SURE * begin)
         speed2 = du * du + dw * dw
+        judged = self.trusted & (far > LEAST) & (far < MOST) & (fast > LEAST) & (fast < MOST)
         found = []
         for shift_x, shift_y in self._shift:
             px, py = dx - shift_x, dy - shift_y
@@ -72,11 +80,10 @@ class Screen:
             least = np.maximum(cross - slack, 0.0)
             largest = speed2 * reach2 + slack * fast * self._reach.max()
             root = np.sqrt(np.maximum(largest - least * least, 0.0))
-            with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-                earliest = begin + (c - MARGIN * size * size) / (root + slack - b)
+            earliest = begin + (c - MARGIN * size * size) / (root + slack - b)
             late = (earliest > self.held_up[i]) | (earliest > self.held_up)
             misses = (b > slack) | (least * least > largest) | (late & (b < 0.0) & (c > MARGIN * size * size))
-            found.append(np.flatnonzero(~(misses & self.trusted)).tolist())
+            found.append(np.flatnonzero(~(misses & judged)).tolist())
         return found
 
 
