@@ -34,7 +34,8 @@ Timed = Callable[[], float]
 
 def gas(n: int, eta: float) -> es.Scene:
     """The gas, settled."""
-    table = {"count": n, "packing_fraction": eta, "temperature": 1.0, "seed": 1, "arrangement": "random"}
+    arrangement = "random" if eta < 0.5 else "compressed"
+    table = {"count": n, "packing_fraction": eta, "temperature": 1.0, "seed": 1, "arrangement": arrangement}
     scene = scene_from_dict({"domain": {"kind": "box", "size": [1.0, 1.0]}, "gas": [table]})
     state = es.simulate(scene, events=5 * n, engine="fast").state
     return es.Scene(es.Disks(state.position, state.velocity, scene.disks.radius), scene.domain)
