@@ -14,9 +14,7 @@ Source: T. J. Dekker, Numer. Math. 18, 224 (1971), doi:10.1007/BF01397083.
 import math
 
 from eventsim.formulas.expansion import two_product, two_sum
-
-LEAST, MOST = 2.0**-900, 2.0**900
-"""Squares of velocities within which error-free products neither underflow nor overflow."""
+from eventsim.formulas.impulse import LEAST, MOST
 
 
 def careful_pair_update(

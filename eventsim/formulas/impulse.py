@@ -5,7 +5,7 @@ import math
 from eventsim.formulas.real import Real, is_float, sqrt
 
 LEAST, MOST = 2.0**-900, 2.0**900
-"""Squares of velocities within which their sum is a float, to the last bit."""
+"""Squares of velocities within which sums of them are floats to the last bit, and error-free products are exact."""
 
 
 def mass_fractions(mass_a: float, mass_b: float) -> tuple[float, float]:
