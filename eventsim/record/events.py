@@ -51,6 +51,9 @@ ROW = np.dtype(
 """One row per impulse; b, wall and joint are -1 and floats NaN where there is none."""
 
 COLUMNS: tuple[str, ...] = tuple(ROW.names or ())
+OFFSETS = {name: int(field[1]) for name, field in (ROW.fields or {}).items()}
+"""Where each column lies in a row, bytes."""
+
 COMPACT_COLUMNS: tuple[str, ...] = ("event", "kind", "a", "b", "wall", "joint", "epoch", "remainder")
 """What a compact log keeps; replay computes the others."""
 

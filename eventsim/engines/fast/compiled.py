@@ -34,9 +34,10 @@ from eventsim.formulas import (
     rest,
 )
 from eventsim.formulas.walls import face, round
+from eventsim.record import events
 
-SOURCES = Path(__file__).parent, Path(motion.__file__).parent
-"""The folders whose files a compiled kernel is made from: numba itself would not notice an edit in another file."""
+SOURCES = Path(__file__).parent, Path(motion.__file__).parent, Path(events.__file__)
+"""The folders and the file that a compiled kernel is made from: numba itself would not notice an edit in another file."""
 
 
 def cache_folder() -> Path:
@@ -54,8 +55,8 @@ def cache_folder() -> Path:
 
 def _hash_of_sources() -> str:
     digest = hashlib.sha256()
-    for folder in SOURCES:
-        for path in sorted(folder.rglob("*.py")):
+    for source in SOURCES:
+        for path in sorted(source.rglob("*.py")) or [source]:
             digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 

@@ -9,14 +9,15 @@ import numpy as np
 from eventsim.engines.fast.compiled import inline
 from eventsim.engines.fast.layout import LABEL, WORDS
 from eventsim.engines.fast.memory import put, word
-from eventsim.record.events import ROW, Kind
+from eventsim.record.events import OFFSETS, ROW, Kind
 
-_AT = {name: int(field[1]) for name, field in (ROW.fields or {}).items()}
 SIZE = ROW.itemsize
 EVENT, KIND, A, B, WALL, XA, YA, VXA, VYA = (
-    _AT[k] for k in ("event", "kind", "a", "b", "wall", "xa", "ya", "vxa", "vya")
+    OFFSETS[k] for k in ("event", "kind", "a", "b", "wall", "xa", "ya", "vxa", "vya")
 )
-XB, IMPULSE, JOINT, TIME, EPOCH, REMAINDER = (_AT[k] for k in ("xb", "impulse", "joint", "time", "epoch", "remainder"))
+XB, IMPULSE, JOINT, TIME, EPOCH, REMAINDER = (
+    OFFSETS[k] for k in ("xb", "impulse", "joint", "time", "epoch", "remainder")
+)
 PAIR_KIND, WALL_KIND = int(Kind.PAIR), int(Kind.WALL)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import ROW, Column, blank_rows
+from eventsim.record.events import COLUMNS, ROW, Column, blank_rows
 from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
 from eventsim.record.log import EventLog
@@ -21,6 +21,7 @@ except ImportError:
     raise LogError("parquet logs need pyarrow: install eventsim-disks[parquet]") from None
 
 TEXTS = ("kind", "wall")
+NULLABLE = frozenset(name for name in COLUMNS if ROW[name].kind == "f") - {"time", "remainder"}
 GROUP = 1 << 15
 """Rows in a group, which are held at a time: more would push what the engine needs out of the caches that cores share."""
 
@@ -103,8 +104,10 @@ def read_parquet(path: Path) -> EventLog:
 
 
 def _schema(names: tuple[str, ...]) -> Any:
+    """The columns of a file; only floats can be null, and what cannot be is written faster."""
     text = pa.dictionary(pa.int32(), pa.string())
-    return pa.schema([(name, text if name in TEXTS else pa.from_numpy_dtype(ROW[name])) for name in names])
+    kinds = {name: text if name in TEXTS else pa.from_numpy_dtype(ROW[name]) for name in names}
+    return pa.schema([pa.field(name, kind, nullable=name in NULLABLE) for name, kind in kinds.items()])
 
 
 def _array(values: Column, name: str, provenance: Provenance) -> Any:
@@ -112,7 +115,7 @@ def _array(values: Column, name: str, provenance: Provenance) -> Any:
     labels = labels_of(name, provenance.wall_names)
     if labels is None:
         return _numbers(values)
-    codes = values.astype(np.int32) % len(labels)  # -1 is the last label
+    codes = np.where(values < 0, np.int32(len(labels) - 1), values.astype(np.int32))  # -1 is the last label
     texts = [text.encode() for text in labels.tolist()]
     ends = np.cumsum([0, *map(len, texts)], dtype=np.int32)
     dictionary = pa.StringArray.from_buffers(len(texts), pa.py_buffer(ends), pa.py_buffer(b"".join(texts)))
