@@ -102,11 +102,11 @@ class Player {
   }
 
   _show() {
-    const events = this.world.eventsUntil(this.view.time);
+    const events = this.world.eventsUntil(this.view.time), all = this.world.event.time.length;
     this.drawing.draw(this.view);
     this.part("scrub").value = String(this.view.time);
     this.part("clock").textContent = `t = ${digits(this.start + this.view.time, this.duration)}`;
-    this.part("events").textContent = `${events.toLocaleString("en")} of ${this.world.event.time.length.toLocaleString("en")} events`;
+    this.part("events").textContent = `${events.toLocaleString("en")} of ${all.toLocaleString("en")} event${all === 1 ? "" : "s"}`;
     if (this.view.marked >= 0) this._tell();
   }
 
