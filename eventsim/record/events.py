@@ -30,7 +30,7 @@ ROW = np.dtype(
     [
         ("event", "<i8"),
         ("time", "<f8"),
-        ("kind", "<i1"),
+        ("kind", "<i4"),
         ("a", "<i4"),
         ("b", "<i4"),
         ("wall", "<i4"),
@@ -48,7 +48,7 @@ ROW = np.dtype(
         ("remainder", "<f8"),
     ]
 )
-"""One row per impulse; b, wall and joint are -1 and floats NaN where there is none."""
+"""One row per impulse; b, wall and joint are -1 and floats NaN where there is none.  128 bytes without gaps: two cache lines."""
 
 COLUMNS: tuple[str, ...] = tuple(ROW.names or ())
 OFFSETS = {name: int(field[1]) for name, field in (ROW.fields or {}).items()}

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eventsim.record.digest import Digester, digest_of
-from eventsim.record.events import blank_rows
+from eventsim.record.events import COLUMNS, OFFSETS, ROW, blank_rows
 from tests.record.logs import random_rows
 
 
@@ -50,3 +50,9 @@ def test_every_column_of_the_story_counts(name: str) -> None:
     one, other = random_rows(5), random_rows(5)
     other[name][3] = other[name][3] + 1 if np.isfinite(other[name][3]) and abs(other[name][3]) < 1e9 else 0.5
     assert digest_of(one) != digest_of(other)
+
+
+def test_rows_have_no_gaps() -> None:
+    """So equal rows are equal bytes, and kernels can write them by whole cache lines."""
+    assert sum(ROW[name].itemsize for name in COLUMNS) == ROW.itemsize == 128
+    assert list(OFFSETS.values()) == sorted(OFFSETS.values())

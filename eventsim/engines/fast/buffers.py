@@ -26,10 +26,17 @@ class Buffers:
         for buffer, looks in zip(self._pool, _looks(self._pool), strict=True):
             if looks == UNSEEN:
                 return buffer
-        buffer = np.empty(ROOM, ROW)
+        buffer = _new()
         if len(self._pool) < MOST:
             self._pool.append(buffer)
         return buffer
+
+
+def _new() -> Rows:
+    """A buffer (ROOM,) that begins with a cache line."""
+    memory = np.empty((ROOM + 1) * ROW.itemsize, np.uint8)
+    start = -memory.ctypes.data % ROW.itemsize
+    return np.frombuffer(memory.data[start : start + ROOM * ROW.itemsize], ROW)
 
 
 def _looks(pool: list[Rows]) -> list[int]:

@@ -13,11 +13,11 @@ from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
 from eventsim.engines.fast.layout import REALS
-from eventsim.engines.fast.memory import F64, I8, I32, I64, call, f64, i64, place
+from eventsim.engines.fast.memory import F64, I8, I32, I64, V8, call, f64, i64, place
 from eventsim.formulas.contact import DIGITS_LOST, NEAR, SMALLEST
 
 I16, I1 = ir.IntType(16), ir.IntType(1)
-V8, V16, M16 = ir.VectorType(F64, 8), ir.VectorType(I32, 16), ir.VectorType(I1, 16)
+V16, M16 = ir.VectorType(I32, 16), ir.VectorType(I1, 16)
 FEATURES = ("avx512f", "avx512dq", "avx512bw", "avx512vl")
 LEAST_LLVM = 19
 """From here on `llvm.experimental.vector.compress` exists."""

@@ -1,24 +1,18 @@
-"""Rows of the log, written into the buffer that Python drains."""
+"""Rows of the log, written into the buffer that Python drains: two cache lines each, in the order of `ROW`."""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from eventsim.engines.fast.compiled import inline
 from eventsim.engines.fast.layout import LABEL, WORDS
-from eventsim.engines.fast.memory import put, word
-from eventsim.record.events import OFFSETS, ROW, Kind
+from eventsim.engines.fast.memory import put_line, word
+from eventsim.record.events import ROW, Kind
 
 SIZE = ROW.itemsize
-EVENT, KIND, A, B, WALL, XA, YA, VXA, VYA = (
-    OFFSETS[k] for k in ("event", "kind", "a", "b", "wall", "xa", "ya", "vxa", "vya")
-)
-XB, IMPULSE, JOINT, TIME, EPOCH, REMAINDER = (
-    OFFSETS[k] for k in ("xb", "impulse", "joint", "time", "epoch", "remainder")
-)
+LINE = SIZE // 2
 PAIR_KIND, WALL_KIND = int(Kind.PAIR), int(Kind.WALL)
+NO_FLIGHT = (math.nan, math.nan, math.nan, math.nan)
 
 
 @inline
@@ -26,20 +20,15 @@ def write_pair(m, number, slot, a, b, flight_a, flight_b, impulse, t, clock, row
     """Write row `number` of the log, the contact of disks a and b, if rows are kept.
 
     flight_a, flight_b: place and velocity after it.  clock: the epoch, and as a sum of two numbers where it begins on the scene's
-    clock.  The smaller label comes first; which disk has it is as good as random, so it is no branch but a place in the row.
+    clock.  The smaller label comes first; which disk has it is as good as random, so it is chosen without a branch.
     """
     if rows is None:
         return
-    at = SIZE * slot
     label_a, label_b = word(m.disks, a * WORDS + LABEL), word(m.disks, b * WORDS + LABEL)
-    swapped = np.int64(label_b < label_a)
-    put(rows, at + A + swapped * (B - A), np.int32(label_a))
-    put(rows, at + B - swapped * (B - A), np.int32(label_b))
-    _write_flight(rows, at + XA + swapped * (XB - XA), flight_a)
-    _write_flight(rows, at + XB - swapped * (XB - XA), flight_b)
-    put(rows, at + KIND, np.int8(PAIR_KIND))
-    put(rows, at + WALL, np.int32(-1))
-    _write_rest(rows, at, number, impulse, t, clock)
+    swapped = label_b < label_a
+    first, second = _chosen(swapped, flight_b, flight_a), _chosen(swapped, flight_a, flight_b)
+    labels = min(label_a, label_b), max(label_a, label_b)
+    _write(rows, SIZE * slot, number, PAIR_KIND, labels, -1, first, second, impulse, t, clock)
 
 
 @inline
@@ -47,34 +36,30 @@ def write_wall(m, number, slot, a, wall, flight, impulse, t, clock, rows):
     """Write row `number` of the log, the contact of disk a with a wall, if rows are kept; see `write_pair`."""
     if rows is None:
         return
-    at = SIZE * slot
-    put(rows, at + A, np.int32(word(m.disks, a * WORDS + LABEL)))
-    put(rows, at + B, np.int32(-1))
-    _write_flight(rows, at + XA, flight)
-    _write_flight(rows, at + XB, (math.nan, math.nan, math.nan, math.nan))
-    put(rows, at + KIND, np.int8(WALL_KIND))
-    put(rows, at + WALL, np.int32(wall))
-    _write_rest(rows, at, number, impulse, t, clock)
+    labels = word(m.disks, a * WORDS + LABEL), -1
+    _write(rows, SIZE * slot, number, WALL_KIND, labels, wall, flight, NO_FLIGHT, impulse, t, clock)
 
 
 @inline
-def _write_flight(rows, at, flight):
-    x, y, vx, vy = flight
-    put(rows, at, x)
-    put(rows, at + YA - XA, y)
-    put(rows, at + VXA - XA, vx)
-    put(rows, at + VYA - XA, vy)
+def _chosen(which, one, other):
+    """One of two flights, number by number."""
+    x, y = one[0] if which else other[0], one[1] if which else other[1]
+    return x, y, one[2] if which else other[2], one[3] if which else other[3]
 
 
 @inline
-def _write_rest(rows, at, number, impulse, t, clock):
+def _write(rows, at, number, kind, labels, wall, first, second, impulse, t, clock):
     epoch, begin, error = clock
-    put(rows, at + EVENT, np.int64(number))
-    put(rows, at + IMPULSE, impulse)
-    put(rows, at + JOINT, np.int64(-1))
-    put(rows, at + TIME, _sum_of_three(begin, t, error))
-    put(rows, at + EPOCH, np.int64(epoch))
-    put(rows, at + REMAINDER, t)
+    a, b = labels
+    time = _sum_of_three(begin, t, error)
+    put_line(rows, at, (number, time, _two(kind, a), _two(b, wall), *first))
+    put_line(rows, at + LINE, (*second, impulse, -1, epoch, t))
+
+
+@inline
+def _two(low, high):
+    """Two whole numbers of 32 bits as one of 64, as they lie in memory."""
+    return (low & 0xFFFFFFFF) | (high << 32)
 
 
 @inline
