@@ -9,7 +9,7 @@ import numpy as np
 from eventsim.record.events import ROW, Rows
 
 ROOM = 1 << 13
-"""Rows in a buffer: a megabyte, which stays in the caches until it is drained."""
+"""Rows in a buffer, a megabyte: fewer would keep Python busy, more would stand in the way of what the caches hold."""
 
 MOST = 16
 """Buffers that are kept for another time: those that wait for the writer, and a few more."""

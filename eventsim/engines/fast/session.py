@@ -115,7 +115,7 @@ class FastSession:
                 return "events"
             if status == layout.STATUS_ROWS:
                 machine.flush()
-                return None  # rows are best drained while they are in the caches
+                return None  # so that whoever takes the rows can begin
             if status == layout.STATUS_TIE:
                 if (stopped := self._rulings.resolve_instant()) is not None:
                     return stopped
