@@ -41,7 +41,7 @@ def cut_walls() -> None:
     from eventsim.engines.fast import loop, predict
 
     cut(predict, earliest_at_shapes=lambda m, rules, i, floor, time, code, shared, features: (time, code, shared))
-    cut(loop, resolve_wall=lambda m, rules, sums, i, code, t, number, slot, clock: None)
+    cut(loop, resolve_wall=lambda m, rules, sums, i, code, t, clock, number, slot: None)
 
 
 def cut_gravity() -> None:
@@ -83,7 +83,8 @@ def cut_log() -> None:
     """No rows."""
     from eventsim.engines.fast import resolve
 
-    cut(resolve, write_row=lambda m, number, slot, a, b, wall, impulse, t, clock, rows: None)
+    cut(resolve, write_pair=lambda m, number, slot, a, b, flight_a, flight_b, impulse, t, clock, rows: None)
+    cut(resolve, write_wall=lambda m, number, slot, a, wall, flight, impulse, t, clock, rows: None)
 
 
 CUTS: dict[str, Callable[[], None]] = {
