@@ -33,7 +33,7 @@ class Buffers:
 
 
 def _new() -> Rows:
-    """A buffer (ROOM,) that begins with a cache line."""
+    """A buffer (ROOM,) that begins with a cache line; views of it refer to it, not to the memory below, so they are counted."""
     memory = np.empty((ROOM + 1) * ROW.itemsize, np.uint8)
     start = -memory.ctypes.data % ROW.itemsize
     return np.frombuffer(memory.data[start : start + ROOM * ROW.itemsize], ROW)
