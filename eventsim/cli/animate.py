@@ -108,7 +108,8 @@ def command(
 
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.source import log_of
-    from eventsim.cli.words import as_json_text, file_size, plural
+    from eventsim.cli.words import as_json_text, file_size
+    from eventsim.scene.names import plural
     from eventsim.show.animate import MOMENTS, Film, animate
     from eventsim.show.picture import Look
 

@@ -149,7 +149,8 @@ def _data(asked: str, proof: Proof, log: Path | None) -> dict[str, object]:
 
 def _text(asked: str, proof: Proof, log: Path | None) -> str:
     from eventsim.cli.summary import stop_words
-    from eventsim.cli.words import aligned, plural, scene_line, short, title
+    from eventsim.cli.words import aligned, scene_line, short, title
+    from eventsim.scene.names import plural
 
     run = proof.run
     each = f", {run.elapsed_s / proof.proven * 1e3:.2g} ms an event" if proof.proven else ""
@@ -173,14 +174,15 @@ def _text(asked: str, proof: Proof, log: Path | None) -> str:
 
 
 def _attempts(proof: Proof) -> str:
-    from eventsim.cli.words import plural
+    from eventsim.scene.names import plural
 
     parts = [f"{a.bits}{' traced' if a.traced else ''}: {plural(a.events, 'event')}" for a in proof.attempts]
     return f" (other attempts: {'; '.join(parts)})" if parts else ""
 
 
 def _float64(proof: Proof) -> str:
-    from eventsim.cli.words import plural, short
+    from eventsim.cli.words import short
+    from eventsim.scene.names import plural
 
     float64 = proof.float64
     if float64.difference is None:

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from eventsim.cli.words import paragraphs, plural, point, short, title
+from eventsim.cli.words import paragraphs, point, short, title
 from eventsim.engines.reference.cells import ENOUGH_DISKS
+from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.cli.needs import Needs

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim.cli.source import is_log, log_of
-from eventsim.cli.words import aligned, plural, short
+from eventsim.cli.words import aligned, short
+from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.measure import Measures, Quantity

@@ -7,7 +7,8 @@ from shlex import quote
 from typing import TYPE_CHECKING
 
 from eventsim import __version__
-from eventsim.cli.words import aligned, plural, scene_line, short, title
+from eventsim.cli.words import aligned, scene_line, short, title
+from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.cli.target import Files

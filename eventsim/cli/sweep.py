@@ -81,7 +81,8 @@ def command(
     from time import perf_counter
 
     from eventsim.cli.progress import TaskBar
-    from eventsim.cli.words import as_json_text, plural
+    from eventsim.cli.words import as_json_text
+    from eventsim.scene.names import plural
     from eventsim.sweep import sweep
     from eventsim.sweep.dask import dask_executor
     from eventsim.sweep.grid import grid_of

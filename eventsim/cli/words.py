@@ -9,13 +9,10 @@ from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from eventsim.scene.names import plural
+
 if TYPE_CHECKING:
     from eventsim.scene import Scene
-
-
-def plural(count: int, noun: str) -> str:
-    """Return "1 disk" or "1,000 disks"."""
-    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def file_size(path: Path) -> str:

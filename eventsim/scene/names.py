@@ -1,4 +1,4 @@
-"""How messages call the disks of a scene: by their index, or by where a file describes them."""
+"""How messages call things: a disk by its index, or by where a file describes it; many of a kind by their number."""
 
 from __future__ import annotations
 
@@ -7,6 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eventsim.scene.cells import Indices
+
+
+def plural(count: int, noun: str) -> str:
+    """Return "1 disk" or "1,000 disks"."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 class DiskNames:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
 from eventsim.record.replay import Replay
+from eventsim.scene.names import plural
 from eventsim.scene.pace import in_words
 from eventsim.show import outlines
 from eventsim.show.colouring import colouring_of
@@ -105,8 +106,7 @@ class Picture:
             self._axes.draw_artist(self._arrows)
         self._bars.clock.set_text(f"t = {frame.state.time:{self._clock_format}}")
         energy = in_words(frame.energy, *self._energy_words)
-        word = "event" if frame.events == 1 else "events"
-        self._bars.counter.set_text(f"{frame.events:,} {word}   energy {energy}")
+        self._bars.counter.set_text(f"{plural(frame.events, 'event')}   energy {energy}")
         for text in (self._bars.clock, self._bars.counter):
             self._figure.draw_artist(text)
         return np.asarray(self._canvas.buffer_rgba())

@@ -14,6 +14,7 @@ from eventsim.engines.certified.loop import CertifiedLoop
 from eventsim.errors import EventsimError
 from eventsim.formulas.walls.face import Face
 from eventsim.record.events import ROW, Floats, Rows
+from eventsim.scene.names import plural
 from eventsim.scene.stage import Stage
 
 FIRST_BITS, MOST_BITS = 1024, 2**17
@@ -141,7 +142,7 @@ class CertifiedSession:
         if self._go_back_to_the_farthest():
             assert self._farthest is not None
             doubt = self._farthest.doubt
-        self.reason = f"after {self.proven} proven event{'' if self.proven == 1 else 's'}, {doubt}; {why}"
+        self.reason = f"after {plural(self.proven, 'proven event')}, {doubt}; {why}"
         return "undecided tie"
 
     def take_rows(self) -> Rows:

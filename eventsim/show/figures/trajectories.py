@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from eventsim.record.flights import flight_table
 from eventsim.record.log import EventLog
+from eventsim.scene.names import plural
 from eventsim.show import outlines
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import LENGTH, SIZE, label, name_of, shades_of
@@ -66,13 +67,12 @@ def draw(figure: Figure, log: EventLog) -> None:
     axes.add_collection(LineCollection(walls, colors=LIGHT.wall, linewidths=1.6), autolim=False)
     axes.add_collection(LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False)
     events = int((np.isin(log.a, disks) | np.isin(log.b, disks)).sum())
-    word = "event" if events == 1 else "events"
     which = f"{len(disks)} of {n} disks" if len(disks) < n else "all disks" if n > 1 else "the disk"
     label(
         axes,
         f"x [{LENGTH}]",
         f"y [{LENGTH}]",
-        f"{name_of(log)}: the ways of {which}, {events:,} {word} (a dot for each disk)",
+        f"{name_of(log)}: the ways of {which}, {plural(events, 'event')} (a dot for each disk)",
     )
     axes.grid(visible=False)
     width, height = sides_of(shown)
