@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from statistics import median
 
 import numpy as np
@@ -201,7 +202,7 @@ def _event_driven(stage: Stage, error: ErrorOf) -> list[list[_Runner]]:
     runners = []
     for name in dict.fromkeys(("reference", best_engine(stage.n))):
         engine = ENGINES[name]
-        runners.append([_Runner(name, "bits", 53.0, lambda engine=engine: engine.open(stage), error)])  # type: ignore[misc]
+        runners.append([_Runner(name, "bits", 53.0, partial(engine.open, stage), error)])
     return runners
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from enum import IntEnum
 from itertools import takewhile
 from typing import NamedTuple
@@ -71,5 +72,5 @@ class Calendar:
     def __len__(self) -> int:
         return len(self._events)
 
-    def __iter__(self):  # type: ignore[no-untyped-def]
+    def __iter__(self) -> Iterator[Event]:
         return iter(self._events)

@@ -121,10 +121,10 @@ class EngineState:
 
     def support_of(self, i: int) -> Support | None:
         """What disk i rests on; None in free flight."""
-        held = None if self.supports is None else held_by(self.met[i])
-        if held is None or held.how != SUPPORTED:
+        if self.supports is None:
             return None
-        return self.supports[held.place]  # type: ignore[index]
+        held = held_by(self.met[i])
+        return None if held is None or held.how != SUPPORTED else self.supports[held.place]
 
     def turn_over(self) -> None:
         """Begin a new window: every disk is advanced to the end of the old one, which becomes time 0."""

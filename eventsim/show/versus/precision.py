@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from os import PathLike
 from textwrap import wrap
 from typing import Any
@@ -70,7 +71,7 @@ def write_chart(chart: Chart, path: str | PathLike[str]) -> None:
 
 def panels_of(chart: Chart) -> list[Draw]:
     """What draws each panel, in the order of the questions."""
-    panels: list[Draw] = [lambda axes, curves=curves: draw_work(axes, curves) for curves in chart.tasks]  # type: ignore[misc]
+    panels: list[Draw] = [partial(draw_work, curves=curves) for curves in chart.tasks]
     losses, chaos = chart.losses, chart.chaos
     if losses is not None:
         panels += [lambda axes: draw_missed(axes, losses), lambda axes: draw_energy(axes, losses)]
