@@ -198,7 +198,10 @@ class Simulation:
     @property
     def time(self) -> float:
         """Where the scene's clock stands."""
-        return self.state.time
+        if self._time is not None:
+            return self._time
+        stage = self._session.stage
+        return clock_time(*self._session.clock, stage.epoch_length, stage.start_time)
 
     @property
     def state(self) -> State:
@@ -269,7 +272,7 @@ class Simulation:
         self._time = None
 
     def _advance(self, stop: Stop) -> Rows:
-        before = len(self._blocks)
+        before, begun = len(self._blocks), self.time
         stopped = None
         while stopped is None:
             stopped = self._session.advance(stop, STEP_BUDGET)
@@ -278,6 +281,10 @@ class Simulation:
             stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
             raise CollapseError(f"stopped by {stopped}: {reason}")
         self._time = stop.until if stopped in ("until", "quiet") else None
+        if self.time < begun:  # a quiet end is that of the last flight, which has been passed already
+            while self._session.advance(Stop(until=begun), STEP_BUDGET) is None:
+                pass
+            self._time = begun
         blocks = self._blocks[before:]
         self._blocks[before:] = [np.concatenate(blocks)]
         return self._blocks[-1]

@@ -1,5 +1,8 @@
-"""Disks that only wrap: when it is known that they will never meet anything, and when it is not."""
+"""Disks that only wrap, or part on the plane: when it is known that nothing is ahead, and where a run then ends."""
 
+import math
+
+import numpy as np
 import pytest
 
 import eventsim as es
@@ -41,3 +44,58 @@ def test_disks_that_meet_something_after_many_rounds_are_waited_for(engine, name
     ended = run(engine, *SOME_TIME[name])
     assert (ended.stopped, ended.counters.events) == ("events", 1)
     assert ended.counters.wraps > 16
+
+
+def apart(n):
+    """A gas that flies apart on the open plane: n disks in rows, 29 contacts of 20 and about 1500 of 300."""
+    side = math.isqrt(n - 1) + 1
+    place = 1.5 * np.array([divmod(i, side) for i in range(n)])
+    return es.Scene(es.Disks(place, np.random.default_rng(1).normal(size=(n, 2)), 0.5), es.Open())
+
+
+@pytest.mark.parametrize("n", [3, 20, 300])
+def test_what_flies_apart_ends_at_its_last_contact_in_every_engine(n):
+    pytest.importorskip("numba")
+    slow, fast = (es.simulate(apart(n), events=10**6, engine=engine, log=True) for engine in ("reference", "fast"))
+    assert slow.stopped == fast.stopped == "quiet"
+    assert slow.time == fast.time == (slow.log.time[-1] if len(slow.log) else 0.0)
+    assert slow.state.position.tobytes() == fast.state.position.tobytes()
+    assert slow.log.provenance.ending == fast.log.provenance.ending
+    if n < 100:
+        pytest.importorskip("flint")
+        assert es.simulate(apart(n), events=10**6, engine="certified").time == pytest.approx(slow.time, rel=1e-11)
+    assert slow.state.position.tobytes() == es.simulate(apart(n), events=len(slow.log), engine="fast").state.position.tobytes()
+
+
+@pytest.mark.parametrize("name", NEVER)
+def test_what_drifts_ends_at_one_time_in_every_engine(name):
+    slow, proven = (run(engine, *NEVER[name]) for engine in ("reference", "certified"))
+    fast = run("fast", *NEVER[name])
+    assert slow.time == proven.time == fast.time > 0.0
+    assert slow.state.position.tobytes() == fast.state.position.tobytes()
+
+
+def test_time_does_not_go_back_where_nothing_is_ahead():
+    pytest.importorskip("numba")
+    digests = []
+    for engine in ("reference", "fast"):
+        sim, other = (es.Simulation(apart(300), engine=engine) for _ in range(2))
+        while len(sim.step()):
+            pass
+        assert sim.time == sim.log.time[-1] < 1000.0
+        assert len(sim.step()) == 0
+        assert sim.time == sim.log.time[-1]
+        sim.advance_to(1000.0)
+        assert len(sim.step()) == 0
+        assert sim.time == 1000.0
+        other.advance_to(1000.0)
+        assert sim.state.position.tobytes() == other.state.position.tobytes()
+        assert sim.log.digest() == other.log.digest()
+        for each in (sim, other):  # towards another disk: cells must be those of the present
+            place, speed = each.state.position, each.state.velocity
+            each.set_velocity(7, tuple(speed[8] + 0.1 * (place[8] - place[7])))
+            each.step()
+        assert sim.log.kinds[-2:].tolist() == ["kick", "pair"]
+        assert sim.log.digest() == other.log.digest()
+        digests.append(sim.log.digest())
+    assert digests[0] == digests[1]

@@ -68,6 +68,9 @@ class CertifiedLoop(ReferenceSession):
             return None
         return np.array(list(map(float, vx))), np.array(list(map(float, vy)))
 
+    def _go_back(self) -> None:
+        """Stay: all pairs are predicted, so nothing is searched for beyond the last contact."""
+
     @property
     def clock(self) -> tuple[int, float]:
         """Where the clock stands: (epoch, remainder), the remainder rounded."""

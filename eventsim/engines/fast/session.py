@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -54,6 +55,7 @@ class FastSession:
         self.compile_s = 0.0
         self._marked: object = False
         self._idle = 0.0  # time since the end of the last window that had rows
+        self._behind: Snapshot | None = None  # where the last flight began, in an earlier window
         self._machine = Machine(stage, keep_rows, lanes, sizes)
         self.state = self._machine.state
         self._rulings = Rulings(self._machine, self.counters)
@@ -85,6 +87,8 @@ class FastSession:
         try:
             with timed_compiling(self._note_compiling):
                 stopped = self._advance(stop, budget)
+            if stopped == "quiet" and stop.until is None:
+                self._go_back()
             machine = self._machine
             if machine.grid.deep != self._marked:  # the one thing in a kind that a run may change
                 mark_warm(kind_of(self.stage, machine.grids, machine.keep_rows))
@@ -104,6 +108,7 @@ class FastSession:
     def _advance(self, stop: Stop, budget: int) -> str | None:
         machine, state = self._machine, self.state
         counts = machine.counts
+        for_ever = stop.until is None
         target = FOREVER if stop.events is None else min(stop.events, FOREVER)
         last = int(counts[layout.STEPS]) + min(budget, LARGEST_BUDGET)
         while counts[layout.STEPS] < last:
@@ -122,30 +127,29 @@ class FastSession:
             elif status == layout.STATUS_STUCK:
                 return self._rulings.give_up(int(state.labels[counts[layout.DISK]]))
             elif status == layout.STATUS_FULL:
-                machine.make_room(int(counts[layout.DISK]), self.motion(), for_ever=stop.until is None)
+                machine.make_room(int(counts[layout.DISK]), self.motion(), for_ever)
             elif status in (layout.STATUS_LIMIT, layout.STATUS_IDLE):
                 empty = bool(np.isinf(machine.due[0]) and np.all(np.isinf(machine.due)))
                 if status == layout.STATUS_IDLE and not empty:
                     machine.schedule()
-                elif turns and not (empty and stop.until is None):
-                    if stop.until is not None or state.window_rows:
-                        self._idle = 0.0
-                    else:
-                        self._idle += state.window_end
-                        if self._drifts():
-                            return "quiet"
-                        if self._only_looks():
-                            machine.give_up_cells()
-                            continue
+                elif turns and not (empty and for_ever):
+                    idles = for_ever and not state.window_rows
+                    if idles and self._only_looks():
+                        machine.give_up_cells()
+                        continue
                     if state.epoch >= MOST_EPOCHS:
                         due, end = machine.next_contact(), state.window_end
                         word, self._rulings.reason = at_the_last_epoch(self.stage, state.epoch, end, due)
                         if word != "quiet":
                             self._pass_to(end)
                         return word
+                    self._remember(for_ever)
+                    self._idle = self._idle + state.window_end if idles else 0.0
                     self._rulings.forget()
                     machine.turn_over()
                     self.counters.turnovers += 1
+                    if idles and self._drifts():
+                        return "quiet"
                 elif empty or not machine.renew_stale():
                     self._pass_to(until)
                     return "quiet" if empty else "until"
@@ -166,6 +170,21 @@ class FastSession:
         state = self.state
         straight = not (np.any(state.gravity_x.every()) or np.any(state.gravity_y.every()))
         return straight and only_wraps(self.stage, state.vx.every(), state.vy.every(), self._idle)
+
+    def _remember(self, for_ever: bool) -> None:
+        """Before the clock turns over: keep where the last flight began; on the open plane it may have been the last of all."""
+        if not for_ever:
+            self._behind = None
+        elif self.stage.size is None and (self.state.window_rows or self._behind is None):
+            self._behind = replace(self.snapshot(), now=float(self.state.t.every().max()))
+
+    def _go_back(self) -> None:
+        """Stand where the last flight began: how far a search for contacts went that are not there is no part of a run."""
+        last = float(self.state.t.every().max())
+        if self._behind is not None and not self.state.window_rows:
+            self.restore(self._behind)
+        elif last < self.state.now:
+            self.restore(replace(self.snapshot(), now=last))
 
     def _pass_to(self, until: float) -> None:
         if self.state.now < until < math.inf:
@@ -198,6 +217,7 @@ class FastSession:
 
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of disk i from outside, now."""
+        tally.take_from(self.counters, self._machine.counts, self._machine.sums)  # which a restored run has set back
         self._rulings.kick(i, vx, vy)
 
     def take_rows(self) -> Rows:
@@ -218,7 +238,7 @@ class FastSession:
 
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot, this engine's or another's."""
-        s, self._idle = self.state, 0.0
+        s, self._idle, self._behind = self.state, 0.0, None
         self._rulings.forget()
         self._machine.set_epoch(saved.epoch)
         s.window, s.window_rows = saved.window, saved.window_rows

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,9 +26,6 @@ from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import Floats, Rows
 from eventsim.scene.stage import Stage
-
-VAIN_WRAPS = 8
-"""Wraps per disk without a contact after which it is worth asking whether there will be one."""
 
 
 class ReferenceSession:
@@ -58,7 +56,8 @@ class ReferenceSession:
         self.reason: str | None = None
         self.refused = False
         self._check = check
-        self._wraps_in_vain, self._vain_since = 0, (0, 0.0)
+        self._idle = 0.0  # time since the end of the last window that had rows
+        self._behind: Snapshot | None = None  # where the last flight began, in an earlier window
         fine = self.state.low_places and self.predictor is Predictor
         self._predictor = (WidePredictor if fine else self.predictor)(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
@@ -70,30 +69,28 @@ class ReferenceSession:
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
-        until = self._remainder(stop.until)
+        until, for_ever = self._remainder(stop.until), stop.until is None
         state, calendar, counters, cells = self.state, self.calendar, self.counters, self.cells
         for _ in range(budget):
             if stop.events is not None and counters.events >= stop.events:
                 return "events"
             event = calendar.first()
+            if event is not None and self.is_stale(event):
+                calendar.pop()
+                counters.stale += 1
+                continue
             due = float("inf") if event is None else event.time
-            if due >= state.window_end <= until and not (event is None and self._quiet(stop)):
-                if state.epoch >= MOST_EPOCHS:  # nothing more can be logged
-                    due, end = self._next_contact(), state.window_end
-                    word, self.reason = at_the_last_epoch(self.stage, state.epoch, end, due)
-                    if word != "quiet":
-                        self._pass_to(end)
-                    return word
-                self._turn_over()
+            if due >= state.window_end <= until and not (event is None and for_ever):
+                stopped = self._end_window(for_ever)
+                if stopped is not None:
+                    return stopped
                 until = self._remainder(stop.until)
                 continue
             if event is None:
                 self._pass_to(until)
+                if for_ever:
+                    self._go_back()
                 return "quiet"
-            if self.is_stale(event):
-                calendar.pop()
-                counters.stale += 1
-                continue
             if due > until:
                 self._pass_to(until)
                 return "until"
@@ -103,11 +100,6 @@ class ReferenceSession:
                 counters.wraps += 1
                 wrap(state, cells, event, self.stage.period[event.b])  # type: ignore[arg-type]
                 self._predictor.predict(event.a, due)
-                if self._wraps_in_vain == 0:
-                    self._vain_since = state.epoch, float(due)
-                self._wraps_in_vain += 1
-                if self._wraps_in_vain % (VAIN_WRAPS * state.n) == 0 and stop.until is None and self._drifts():
-                    return "quiet"
             elif event.rank == CROSSING:
                 calendar.pop()
                 counters.crossings += 1
@@ -123,7 +115,6 @@ class ReferenceSession:
 
     def _resolve_instant(self) -> str | None:
         """Resolve the contacts of the earliest instant that are predicted by now, then predict their disks anew."""
-        self._wraps_in_vain = 0
         generation = self._pop_generation()
         changed: list[int] = []
         for component in components(generation):
@@ -167,10 +158,24 @@ class ReferenceSession:
             return True
         return event.rank == CONTACT and event.b >= 0 and count[event.b] != event.count_b
 
-    def _turn_over(self) -> None:
+    def _end_window(self, for_ever: bool) -> str | None:
+        """Let the clock turn over; the reason to stop where it has come to its end, or where nothing is ahead but wraps."""
+        state = self.state
+        if state.epoch >= MOST_EPOCHS:  # nothing more can be logged
+            end = state.window_end
+            word, self.reason = at_the_last_epoch(self.stage, state.epoch, end, self._next_contact())
+            if word != "quiet":
+                self._pass_to(end)
+            elif for_ever:
+                self._go_back()
+            return word
+        idles = for_ever and not state.window_rows
+        self._idle = self._idle + float(state.window_end) if idles else 0.0
+        self._remember(for_ever)
         self.counters.turnovers += 1
-        self.state.turn_over()
+        state.turn_over()
         self._predict_afresh()
+        return "quiet" if idles and self._drifts() else None
 
     def _predict_afresh(self) -> None:
         """Fill cells and calendar from the flights."""
@@ -184,22 +189,31 @@ class ReferenceSession:
         ahead = (event.time for event in self.calendar if event.rank == CONTACT and not self.is_stale(event))
         return min(map(float, ahead), default=float("inf"))
 
-    def _quiet(self, stop: Stop) -> bool:
-        """With an empty calendar nothing happens for ever; only a stop time makes it worth while to let the clock turn."""
-        return stop.until is None
-
     def _drifts(self) -> bool:
         """Whether disks will wrap for ever, and never meet anything again."""
-        state, (epoch, remainder) = self.state, self._vain_since
         velocities = self._exact_velocities()
-        if velocities is None or not all(g is None or g == 0.0 for g in (*state.gravity_x, *state.gravity_y)):
+        if velocities is None or not all(g is None or g == 0.0 for g in (*self.state.gravity_x, *self.state.gravity_y)):
             return False
-        idle = (state.epoch - epoch) * self.stage.epoch_length + (float(state.now) - remainder)
-        return only_wraps(self.stage, *velocities, idle)
+        return only_wraps(self.stage, *velocities, self._idle)
 
     def _exact_velocities(self) -> tuple[Floats, Floats] | None:
         """The velocities of all disks (n,), if they are floats."""
         return np.array(self.state.vx), np.array(self.state.vy)
+
+    def _remember(self, for_ever: bool) -> None:
+        """Before the clock turns over: keep where the last flight began; on the open plane it may have been the last of all."""
+        if not for_ever:
+            self._behind = None
+        elif self.cells is not None and self.stage.size is None and (self.state.window_rows or self._behind is None):
+            self._behind = replace(self.state.snapshot(), now=max(self.state.t))
+
+    def _go_back(self) -> None:
+        """Stand where the last flight began: how far a search for contacts went that are not there is no part of a run."""
+        last = max(self.state.t)
+        if self._behind is not None and not self.state.window_rows:
+            self.restore(self._behind)
+        elif last < self.state.now:
+            self.restore(replace(self.state.snapshot(), now=last))
 
     def _pass_to(self, until: float) -> None:
         """Let time pass to `until`, a remainder; without a stop time it stays where it is."""
@@ -230,7 +244,6 @@ class ReferenceSession:
 
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of disk i from outside, now."""
-        self._wraps_in_vain = 0
         self._resolver.kick(i, vx, vy)
         self._predictor.predict(i, self.state.now)
 
@@ -245,7 +258,7 @@ class ReferenceSession:
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot, this engine's or another's."""
         self.state.restore(saved)
-        self._wraps_in_vain = 0
+        self._idle, self._behind = 0.0, None
         self._predict_afresh()
 
 
