@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from eventsim.engines.horizon import Horizon
 
 
-WORTH_A_WORD = 0.01
-"""Of the time that simulating took: what takes less is left out of the text."""
+WORTH_A_WORD, MOMENT = 0.01, 1e-3
+"""Of the time that simulating took, and seconds: what takes less is left out of the text."""
 
 
 def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> dict[str, object]:
@@ -113,7 +113,8 @@ def _engine(run: Run) -> str:
     """Who simulated, and what that took; times that are not simulating where they are worth a word."""
     name = run.engine if run.begun_by is None else f"{run.begun_by}, then {run.engine}"
     apart = [("compiling", run.compile_s), ("writing", run.write_s)]
-    worth = [f" + {_seconds(seconds)} {what}" for what, seconds in apart if seconds > WORTH_A_WORD * run.elapsed_s]
+    least = max(WORTH_A_WORD * run.elapsed_s, MOMENT)
+    worth = [f" + {_seconds(seconds)} {what}" for what, seconds in apart if seconds > least]
     return f"{name}: {_seconds(run.elapsed_s)} simulating{''.join(worth)}"
 
 

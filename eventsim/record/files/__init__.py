@@ -158,6 +158,8 @@ def _text_form(suffix: str) -> TextForm:
 def _suffix(path: Path) -> str:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        shown = f"the suffix {path.suffix!r}" if path.suffix else "no suffix"
-        raise LogError(f"{path}: {shown} names no log format; use one of {', '.join(SUFFIXES)}")
+        known = ", ".join(SUFFIXES)
+        if not path.suffix:
+            raise LogError(f"{path}: this name has no suffix, and that of a log ends in one of {known}")
+        raise LogError(f"{path}: the suffix {path.suffix!r} names no log format; use one of {known}")
     return suffix

@@ -10,6 +10,7 @@ from eventsim.measure.free_paths import free_paths, mean_free_path, path_density
 from eventsim.record.events import Kind
 from eventsim.record.flights import flight_table
 from eventsim.record.log import EventLog
+from eventsim.scene import Periodic
 from eventsim.show.figures.demands import replay_with_time, with_events
 from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of
 
@@ -44,9 +45,8 @@ def draw(figure: Figure, log: EventLog) -> None:
     if theory is None:
         verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, taken over by the curve"
     else:
-        verdict = (
-            f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, Enskog {theory:.4g} ({mean / theory - 1:+.1%})"
-        )
+        whose = "Enskog" if isinstance(log.scene.domain, Periodic) else "Enskog without walls"
+        verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, {whose} {theory:.4g} ({mean / theory - 1:+.1%})"
     label(
         axes,
         f"free path [{LENGTH}]",
