@@ -122,6 +122,7 @@ DISK = Schema(
         Optional("mass"): mass,
     }
 )
+DISK_KEYS = frozenset(map(str, DISK.schema))
 GAS = Schema(
     {
         Required("count"): whole(1),
@@ -159,6 +160,19 @@ class Read(NamedTuple):
 
 NOTHING = Read({}, frozenset({"kind"}))
 """What of something that is no table, or one of no known kind, can be read."""
+
+
+def is_plain_disk(table: object) -> bool:
+    """Whether a [[disk]] table is what reading it would give: long lists of disks are read many times faster."""
+    if type(table) is not dict or not table.keys() <= DISK_KEYS:
+        return False
+    if type(table.get("radius")) is not float or type(table.get("mass", 1.0)) is not float:
+        return False
+    return _is_plain_point(table.get("position")) and _is_plain_point(table.get("velocity", (0.0, 0.0)))
+
+
+def _is_plain_point(value: object) -> bool:
+    return isinstance(value, list | tuple) and list(map(type, value)) == [float, float]
 
 
 def read_table(schema: Schema, table: object, where: str, problems: list[str]) -> Read:

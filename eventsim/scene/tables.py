@@ -149,6 +149,9 @@ def _read_disks(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> 
     read: dict[int, dict[str, Any]] = {}
     partly: dict[int, dict[str, Any]] = {}
     for i, disk in enumerate(_tables(data, "disk", problems)):
+        if schema.is_plain_disk(disk):
+            read[i] = disk
+            continue
         values, broken = schema.read_table(schema.DISK, disk, f"disk[{i}]", problems)
         if broken:
             partly[i] = DISK_STAND_IN | values

@@ -26,6 +26,9 @@ DAMAGE = (
 )
 """What libraries raise over damaged binary files, whose every byte may be any: all but what the machine or the user does."""
 
+BLOCK = 1 << 12
+"""Rows that are filled in, or looked at, at a time: they stay in a core's own cache."""
+
 
 def columns_kept(provenance: Provenance) -> tuple[str, ...]:
     """Return the names of the columns in a file, in order."""
@@ -46,16 +49,21 @@ def rows_from_columns(columns: Mapping[str, Sequence[object] | Column], provenan
 
     Raises ValueError, TypeError, OverflowError or KeyError for what does not fit its column.
     """
-    rows = blank_rows(len(columns["event"]))
-    for name in columns_kept(provenance):
-        labels = labels_of(name, provenance.wall_names)
-        if labels is not None:
-            rows[name] = codes_of(np.asarray(columns[name], dtype=np.str_), labels, name)
-        elif ROW[name].kind == "f":
-            rows[name] = np.asarray(columns[name], dtype=np.float64)
-        else:
-            rows[name] = integers_of(columns[name], ROW[name])
+    values = {name: _values(columns[name], name, provenance) for name in columns_kept(provenance)}
+    missing = blank_rows(1)[0]
+    rows = np.empty(len(columns["event"]), ROW)
+    for first in range(0, len(rows), BLOCK):
+        block = rows[first : first + BLOCK]
+        for name in COLUMNS:
+            block[name] = values[name][first : first + BLOCK] if name in values else missing[name]
     return rows
+
+
+def _values(column: Sequence[object] | Column, name: str, provenance: Provenance) -> Column:
+    labels = labels_of(name, provenance.wall_names)
+    if labels is not None:
+        return codes_of(np.asarray(column, dtype=np.str_), labels, name)
+    return np.asarray(column, dtype=np.float64) if ROW[name].kind == "f" else integers_of(column, ROW[name])
 
 
 def codes_of(texts: Column, labels: Column, name: str) -> Column:
@@ -77,7 +85,7 @@ def integers_of(values: Sequence[object] | Column, dtype: np.dtype[Any]) -> Colu
         return np.empty(0, dtype=dtype)
     if exact.dtype.kind not in "iu":
         raise ValueError("a whole number was expected")
-    narrow = exact.astype(dtype)
+    narrow = exact.astype(dtype, copy=False)
     if (narrow != exact).any():
         raise ValueError("a whole number is too large")
     return narrow
@@ -87,11 +95,22 @@ def checked_log(provenance: Provenance, rows: Rows, path: Path) -> EventLog:
     """Return the log if its rows can be those of its scene; raise LogError naming the file and the first bad row."""
     if provenance.rows not in (None, len(rows)):
         raise LogError(f"{path}: holds {len(rows)} rows where {provenance.rows} were written; the file was cut off")
-    count = len(provenance.scene.disks)
+    epoch = 0
+    for first in range(0, len(rows), BLOCK):
+        block = rows[first : first + BLOCK]
+        for rule, broken in _rules(block, first, epoch, len(provenance.scene.disks)).items():
+            if broken.any():
+                raise LogError(f"{path}: row {first + int(np.argmax(broken))}: {rule}")
+        epoch = block["epoch"][-1]
+    return EventLog(provenance, rows)
+
+
+def _rules(rows: Rows, first: int, epoch: int, count: int) -> dict[str, Column]:
+    """What rows (n,) may not be, and which are; the one before them is row `first` - 1, of that epoch."""
     has_wall = (rows["kind"] == Kind.WALL) | (rows["kind"] == Kind.REST)
     clock = rows["epoch"], rows["remainder"]
-    rules = {
-        "events are not numbered 0, 1, 2, ...": rows["event"] != np.arange(len(rows)),
+    return {
+        "events are not numbered 0, 1, 2, ...": rows["event"] != np.arange(first, first + len(rows)),
         f"column a names no disk of the scene (0 to {count - 1})": (rows["a"] < 0) | (rows["a"] >= count),
         f"column b names no disk of the scene (0 to {count - 1})": (rows["b"] < -1) | (rows["b"] >= count),
         "a pair needs a second disk and only a pair has one": (rows["b"] >= 0) != (rows["kind"] == 0),
@@ -99,9 +118,5 @@ def checked_log(provenance: Provenance, rows: Rows, path: Path) -> EventLog:
         "a contact with a wall needs its name and only such a contact has one": (rows["wall"] >= 0) != has_wall,
         "joint is neither -1 nor an earlier event": (rows["joint"] < -1) | (rows["joint"] > rows["event"]),
         "the remainder is not a time >= 0": ~((clock[1] >= 0) & np.isfinite(clock[1])),
-        "the epoch runs backwards": np.diff(clock[0], prepend=0) < 0,
+        "the epoch runs backwards": np.diff(clock[0], prepend=epoch) < 0,
     }
-    for rule, broken in rules.items():
-        if broken.any():
-            raise LogError(f"{path}: row {int(np.argmax(broken))}: {rule}")
-    return EventLog(provenance, rows)
