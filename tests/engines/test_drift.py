@@ -15,6 +15,7 @@ NEVER = {
     "one disk under a wall": ([[1.0, 1.0]], [[1.0, 0.0]], BOX, (POST,)),
     "one disk along a channel": ([[1.0, 1.0]], [[1.0, 0.0]], es.Channel((4.0, 3.0)), ()),
     "lanes": ([[1.0, 1.0], [1.0, 2.0]], [[1.0, 0.0], [-0.5, 0.0]], BOX, ()),
+    "lanes that rise together": ([[1.0, 1.0], [1.0, 2.0]], [[1.0, 0.25], [-0.5, 0.25]], BOX, ()),
     "lanes upwards": ([[1.0, 1.0], [2.0, 1.0], [3.0, 2.0]], [[0.0, 1.0], [0.0, -0.5], [0.0, 0.0]], BOX, (POST,)),
 }
 SOME_TIME = {
@@ -65,6 +66,14 @@ def test_what_flies_apart_ends_at_its_last_contact_in_every_engine(n):
         pytest.importorskip("flint")
         assert es.simulate(apart(n), events=10**6, engine="certified").time == pytest.approx(slow.time, rel=1e-11)
     assert slow.state.position.tobytes() == es.simulate(apart(n), events=len(slow.log), engine="fast").state.position.tobytes()
+
+
+def test_what_flies_together_over_the_plane_ends_where_it_began():
+    pytest.importorskip("numba")
+    together = es.Disks(apart(300).disks.position, np.full((300, 2), 0.3), 0.5)
+    for engine in ("reference", "fast"):
+        ended = es.simulate(es.Scene(together, es.Open()), events=1, engine=engine)
+        assert (ended.stopped, ended.time) == ("quiet", 0.0)
 
 
 @pytest.mark.parametrize("name", NEVER)

@@ -175,7 +175,10 @@ class ReferenceSession:
         self.counters.turnovers += 1
         state.turn_over()
         self._predict_afresh()
-        return "quiet" if idles and self._drifts() else None
+        if idles and self._drifts():
+            self._go_back()
+            return "quiet"
+        return None
 
     def _predict_afresh(self) -> None:
         """Fill cells and calendar from the flights."""
