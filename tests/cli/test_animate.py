@@ -81,9 +81,12 @@ def test_bad_usage_is_one_clear_message(eventsim, log_file, scene_file, tmp_path
 def test_an_interrupt_ends_it_with_130_and_no_file(log_file, tmp_path):
     words = [sys.executable, "-m", "eventsim", "animate", log_file, "--out", tmp_path / "a.gif", "--duration", "5000"]
     process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
-    while not list(tmp_path.glob("a.gif.*.part")) and process.poll() is None:
-        time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    try:
+        while not list(tmp_path.glob("a.gif.*.part")) and process.poll() is None:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert (process.returncode, said) == (130, "interrupted\n")
     assert not list(tmp_path.glob("a.gif*"))
