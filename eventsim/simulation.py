@@ -177,6 +177,7 @@ class SavedSimulation:
     snapshot: Snapshot
     counters: Counters
     rows: int
+    time: float | None
 
 
 class Simulation:
@@ -253,7 +254,7 @@ class Simulation:
 
     def snapshot(self) -> SavedSimulation:
         """A point to come back to."""
-        return SavedSimulation(self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count())
+        return SavedSimulation(self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count(), self._time)
 
     def restore(self, saved: SavedSimulation) -> None:
         """Go back to a snapshot; what happened since is forgotten.
@@ -269,7 +270,7 @@ class Simulation:
         for block in blocks:
             self._blocks.append(block[: max(keep, 0)])
             keep -= len(block)
-        self._time = None
+        self._time = saved.time
 
     def _advance(self, stop: Stop) -> Rows:
         before, begun = len(self._blocks), self.time
