@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
 
-from eventsim.scene.compress import kernel
+from eventsim.growth import kernel
 
 FEW = 48
 """Disks that plain Python compresses before a compiler is even loaded."""

@@ -7,10 +7,13 @@ code by the file it came from, notices every edit.  Both ways give the same bits
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
-from eventsim.scene.cells import Indices
-from eventsim.scene.disks import Floats
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.int64]
 
 WALLS, ESCAPE, NOTHING = -2, -7, -1
 """Partners that are no disks: walls are WALLS - 0 (left), -1 (right), -2 (bottom), -3 (top)."""

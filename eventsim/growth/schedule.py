@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from eventsim.errors import SceneError
-from eventsim.scene.cells import Cells
-from eventsim.scene.compress.compiled import grower
-from eventsim.scene.compress.kernel import ARRIVED, Stretch
-from eventsim.scene.disks import Floats
-from eventsim.scene.numbers import Point
+from eventsim.growth.compiled import grower
+from eventsim.growth.kernel import ARRIVED, Floats, Indices, Stretch
+
+Point: TypeAlias = tuple[float, float]
+
+Neighbours: TypeAlias = Callable[[Floats, Floats, Point], tuple[Indices, Indices]]
+"""Finds the overlapping pairs (first, second), (M,) each, of disks from places (N, 2), radii (N,) and periods."""
 
 FAST, SLOW = 0.1, 0.01
 """Growth of a mean diameter per time, over the thermal speed: at the start, and from `DENSE` on."""
@@ -40,11 +44,19 @@ class JammedError(Exception):
         self.packing_fraction = packing_fraction
 
 
-def grown(position: Floats, radius: Floats, scale: float, size: Point, period: Point, rng: np.random.Generator) -> Floats:
+def grown(
+    position: Floats,
+    radius: Floats,
+    scale: float,
+    size: Point,
+    period: Point,
+    rng: np.random.Generator,
+    neighbours: Neighbours,
+) -> Floats:
     """Centres (N, 2) of disks that have grown to their radii (N,), without overlap.
 
     position: centres (N, 2) in a rectangle of `size` with corner (0, 0), clear of each other at radii `scale` times as
-    large.  period: its periods, inf between walls.  O(contacts log N).
+    large.  period: its periods, inf between walls.  neighbours: finds who is near.  O(contacts log N).
 
     Raises:
         JammedError: where they do not fit, or did not find how.
@@ -53,7 +65,7 @@ def grown(position: Floats, radius: Floats, scale: float, size: Point, period: P
     for attempt in range(ATTEMPTS):
         slowness = SLOWER**attempt
         try:
-            return _Growth(position, radius, scale, size, period, rng).run(slowness)
+            return _Growth(position, radius, scale, size, period, rng, neighbours).run(slowness)
         except JammedError as jammed:
             best = max(best, jammed.packing_fraction)
     raise JammedError(best)
@@ -63,10 +75,18 @@ class _Growth:
     """One attempt."""
 
     def __init__(
-        self, position: Floats, radius: Floats, scale: float, size: Point, period: Point, rng: np.random.Generator
+        self,
+        position: Floats,
+        radius: Floats,
+        scale: float,
+        size: Point,
+        period: Point,
+        rng: np.random.Generator,
+        neighbours: Neighbours,
     ) -> None:
         n = len(radius)
         self.radius = radius
+        self.neighbours = neighbours
         self.size = np.array(size)
         self.period = np.array(period)
         self.scale = scale
@@ -113,10 +133,7 @@ class _Growth:
         velocity /= math.sqrt(0.5 * float((velocity**2).sum()) / len(velocity))
         n = len(self.radius)
         halos = (1.0 + 2.0 * HAIR) * self.radius + self.room
-        cells = Cells(self.state[:, :2].copy(), halos, np.ones(n), (float(self.period[0]), float(self.period[1])))
-        pairs = [(found.first, found.second) for found in cells.pairs()]
-        one = np.concatenate([np.empty(0, dtype=np.int64), *(first for first, _ in pairs)])
-        other = np.concatenate([np.empty(0, dtype=np.int64), *(second for _, second in pairs)])
+        one, other = self.neighbours(self.state[:, :2].copy(), halos, (float(self.period[0]), float(self.period[1])))
         mine, near = np.concatenate([one, other]), np.concatenate([other, one])
         order = np.lexsort((near, mine))
         first = np.searchsorted(mine[order], np.arange(n + 1)).astype(np.int64)

@@ -9,12 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from eventsim.errors import SceneError
-from eventsim.scene.compress.compiled import has_compiler
-from eventsim.scene.compress.growth import JammedError, grown
+from eventsim.growth.compiled import has_compiler
+from eventsim.growth.schedule import JammedError, grown
+from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.disks import Disks, Floats, join
 from eventsim.scene.domain import Box, Channel, Domain, Periodic
 from eventsim.scene.fill import clear_of, place_gas, start_velocity
 from eventsim.scene.gas import Gas, Region, disk_radius, region_of
+from eventsim.scene.numbers import Point
 from eventsim.scene.walls import Wall
 
 LOOSE = 0.35
@@ -62,7 +64,7 @@ def place_compressed(
     share = math.pi * float((radii**2).sum()) / (size[0] * size[1])
     start, scale = _start(gases, region, wraps, share, rngs)
     try:
-        centres = grown(start, radii, scale, size, period, rngs[0])
+        centres = grown(start, radii, scale, size, period, rngs[0], neighbours)
     except JammedError as jammed:
         raise SceneError(
             f'{where}.arrangement = "compressed": a packing fraction of {share:.4f} was not reached:'
@@ -80,6 +82,14 @@ def place_compressed(
             )
         placed.append(Disks(centre, velocity, radius, gas.mass))
     return placed
+
+
+def neighbours(position: Floats, radius: Floats, period: Point) -> tuple[Indices, Indices]:
+    """Pairs (first, second), (M,) each, of disks of these radii that overlap."""
+    pairs = [(found.first, found.second) for found in Cells(position, radius, np.ones(len(radius)), period).pairs()]
+    none = np.empty(0, dtype=np.int64)
+    first, second = (np.concatenate([none, *(pair[k] for pair in pairs)]) for k in (0, 1))
+    return first, second
 
 
 def _whole(region: Region, domain: Domain) -> tuple[bool, bool]:

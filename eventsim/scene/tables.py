@@ -11,7 +11,7 @@ import numpy as np
 
 from eventsim.errors import SceneError
 from eventsim.scene import schema
-from eventsim.scene.compress import place_compressed
+from eventsim.scene.compressed import place_compressed
 from eventsim.scene.disks import Disks, join
 from eventsim.scene.disks_file import read_disks_file
 from eventsim.scene.domain import DOMAINS, Domain, Open

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.scene.compress import compiled, kernel
-from eventsim.scene.compress.growth import grown
+from eventsim.growth import compiled, kernel
+from eventsim.growth.schedule import grown
+from eventsim.scene.compressed import neighbours
 from eventsim.scene.files import scene_from_dict
 
 HEXAGONAL = [1.0, math.sqrt(3.0) / 2.0]
@@ -101,7 +102,7 @@ def test_machine_code_gives_the_bits_of_python(monkeypatch):
     scale = math.sqrt(0.3 / 0.75)
 
     def places(seed):
-        return grown(sites.copy(), radius, scale, (1.0, 1.0), (1.0, math.inf), np.random.default_rng(seed))
+        return grown(sites.copy(), radius, scale, (1.0, 1.0), (1.0, math.inf), np.random.default_rng(seed), neighbours)
 
     assert compiled.grower(49) is not kernel.grow
     fast = places(1)
