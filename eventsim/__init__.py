@@ -5,7 +5,9 @@ The story, and where each part of it lives::
     scene      what exists: disks, walls, a domain            eventsim.scene
     formulas   the physics: when two disks meet, what then    eventsim.formulas
     engines    how time passes: from event to event           eventsim.engines
-    record     what happened: the event log and its replay    eventsim.record
+    record     what happened: the rows of a log, its files    eventsim.record
+    runner     what all runs share: loop, writer, checkpoint  eventsim.runner
+    replay     what follows from a log: states at any time    eventsim.replay
     measure    numbers from it, with error bars and theory    eventsim.measure
     simulation the way in for Python users                    eventsim.simulation
     sweep      many runs, one table                           eventsim.sweep
@@ -35,8 +37,8 @@ if TYPE_CHECKING:
     from eventsim.errors import LogError as LogError
     from eventsim.errors import SceneError as SceneError
     from eventsim.record.events import State as State
-    from eventsim.record.log import EventLog as EventLog
-    from eventsim.record.log import load_log as load_log
+    from eventsim.replay.log import EventLog as EventLog
+    from eventsim.replay.log import load_log as load_log
     from eventsim.scene import Arc as Arc
     from eventsim.scene import Box as Box
     from eventsim.scene import Channel as Channel
@@ -76,8 +78,8 @@ _HOMES = {
     "Run": "engines.base",
     "Stop": "engines.base",
     "State": "record.events",
-    "EventLog": "record.log",
-    "load_log": "record.log",
+    "EventLog": "replay.log",
+    "load_log": "replay.log",
     "ENGINES": "engines",
     "EventsimError": "errors",
     "SceneError": "errors",

@@ -11,13 +11,13 @@ import numpy as np
 
 from eventsim.engines import AUTO, ENGINES, Engine
 from eventsim.engines.base import Counters, OnEvent, Progress, Run, Snapshot, Stop
-from eventsim.engines.checkpoint import Checkpoint, interval, load_checkpoint, place_for
-from eventsim.engines.drive import Wishes, diagnosed, memory_log, provenance_of, state_of
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, State
-from eventsim.record.log import EventLog
 from eventsim.record.provenance import Ending
+from eventsim.replay.log import EventLog
+from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
+from eventsim.runner.drive import Wishes, diagnosed, memory_log, provenance_of, state_of
 from eventsim.scene import Scene
 from eventsim.scene.difference import difference
 from eventsim.scene.numbers import FASTEST, LONGEST, number, optional_number, optional_whole, point

@@ -60,7 +60,7 @@ def command(
         raise click.UsageError("--set and --seed shape a scene: name one")
     chosen = None if scene is None else chosen_scene(scene, settings, seed)
     try:
-        from eventsim.show.live.server import serve
+        from eventsim.live.server import serve
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] != "aiohttp":
             raise

@@ -32,7 +32,7 @@ def measured(
         from eventsim.measure.structure import structure_of
     if is_log(source):
         from eventsim.measure import measure
-        from eventsim.record.replay import Replay
+        from eventsim.replay.replay import Replay
 
         log = log_of(source, settings, seed, until, events, quiet)
         return measure(log, discard), structure_of(log.scene, Replay(log).final()) if structure else None

@@ -167,7 +167,7 @@ def command(
             run.scene, Stop(events=run.counters.events) if run.stopped == "events" else Stop(run.time)
         )
     if files.state is not None:
-        from eventsim.record.states import write_states
+        from eventsim.replay.states import write_states
 
         write_states(files.state, run.scene, [run.state])
     if as_json:

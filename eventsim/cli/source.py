@@ -14,7 +14,7 @@ from eventsim.cli.target import LOG_SUFFIXES
 from eventsim.errors import SceneError
 
 if TYPE_CHECKING:
-    from eventsim.record.log import EventLog
+    from eventsim.replay.log import EventLog
 
 GROWING = ".part"
 
@@ -59,7 +59,7 @@ def log_of(
     if is_log(source):
         if settings or seed is not None or until is not None or events is not None:
             raise click.UsageError(f"{source} is a log: --set, --seed, --until and --events are for scenes")
-        from eventsim.record.log import load_log
+        from eventsim.replay.log import load_log
 
         return load_log(source)
 

@@ -71,9 +71,9 @@ def command(
         raise click.UsageError("say at which times: either --at T [T ...] or --frames N")
 
     from eventsim.cli.words import as_json_text
-    from eventsim.record.log import load_log
-    from eventsim.record.replay import Replay
-    from eventsim.record.states import state_columns, write_csv, write_states
+    from eventsim.replay.log import load_log
+    from eventsim.replay.replay import Replay
+    from eventsim.replay.states import state_columns, write_csv, write_states
     from eventsim.scene.names import plural
 
     events = load_log(log)

@@ -8,9 +8,9 @@ from importlib import import_module
 from typing import Any
 
 from eventsim.engines.base import Run, Session, Stop
-from eventsim.engines.drive import Wishes, drive
-from eventsim.engines.interrupts import unmissed_interrupts
 from eventsim.errors import EventsimError
+from eventsim.runner.drive import Wishes, drive
+from eventsim.runner.interrupts import unmissed_interrupts
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
 

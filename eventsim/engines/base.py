@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 
 from eventsim.errors import LogError
 from eventsim.record.events import ROW, Floats, Rows, State
-from eventsim.record.log import EventLog, load_log
 from eventsim.record.times import clock_times
+from eventsim.replay.log import EventLog, load_log
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage
 
 if TYPE_CHECKING:
+    from eventsim.engines.stepped.trajectory import Trajectory
     from eventsim.measure import Measures
-    from eventsim.record.replay import Replay
-    from eventsim.record.trajectory import Trajectory
+    from eventsim.replay.replay import Replay
 
 Progress: TypeAlias = Callable[[float | None, int, float], None]
 """Called now and then with the fraction done (None: unknown), the events so far and the time on the scene's clock."""
@@ -231,7 +231,7 @@ class Run:
                     f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}"
                 )
             return self.trajectory.state_at(time, self.start_time)
-        from eventsim.record.replay import Replay  # only who looks back pays for it
+        from eventsim.replay.replay import Replay  # only who looks back pays for it
 
         log = self.log
         if log is None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
-from eventsim.record.flights import FlightTable
+from eventsim.replay.flights import FlightTable
 
 
 class MeanSquare(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 
 from eventsim.measure.theory import compressibility_factor, contact_value
 from eventsim.record.events import Floats
-from eventsim.record.flights import FlightTable
+from eventsim.replay.flights import FlightTable
 from eventsim.scene.scene import Scene
 
 MANY = 20

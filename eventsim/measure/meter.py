@@ -20,8 +20,8 @@ from eventsim.measure.results import Measures, Records, results_of
 from eventsim.measure.series import FIRST_BINS, Series
 from eventsim.measure.tally import ENERGY, VIRIAL, Tally
 from eventsim.record.events import Floats, Rows
-from eventsim.record.log import EventLog
 from eventsim.record.provenance import Kick
+from eventsim.replay.log import EventLog
 from eventsim.scene.pace import later, pace_of_scene, slowed_scene
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import stage_of

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.record.files.whole import whole_file
-from eventsim.record.log import EventLog
-from eventsim.record.replay import Replay
+from eventsim.replay.log import EventLog
+from eventsim.replay.replay import Replay
 from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4

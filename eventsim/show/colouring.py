@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
-from eventsim.record.log import EventLog
-from eventsim.record.replay import Replay
+from eventsim.replay.log import EventLog
+from eventsim.replay.replay import Replay
 from eventsim.scene import Disks
 from eventsim.show.frames import Frame
 from eventsim.show.palette import AMOUNTS, AMOUNTS_FROM, AMOUNTS_TO, KINDS

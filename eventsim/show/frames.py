@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, Kind, Rows, State
-from eventsim.record.log import EventLog
-from eventsim.record.replay import Replay
+from eventsim.replay.log import EventLog
+from eventsim.replay.replay import Replay
 from eventsim.scene.pace import pace_of_scene, slowed
 
 GLOW = 0.2

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from eventsim.record.events import Floats
-from eventsim.record.log import EventLog
+from eventsim.replay.log import EventLog
 from eventsim.scene import Scene
 from eventsim.scene.outlines import circle_through
 from eventsim.scene.walls import Arc, Circle, Segment, features

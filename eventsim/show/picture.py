@@ -16,7 +16,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
-from eventsim.record.replay import Replay
+from eventsim.replay.replay import Replay
 from eventsim.scene.names import plural
 from eventsim.scene.pace import in_words
 from eventsim.show import outlines

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.path import Path
 
 from eventsim.record.events import Floats, State
-from eventsim.record.flights import flights_between
-from eventsim.record.replay import Replay
+from eventsim.replay.flights import flights_between
+from eventsim.replay.replay import Replay
 from eventsim.show.frames import Frame
 from eventsim.show.images import wrapped_pieces
 from eventsim.show.outlines import period_of

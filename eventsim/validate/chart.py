@@ -11,9 +11,9 @@ import numpy as np
 
 from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Session, Stop
-from eventsim.engines.drive import Wishes
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
+from eventsim.runner.drive import Wishes
 from eventsim.scene import Scene
 from eventsim.scene.gallery import gallery
 from eventsim.scene.pace import typical_speed

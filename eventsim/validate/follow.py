@@ -9,9 +9,9 @@ from time import perf_counter, thread_time
 import numpy as np
 
 from eventsim.engines.base import Counters, Residuals, Session, Stop
-from eventsim.engines.drive import state_of
-from eventsim.engines.residuals import residuals_of
 from eventsim.record.events import Floats, Rows, blank_rows
+from eventsim.runner.drive import state_of
+from eventsim.runner.residuals import residuals_of
 from eventsim.scene.stage import Stage
 
 STINT = 20_000

@@ -17,8 +17,8 @@ from time import process_time
 
 import eventsim as es
 from eventsim.engines.base import Session, Stop
-from eventsim.engines.residuals import residuals_of
 from eventsim.formulas.clock import clock_time
+from eventsim.runner.residuals import residuals_of
 from eventsim.scene.stage import stage_of
 from tests.benchmarks.table import whole
 

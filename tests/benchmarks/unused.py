@@ -106,8 +106,8 @@ def serve(without: str, n: int, eta: float, contacts: int) -> None:
     if without in CUTS:
         CUTS[without]()
     from eventsim.engines.base import Stop
-    from eventsim.engines.drive import Wishes, drive
     from eventsim.engines.fast import FastSession
+    from eventsim.runner.drive import Wishes, drive
     from eventsim.scene.stage import stage_of
     from tests.benchmarks.rates import lattice_gas
 

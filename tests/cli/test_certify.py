@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from eventsim.record.log import load_log
+from eventsim.replay.log import load_log
 
 
 def scene_of(tmp_path, **changes):

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.show.live.running import live_server
+from tests.live.running import live_server
 
 
 def test_a_port_that_is_taken_is_a_sentence(eventsim):
@@ -22,7 +22,7 @@ def test_a_port_that_is_taken_is_a_sentence(eventsim):
 
 def test_without_aiohttp_it_says_what_to_install(eventsim, monkeypatch):
     monkeypatch.setitem(sys.modules, "aiohttp", None)
-    for name in [name for name in sys.modules if name.startswith("eventsim.show.live")]:
+    for name in [name for name in sys.modules if name.startswith("eventsim.live")]:
         monkeypatch.delitem(sys.modules, name)
     found = eventsim("live", "--no-browser")
     assert found.exit_code == 2

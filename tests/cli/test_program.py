@@ -9,7 +9,8 @@ import pytest
 
 from eventsim.cli import program
 from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES
-from eventsim.record import files, states
+from eventsim.record import files
+from eventsim.replay import states
 
 
 def test_alone_it_prints_three_commands_to_begin_with(eventsim):

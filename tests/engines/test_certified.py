@@ -12,9 +12,9 @@ import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.certified import CertifiedSession
 from eventsim.engines.certified.proof import prove
-from eventsim.engines.drive import Wishes, drive
 from eventsim.errors import EventsimError
 from eventsim.record.compare import agreement, deviations
+from eventsim.runner.drive import Wishes, drive
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
 from tests.engines.proofs import certified

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import eventsim as es
 from eventsim.engines.auto import has_compiler
 from eventsim.record.events import Kind
-from eventsim.record.replay import Replay
+from eventsim.replay.replay import Replay
 from eventsim.scene.stage import stage_of
 from tests.engines.falling import ENGINES, dropped
 

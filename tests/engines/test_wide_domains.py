@@ -10,10 +10,10 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.record import expand
 from eventsim.record.digest import digest_of
-from eventsim.record.expand import expand_rows
-from eventsim.record.replay import Replay
+from eventsim.replay import expand
+from eventsim.replay.expand import expand_rows
+from eventsim.replay.replay import Replay
 from eventsim.scene.stage import WIDE, stage_of
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of, session_of
 

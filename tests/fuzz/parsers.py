@@ -44,11 +44,11 @@ def main() -> None:
     import atheris
 
     with atheris.instrument_imports(include=["eventsim"], exclude=["eventsim.engines.fast"]):
-        import eventsim.engines.checkpoint
         import eventsim.record.files.csv
         import eventsim.record.files.jsonl
         import eventsim.record.files.npz
         import eventsim.record.files.parquet
+        import eventsim.runner.checkpoint
         import eventsim.scene.tables
         import eventsim.simulation  # noqa: F401
     corpus = asked.corpus or Path(tempfile.mkdtemp(prefix=f"fuzz-{asked.target}-"))
@@ -102,8 +102,8 @@ def _scene(data: bytes, path: Path) -> None:
 
 def setting(data: bytes, place: Path) -> None:
     """What is typed behind --set and --every."""
-    from eventsim.engines.checkpoint import interval
     from eventsim.errors import EventsimError
+    from eventsim.runner.checkpoint import interval
     from eventsim.scene.files import apply_overrides
 
     text = data.decode("utf-8", "replace")
@@ -114,7 +114,7 @@ def setting(data: bytes, place: Path) -> None:
 
 def _log(suffix: str) -> Callable[[bytes, Path], None]:
     def read(data: bytes, place: Path) -> None:
-        from eventsim.record.log import load_log
+        from eventsim.replay.log import load_log
 
         path = place / f"log{suffix}"
         path.write_bytes(data)
@@ -133,7 +133,7 @@ def _rows(suffix: str) -> Callable[[bytes, Path], None]:
         from eventsim.record.files import _text_form
         from eventsim.record.files.table import checked_log
         from eventsim.record.files.text import _parse_block
-        from eventsim.record.log import load_log
+        from eventsim.replay.log import load_log
 
         if not known:
             _good_log(place, f"good{suffix}", compact=True)
@@ -150,7 +150,7 @@ def _rows(suffix: str) -> Callable[[bytes, Path], None]:
 
 def checkpoint(data: bytes, place: Path) -> None:
     """A checkpoint, which is not run."""
-    from eventsim.engines.checkpoint import load_checkpoint
+    from eventsim.runner.checkpoint import load_checkpoint
 
     path = place / "run.checkpoint"
     path.write_bytes(data)

@@ -58,8 +58,8 @@ def test_a_run_measured_without_a_log_is_the_log_measured(gas_log):
 
 def test_free_paths_and_speeds_are_those_of_the_flights(gas_log):
     measures = measure(gas_log, discard=0.0)
-    from eventsim.record.flights import flight_table
-    from eventsim.record.replay import Replay
+    from eventsim.replay.flights import flight_table
+    from eventsim.replay.replay import Replay
 
     table = flight_table(Replay(gas_log))
     speed = float(np.average(np.hypot(*table.velocity.T), weights=table.duration))
@@ -70,8 +70,8 @@ def test_free_paths_and_speeds_are_those_of_the_flights(gas_log):
 
 def test_displacements_are_those_of_the_flights(gas_log):
     from eventsim.measure.displacement import displacements
-    from eventsim.record.flights import flight_table
-    from eventsim.record.replay import Replay
+    from eventsim.replay.flights import flight_table
+    from eventsim.replay.replay import Replay
 
     correlations = measure(gas_log, discard=0.0).correlations
     table = flight_table(Replay(gas_log))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from eventsim.record import Ending, EventLog, Kind, Provenance
+from eventsim.record import Ending, Kind, Provenance
 from eventsim.record.events import Rows, blank_rows
+from eventsim.replay.log import EventLog
 from eventsim.scene import Box, Disks, Scene
 
 FLOATS = ("time", "xa", "ya", "vxa", "vya", "impulse")

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from eventsim.errors import LogError, LogWarning
-from eventsim.record import load_log
 from eventsim.record.files import SUFFIXES, open_sink
+from eventsim.replay.log import load_log
 from eventsim.scene.gallery import gallery
 from eventsim.simulation import simulate
 from tests.record.logs import provenance, random_log

@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 
 from eventsim.errors import LogError
-from eventsim.record import Ending, load_log
+from eventsim.record import Ending
 from eventsim.record.files import SUFFIXES, Mark, continued_sink, open_sink, rows_so_far
 from eventsim.record.files.journal import ROOM
+from eventsim.replay.log import load_log
 from tests.record.logs import provenance, random_log, random_rows, scene
 
 TEXT = (".csv", ".jsonl")

@@ -12,8 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import eventsim as es
-from eventsim.engines.checkpoint import interval, load_checkpoint
 from eventsim.record.files import SUFFIXES
+from eventsim.runner.checkpoint import interval, load_checkpoint
 from eventsim.scene.files import apply_overrides, load_scene, scene_from_dict
 
 SCENE = {

@@ -9,7 +9,7 @@ from PIL import Image, ImageSequence
 
 import eventsim as es
 from eventsim.errors import EventsimError
-from eventsim.record.replay import Replay
+from eventsim.replay.replay import Replay
 from eventsim.show.animate import Film, animate
 from eventsim.show.colouring import Colouring
 from eventsim.show.frames import frames_at

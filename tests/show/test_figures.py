@@ -12,8 +12,8 @@ import eventsim as es
 from eventsim.errors import EventsimError
 from eventsim.measure.displacement import displacements
 from eventsim.measure.free_paths import free_paths, mean_free_path, path_density
-from eventsim.record.flights import flight_table
-from eventsim.record.replay import Replay
+from eventsim.replay.flights import flight_table
+from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
 from eventsim.show.figures import TITLES, equation_of_state, msd, trajectories
 from eventsim.show.figures.residuals import gaps_at_contact

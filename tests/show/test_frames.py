@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eventsim.errors import EventsimError
-from eventsim.record.replay import Replay
+from eventsim.replay.replay import Replay
 from eventsim.show.frames import energy_of, frame_timing, frames_at, moments
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.record.replay import Replay
+from eventsim.replay.replay import Replay
 from eventsim.scene.files import scene_from_dict
 from eventsim.show.player.page import notebook_frame, page
 from tests.show.browser import browser

@@ -10,10 +10,10 @@ import numpy as np
 from eventsim.engines.base import Progress, Run, Stop
 from eventsim.engines.certified.rounded import Rounded, rounded
 from eventsim.engines.certified.session import FIRST_BITS, MOST_BITS, Attempt, CertifiedSession
-from eventsim.engines.drive import Wishes, drive
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import two_sum
+from eventsim.runner.drive import Wishes, drive
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
 

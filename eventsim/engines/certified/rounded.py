@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventsim.engines.base import Stop
-from eventsim.engines.drive import diagnosed
 from eventsim.engines.reference import ReferenceSession
 from eventsim.record.compare import VELOCITIES, agreement, deviations
 from eventsim.record.events import Floats, Rows
+from eventsim.runner.drive import diagnosed
 from eventsim.scene.stage import Stage
 
 AHEAD = 4

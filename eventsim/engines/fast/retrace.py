@@ -1,7 +1,7 @@
 """The kernels driven by the rows of a log instead of a calendar: so a compact log becomes a full one.
 
 Each contact is checked to be due at its time and resolved again; nothing is predicted, which makes it faster than the run.
-Contacts of equal time, and velocities that were set, are left to `eventsim.record.compact`.
+Contacts of equal time, and velocities that were set, are left to `eventsim.replay.compact`.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ from eventsim.engines.fast.shapes import WIDTH
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
-from eventsim.record.disk_flight import DiskFlight
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.record.times import two_sum
+from eventsim.replay.disk_flight import DiskFlight
 from eventsim.scene.stage import Stage
 
 PAIR_ROW, WALL_ROW = int(Kind.PAIR), int(Kind.WALL)
@@ -114,7 +114,7 @@ class Retracer:
             low_places=self.state.low_of_places.reshape(-1) if self.state.low_places else None,
             features=self._features,
             levels=None,
-            supports=None,  # scenes in which disks come to rest are left to `eventsim.record.compact`
+            supports=None,  # scenes in which disks come to rest are left to `eventsim.replay.compact`
             rows=self._rows,
         )
         crowd = Crowd(self.state.n)
@@ -198,7 +198,7 @@ def _fly(m, rules, i, limit, inclusive):
 
 @inline
 def _next_wrap(m, rules, i):
-    """(time, code) of the next wrap; of equal ones the one that `eventsim.record.disk_flight` takes."""
+    """(time, code) of the next wrap; of equal ones the one that `eventsim.replay.disk_flight` takes."""
     f = i * REALS
     t = real(m.disks, f + T)
     gx, gy = pulls(m, rules, i)

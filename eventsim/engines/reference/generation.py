@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from eventsim.engines.exact_times import Flight, Moments, exact_place
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER, Acceleration
 from eventsim.formulas.roots import order_of
-from eventsim.record.moments import Flight, Moments, exact_place
 from eventsim.scene.stage import Stage
 
 

@@ -20,8 +20,8 @@ from eventsim.record.files.looks import demand_looks
 from eventsim.record.files.sink import PART, FileSink, Mark, demand_same, part_of
 from eventsim.record.files.table import checked_log
 from eventsim.record.files.text import TextForm, open_text, read_text
-from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance
+from eventsim.replay.log import EventLog
 
 SUFFIXES = (".csv", ".jsonl", ".npz", ".parquet")
 TEXT_SUFFIXES = (".csv", ".jsonl")

@@ -25,8 +25,8 @@ from eventsim.record.files.counting import Counting
 from eventsim.record.files.journal import METADATA, NUMBER, ROOM, WHOLE, Columns, JournalSink
 from eventsim.record.files.runs import STEADY
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
-from eventsim.record.log import EventLog
 from eventsim.record.provenance import provenance_from_text
+from eventsim.replay.log import EventLog
 
 DEFLATED_FILE = ".deflated"
 

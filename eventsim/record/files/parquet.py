@@ -11,8 +11,8 @@ from eventsim.errors import LogError
 from eventsim.record.events import COLUMNS, ROW, Column, blank_rows
 from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink
 from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
-from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text
+from eventsim.replay.log import EventLog
 
 try:
     import pyarrow as pa

@@ -10,8 +10,8 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, LABELS, ROW, Column, Kind, Rows, blank_rows
-from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance
+from eventsim.replay.log import EventLog
 
 DAMAGE = (
     ArithmeticError,

@@ -17,8 +17,8 @@ from eventsim.errors import LogError
 from eventsim.record.events import Column, Rows, blank_rows
 from eventsim.record.files.sink import PART, FileSink, demand_same
 from eventsim.record.files.table import checked_log
-from eventsim.record.log import EventLog
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
+from eventsim.replay.log import EventLog
 
 RESERVE = 512
 """Blanks after the first metadata line, so that the ending can be entered without moving the rows."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from eventsim.errors import LogError
 from eventsim.record.events import Kind
-from eventsim.record.log import EventLog
-from eventsim.record.replay import Replay
+from eventsim.replay.log import EventLog
+from eventsim.replay.replay import Replay
 
 
 def replay_with_time(log: EventLog) -> Replay:

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.measure.free_paths import free_paths, mean_free_path, path_density
 from eventsim.record.events import Kind
-from eventsim.record.flights import flight_table
-from eventsim.record.log import EventLog
+from eventsim.replay.flights import flight_table
+from eventsim.replay.log import EventLog
 from eventsim.scene import Periodic
 from eventsim.show.figures.demands import replay_with_time, with_events
 from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of

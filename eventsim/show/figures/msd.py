@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.measure.displacement import mean_square
 from eventsim.measure.theory import enskog_diffusion
-from eventsim.record.flights import flight_table
-from eventsim.record.log import EventLog
+from eventsim.replay.flights import flight_table
+from eventsim.replay.log import EventLog
 from eventsim.scene.pace import in_words, slowed
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of

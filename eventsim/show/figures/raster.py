@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from eventsim.record.events import Kind
-from eventsim.record.log import EventLog
+from eventsim.replay.log import EventLog
 from eventsim.show.figures.demands import replay_with_time, with_events
 from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, name_of
 

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Floats, Kind
-from eventsim.record.log import EventLog
-from eventsim.record.replay import Replay
+from eventsim.replay.log import EventLog
+from eventsim.replay.replay import Replay
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import BLUE, ORANGE, TIME, label, name_of
 from eventsim.show.frames import energy_of

@@ -7,8 +7,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Kind
-from eventsim.record.flights import flight_table
-from eventsim.record.log import EventLog
+from eventsim.replay.flights import flight_table
+from eventsim.replay.log import EventLog
 from eventsim.show import outlines
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label, name_of, shades_of

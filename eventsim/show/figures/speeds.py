@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.measure.speeds import maxwell_density, maxwell_survival
 from eventsim.record.events import Floats
-from eventsim.record.log import EventLog
+from eventsim.replay.log import EventLog
 from eventsim.scene.pace import in_words, slowed
 from eventsim.show.figures.demands import replay_with_time
 from eventsim.show.figures.style import SPEED, label, name_of

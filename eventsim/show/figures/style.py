@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Floats
-from eventsim.record.log import EventLog
+from eventsim.replay.log import EventLog
 from eventsim.show.colouring import amounts
 from eventsim.show.palette import KINDS, LIGHT
 

@@ -10,8 +10,8 @@ from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
 from matplotlib.ticker import MaxNLocator
 
-from eventsim.record.flights import flight_table
-from eventsim.record.log import EventLog
+from eventsim.replay.flights import flight_table
+from eventsim.replay.log import EventLog
 from eventsim.scene.names import plural
 from eventsim.show import outlines
 from eventsim.show.figures.demands import replay_with_time

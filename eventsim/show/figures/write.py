@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import EventsimError
 from eventsim.record.files.whole import whole_file
-from eventsim.record.log import EventLog
+from eventsim.replay.log import EventLog
 from eventsim.show.figures import TITLES
 from eventsim.show.figures.style import new_figure
 from eventsim.show.output import suffix_of

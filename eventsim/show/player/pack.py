@@ -15,8 +15,8 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from eventsim.record.events import Column, Rows
-from eventsim.record.log import EventLog
-from eventsim.record.replay import Replay
+from eventsim.replay.log import EventLog
+from eventsim.replay.replay import Replay
 from eventsim.scene.stage import Stage
 from eventsim.show import outlines
 from eventsim.show.colouring import (

@@ -8,8 +8,8 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from eventsim.record.log import EventLog
-from eventsim.record.replay import Replay
+from eventsim.replay.log import EventLog
+from eventsim.replay.replay import Replay
 from eventsim.show.player.pack import packed
 
 SCRIPTS = ("world.js", "drawing.js", "player.js", "load.js")

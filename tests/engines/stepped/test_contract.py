@@ -9,8 +9,8 @@ import pytest
 import eventsim as es
 from eventsim.engines import STEPPED
 from eventsim.engines.base import Stop
-from eventsim.record.replay import Replay
-from eventsim.record.trajectory import MOST_SAMPLES
+from eventsim.engines.stepped.trajectory import MOST_SAMPLES
+from eventsim.replay.replay import Replay
 from eventsim.scene.stage import stage_of
 
 TWO = es.gallery("two-disks")

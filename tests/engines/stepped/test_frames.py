@@ -6,7 +6,7 @@ import pytest
 import eventsim as es
 from eventsim.engines import STEPPED
 from eventsim.engines.base import Stop
-from eventsim.engines.drive import Wishes
+from eventsim.runner.drive import Wishes
 from eventsim.scene.stage import stage_of
 from eventsim.validate.contacts import longest_stuck
 

@@ -1,0 +1,190 @@
+"""The server: the page, its socket and its downloads, for this machine alone."""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+from collections.abc import Awaitable, Callable
+from importlib.resources import files
+from pathlib import Path
+
+from aiohttp import web
+
+from eventsim import __version__
+from eventsim.errors import EventsimError
+from eventsim.live.packets import packet
+from eventsim.live.viewer import Viewer
+from eventsim.live.world import World
+from eventsim.scene import Scene
+from eventsim.scene.files import scene_to_toml
+from eventsim.scene.gallery import describe, names
+
+HOST = "127.0.0.1"
+
+MOST_VIEWERS = 64
+MOST_BYTES = 1 << 20
+"""Of a message: a scene file of some thousand disks. A longer one ends the connection, with a reason."""
+
+ALL_EVENTS = 10_000_000
+"""Events that all worlds together keep (1.3 GB)."""
+
+HEARTBEAT = 20.0
+"""Seconds between two questions whether a page is still there."""
+
+PAGE = {"/": ("live/page", "live.html", "text/html")} | {
+    f"/{name}": (folder, name, kind)
+    for folder, name, kind in (
+        ("live/page", "live.css", "text/css"),
+        ("show/player", "player.css", "text/css"),
+        ("show/player", "world.js", "text/javascript"),
+        ("show/player", "drawing.js", "text/javascript"),
+        ("show/player", "player.js", "text/javascript"),
+        ("show/player", "load.js", "text/javascript"),
+        ("live/page", "link.js", "text/javascript"),
+        ("live/page", "menu.js", "text/javascript"),
+        ("live/page", "readouts.js", "text/javascript"),
+        ("live/page", "comparison.js", "text/javascript"),
+        ("live/page", "hand.js", "text/javascript"),
+        ("live/page", "live.js", "text/javascript"),
+        ("live/page", "start.js", "text/javascript"),
+    )
+}
+"""What is served under which name: folder, file and type."""
+
+POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src 'self'"
+"""The page talks to this server and to nobody else. Source: W3C, Content Security Policy Level 3."""
+
+LOGS = (".csv", ".jsonl", ".npz", ".parquet")
+
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class House:
+    """All worlds that are open, and the scene that the server was started with."""
+
+    def __init__(self, given: Scene | None) -> None:
+        self.given = given
+        self.worlds: dict[str, World] = {}
+        self.viewers: set[Viewer] = set()
+
+    def room(self) -> int:
+        """Return for how many more events there is memory."""
+        return ALL_EVENTS - sum(world.count for world in self.worlds.values())
+
+    async def page(self, request: web.Request) -> web.StreamResponse:
+        """Serve a part of the page."""
+        folder, name, kind = PAGE[request.path]
+        text = files("eventsim").joinpath(folder, name).read_text(encoding="utf-8")
+        headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-store"}
+        return web.Response(text=text, content_type=kind, headers=headers)
+
+    async def socket(self, request: web.Request) -> web.StreamResponse:
+        """Serve a page that looks at a world: its own, until it joins another."""
+        if len(self.viewers) >= MOST_VIEWERS:
+            raise web.HTTPServiceUnavailable(text=f"{MOST_VIEWERS} pages are connected, as many as there may be")
+        socket = web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=HEARTBEAT, compress=False)
+        await socket.prepare(request)
+        world = World(self.given, self.room, self._forget)
+        self.worlds[world.id] = world
+        viewer = Viewer(socket, world, self.worlds)
+        self.viewers.add(viewer)
+        try:
+            await socket.send_bytes(self._hello())
+            await viewer.serve()
+        finally:
+            self.viewers.discard(viewer)
+        return socket
+
+    async def scene_file(self, request: web.Request) -> web.StreamResponse:
+        """Serve the start of a world as a scene file."""
+        scene = self._world(request).scene
+        if scene is None:
+            raise web.HTTPNotFound(text="this world has no scene yet")
+        text = await asyncio.to_thread(scene_to_toml, scene)
+        return web.Response(text=text, content_type="application/toml", headers=_attachment("scene.toml"))
+
+    async def log_file(self, request: web.Request) -> web.StreamResponse:
+        """Serve the log of a world, as far as it is simulated."""
+        suffix = "." + request.match_info["suffix"]
+        if suffix not in LOGS:
+            raise web.HTTPNotFound(text=f"there is no log in the format {suffix}; there are {', '.join(LOGS)}")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, f"log{suffix}")
+            try:
+                await self._world(request).log_to(str(path))
+            except EventsimError as error:
+                raise web.HTTPNotFound(text=str(error)) from None
+            response = web.StreamResponse(headers=_attachment(path.name))
+            response.content_length = path.stat().st_size
+            response.content_type = "application/octet-stream"
+            await response.prepare(request)
+            with path.open("rb") as file:
+                while block := file.read(MOST_BYTES):
+                    await response.write(block)
+            await response.write_eof()
+            return response
+
+    def _world(self, request: web.Request) -> World:
+        world = self.worlds.get(request.match_info["world"])
+        if world is None:
+            raise web.HTTPNotFound(text="that world is gone: it lives as long as somebody looks at it")
+        return world
+
+    def _forget(self, world: World) -> None:
+        del self.worlds[world.id]
+
+    def _hello(self) -> bytes:
+        """Return the first packet: what a page can choose from."""
+        entries = [describe(name) for name in names()]
+        gallery = [{"name": e.name, "title": e.title, "about": e.about, "parameters": e.parameters} for e in entries]
+        given = None if self.given is None else self.given.name or "your scene"
+        return packet("hello", version=__version__, gallery=gallery, given=given)
+
+
+def application(given: Scene | None = None) -> web.Application:
+    """Return the server's application; given: the scene that a page begins with, None: what the menu says."""
+    house = House(given)
+    app = web.Application(middlewares=[refuse_foreigners])
+    app.add_routes([web.get(path, house.page) for path in PAGE])
+    app.router.add_get("/socket", house.socket)
+    app.router.add_get("/worlds/{world}/scene.toml", house.scene_file)
+    app.router.add_get("/worlds/{world}/log.{suffix}", house.log_file)
+    return app
+
+
+@web.middleware
+async def refuse_foreigners(request: web.Request, handler: Handler) -> web.StreamResponse:
+    """Refuse requests that pages of other origins make, and names of this machine that others may have given it."""
+    port = request.url.port
+    here = {f"{name}:{port}" for name in (HOST, "localhost")}
+    if port == 80:
+        here |= {HOST, "localhost"}
+    origin = request.headers.get("Origin")
+    if request.host not in here or (origin is not None and origin.removeprefix("http://") not in here):
+        raise web.HTTPForbidden(
+            text="this server is for its own page on this machine; a page from elsewhere is refused"
+        )
+    return await handler(request)
+
+
+async def serve(given: Scene | None, port: int, ready: Callable[[str], None]) -> None:
+    """Serve until cancelled; ready(address) is called once the page can be opened. port 0: any that is free.
+
+    Raises EventsimError where the port is taken.
+    """
+    runner = web.AppRunner(application(given), access_log=None, shutdown_timeout=1.0)
+    await runner.setup()
+    try:
+        try:
+            site = web.TCPSite(runner, HOST, port)
+            await site.start()
+        except OSError as error:
+            raise EventsimError(f"port {port} cannot be used ({error.strerror}): choose another with --port") from None
+        ready(f"http://{HOST}:{runner.addresses[0][1]}/")
+        await asyncio.Event().wait()
+    finally:
+        await runner.cleanup()
+
+
+def _attachment(name: str) -> dict[str, str]:
+    return {"Content-Disposition": f'attachment; filename="{name}"'}

@@ -1,0 +1,198 @@
+"""Which contact a row of a log stands for: the image of a pair, the shape and side of a wall.
+
+A row does not say. But a contact time is a pure function of the flights, so the contact is the one whose
+time has the bits of the row; of several, and of those of a cluster, whose float times may differ in the last bits, the exact
+times decide.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cmp_to_key
+from itertools import product
+from typing import NamedTuple
+
+from eventsim.engines.exact_times import Flight, Moments, exact_place
+from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
+from eventsim.formulas.digits import careful_pair_delay
+from eventsim.formulas.low_place import Low, apart, wide_border_delay, wide_pair_delay
+from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.real import NEVER
+from eventsim.formulas.rest import STRUCK, border_contact, shape_contact
+from eventsim.formulas.roots import Moment, order_of
+from eventsim.formulas.walls.delays import DELAYS, at_origin
+from eventsim.replay.disk_flight import DiskFlight
+from eventsim.scene.stage import Stage
+from eventsim.scene.surfaces import Surfaces
+
+
+class Contact(NamedTuple):
+    """A contact of disk a, in the order in which the engine resolves those of one time.
+
+    b: the other disk, or -1 - place of the wall shape. image: of b as seen from a, (kx, ky); of a wall the side, and
+    STRUCK, SUPPORTED or LEFT. time: the float time.
+    """
+
+    a: int
+    b: int
+    image: tuple[int, int]
+    time: float
+
+
+class Contacts:
+    """The contacts that disks in flight have at one time."""
+
+    def __init__(self, stage: Stage, disks: Mapping[int, DiskFlight]) -> None:
+        self._stage = stage
+        self._disks = disks
+        self._moments = Moments(stage, self._flight)
+        self._boundaries = len(stage.boundaries)
+        self._surfaces = Surfaces(stage, stage.radius.tolist())
+        along_x, along_y = ((0,) if length is None else (-1, 0, 1) for length in stage.period)
+        self._images = list(product(along_x, along_y))
+        self._places: dict[int, list[int]] = {}
+        for place in range(len(stage.boundaries) + len(stage.features)):
+            self._places.setdefault(self._surfaces.number(place), []).append(place)
+
+    def of_pair(self, a: int, b: int, first: float, latest: float) -> list[Contact]:
+        """Return the contacts of two disks in a span of remainders; several where a disk is as wide as the domain."""
+        found = [Contact(a, b, image, self._pair_time(a, b, image)) for image in self._images]
+        return [contact for contact in found if first <= contact.time <= latest]
+
+    def of_wall(self, a: int, wall: int, first: float, latest: float) -> list[Contact]:
+        """Return the contacts of a disk with the shapes of a wall in a span of remainders."""
+        found = [self._of_shape(a, place) for place in self._places.get(wall, ())]
+        return [contact for contact in found if first <= contact.time <= latest]
+
+    def by_exact_time(self, contacts: list[Contact]) -> list[list[Contact]]:
+        """Return contacts in groups that have exactly one time, the earliest first."""
+        timed = [(self._moments.of(*contact), contact) for contact in contacts]
+        timed.sort(key=cmp_to_key(_order))
+        groups: list[list[Contact]] = []
+        for k, (moment, contact) in enumerate(timed):
+            if k and order_of(timed[k - 1][0], moment) == 0:
+                groups[-1].append(contact)
+            else:
+                groups.append([contact])
+        return groups
+
+    def apart(
+        self,
+        image: tuple[int, int],
+        place_a: tuple[float, float],
+        place_b: tuple[float, float],
+        low_a: Low = None,
+        low_b: Low = None,
+    ) -> tuple[float, float]:
+        """Return the vector from b (its image) to a; low_a, low_b: the low parts of their places."""
+        return apart(place_a, place_b, self._stage.shifts(image), low_a, low_b)
+
+    def normal(self, contact: Contact, place: tuple[float, float], low: Low = None) -> tuple[float, float]:
+        """Return the normal, of any length, of a wall towards a disk at `place`; low: the low parts of that."""
+        return self._surfaces.normal(-1 - contact.b, contact.image[0], *place, low)
+
+    def on_boundary(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
+        """Return the place of a disk, set exactly onto the boundary of the domain if that is what it meets."""
+        number, disk = -1 - contact.b, self._disks[contact.a]
+        if disk.low_place is not None and (left := self._surfaces.left_on(number, contact.a)) is not None:
+            axis, rest = left
+            disk.low_place = (rest, disk.low_place[1]) if axis == 0 else (disk.low_place[0], rest)
+        return self._surfaces.exactly_on(number, contact.a, *place)
+
+    def boundary_axis(self, contact: Contact) -> int | None:
+        """Return the axis across which a boundary of the domain is met; None for other walls."""
+        number = -1 - contact.b
+        return self._stage.boundaries[number].axis if number < self._boundaries else None
+
+    def wall_of(self, contact: Contact) -> int:
+        """Return the number of the wall that is met."""
+        return self._surfaces.number(-1 - contact.b)
+
+    def met(self, contact: Contact, i: int) -> tuple[int, int, int]:
+        """Return what disk i of a contact remembers of it."""
+        if contact.b < 0:
+            return contact.b, *contact.image
+        kx, ky = self._unwrapped(contact.a, contact.b, contact.image)
+        return (contact.b, kx, ky) if i == contact.a else (contact.a, -kx, -ky)
+
+    def _unwrapped(self, a: int, b: int, image: tuple[int, int]) -> tuple[int, int]:
+        one, other = self._disks[a].wraps, self._disks[b].wraps
+        return image[0] + one[0] - other[0], image[1] + one[1] - other[1]
+
+    def _pair_time(self, a: int, b: int, image: tuple[int, int]) -> float:
+        """Return the remainder at which two disks meet in an image; NEVER where they just met."""
+        one, other = self._disks[a], self._disks[b]
+        t = max(one.t, other.t)
+        if one.low_place is not None:
+            kx, ky = self._unwrapped(a, b, image)
+            if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
+                return NEVER
+            return float(t + wide_pair_delay(*one.fine(), *other.fine(), *self._stage.shifts(image)))
+        (ua, wa), (ub, wb) = one.speed(t), other.speed(t)
+        dx, dy = self.apart(image, one.place(t), other.place(t))
+        du, dw, reach = ua - ub, wa - wb, one.radius + other.radius
+        if one.gx != other.gx or one.gy != other.gy:
+            first, _ = circle_delays(dx, dy, du, dw, one.gx - other.gx, one.gy - other.gy, reach, 1.0)
+            return float(t + first)
+        kx, ky = self._unwrapped(a, b, image)
+        if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
+            return NEVER
+        delay = screened_pair_delay(dx, dy, du, dw, reach)
+        if math.isnan(delay) and one.gx is None:
+            delay = rescaled_pair_delay(dx, dy, du, dw, reach)
+        if math.isnan(delay):
+            if one.gx is None:
+                delay = careful_pair_delay(*one.anchored(), *other.anchored(), *self._stage.shifts(image))
+            else:
+                delay = careful_pair_delay(
+                    *(dx, dy, du, dw, 0.0, one.radius), *(0.0, 0.0, 0.0, 0.0, 0.0, other.radius), 0.0, 0.0
+                )
+        return float(t + delay)
+
+    def _of_shape(self, a: int, place: int) -> Contact:
+        """Return the next contact of a disk with a shape."""
+        time, side, how = self._wall_time(a, place)
+        return Contact(a, -1 - place, (side, how), time)
+
+    def _flight(self, i: int) -> Flight:
+        disk = self._disks[i]
+        if disk.low_place is not None:
+            x, y = exact_place(disk.x, disk.y, disk.low_place)
+            return disk.t, x, y, disk.vx, disk.vy, None, None
+        return disk.t, disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy
+
+    def _wall_time(self, a: int, place: int) -> tuple[float, int, int]:
+        """Return (remainder, side, how) of the next contact of a disk with a shape."""
+        disk, stage = self._disks[a], self._stage
+        if place < self._boundaries:
+            axis, where, side, _ = stage.boundaries[place]
+            x, v, g = (disk.x, disk.vx, disk.gx) if axis == 0 else (disk.y, disk.vy, disk.gy)
+            if disk.low_place is not None:
+                delay = wide_border_delay(x, disk.low_place[axis], v, where, disk.radius, side)
+                return disk.t + delay, int(side), STRUCK
+            target = where + side * disk.radius
+            size = abs(disk.x) + abs(disk.y) + abs(target)
+            delay, how = border_contact(
+                stage.supports, disk.held, place, side, target, x, v, g, size, stage.series_restitution, disk.t
+            )
+            return disk.t + delay, int(side), how
+        shape = stage.features[place - self._boundaries].shape
+        met = next((last[1] for last in disk.met if last[0] == -1 - place), 0)
+        flight = (disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy)
+        delay_to = DELAYS[type(shape)]
+        if disk.low_place is not None:
+            low_x, low_y = disk.low_place
+            flight = ((disk.x - shape.x) + low_x, (disk.y - shape.y) + low_y, *flight[2:])
+            shape = at_origin(shape)
+        if stage.supports is None:
+            return disk.t + (found := delay_to(shape, *flight, disk.radius, met))[0], found[1], STRUCK
+        e = stage.series_restitution
+        delay, side, how = shape_contact(
+            stage.supports, disk.held, place, shape, delay_to, flight, disk.radius, met, e, disk.t
+        )
+        return disk.t + delay, side, how
+
+
+def _order(one: tuple[Moment, Contact], other: tuple[Moment, Contact]) -> int:
+    return order_of(one[0], other[0])

@@ -1,0 +1,79 @@
+"""From a compact log to the full one, row by row or, where there are many, with compiled kernels."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from itertools import islice
+
+import numpy as np
+
+from eventsim.record.events import ROW, Column, Rows
+from eventsim.record.times import clock_times
+from eventsim.replay.compact import BLOCK, Expansion, Numbers
+from eventsim.replay.log import EventLog
+from eventsim.scene.stage import Stage
+
+COMPUTED = ("xa", "ya", "vxa", "vya", "xb", "yb", "vxb", "vyb", "impulse")
+MANY_ROWS = 50_000
+"""From so many on, loading compiled kernels takes less time than they save."""
+
+
+def expand_rows(log: EventLog) -> Rows:
+    """Return the full rows of a compact log, in O(rows) time.
+
+    Raises LogError where the rows do not follow from the scene.
+    """
+    expansion = Expansion(log)
+    if len(log) >= MANY_ROWS and expansion.stage.supports is None and find_spec("numba") is not None:
+        return _expanded_by_kernels(expansion, log)
+    rows = log.rows.copy()
+    numbers = expansion.numbers()
+    for first in range(0, len(rows), BLOCK):
+        block = rows[first : first + BLOCK]
+        _fill(block, list(islice(numbers, len(block))), expansion.stage)
+    return rows
+
+
+def _fill(rows: Rows, numbers: list[Numbers], stage: Stage) -> None:
+    """Enter into compact rows what they left out."""
+    for name, values in zip(COMPUTED, zip(*numbers, strict=True), strict=True):
+        rows[name] = values
+    rows["time"] = clock_times(rows["epoch"], rows["remainder"], stage.epoch_length, stage.start_time)
+
+
+def _expanded_by_kernels(expansion: Expansion, log: EventLog) -> Rows:
+    """The same with the kernels of the fast engine; what they leave out is done here, row by row."""
+    from eventsim.engines.fast.retrace import Entries, Retracer  # who has many rows pays for the compiler
+
+    rows = np.empty(len(log), ROW)
+    windows = expansion.windows
+    kind, a, b, wall, joint, remainder = (
+        np.ascontiguousarray(log.rows[name]) for name in ("kind", "a", "b", "wall", "joint", "remainder")
+    )
+    entries = Entries(kind, a, b, wall, joint, windows.index_of(log.epoch), remainder)
+    lengths, epochs = np.array(windows.length), np.array(windows.start, dtype=np.int64)
+    retracer = Retracer(expansion.stage, entries, lengths, epochs, rows)
+    row = window = 0
+    while True:
+        row, window = retracer.follow(row, window)
+        if row == len(rows):
+            return rows
+        end = row + _cluster_size(joint, row)
+        disks = sorted({int(i) for i in (*a[row:end], *b[row:end]) if i >= 0})
+        for i in disks:
+            retracer.lend(i, expansion.disks[i], window)
+        rows[row:end] = log.rows[row:end]
+        _fill(rows[row:end], list(expansion.numbers(row, end)), expansion.stage)
+        for i in disks:
+            retracer.take_back(i, expansion.disks[i])
+        row = end
+
+
+def _cluster_size(joint: Column, row: int) -> int:
+    """How many rows from `row` on belong to one cluster."""
+    if joint[row] < 0:
+        return 1
+    count = 1
+    while row + count < len(joint) and joint[row + count] == joint[row]:
+        count += 1
+    return count

@@ -1,0 +1,186 @@
+"""The event log: what happened, as columns, together with where it comes from."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from eventsim.errors import LogWarning
+from eventsim.record.digest import digest_of
+from eventsim.record.events import COLUMNS, LABELS, Column, Rows, blank_rows
+from eventsim.record.provenance import Ending, Provenance, kicks_of
+from eventsim.scene import Scene
+
+SAVE_BLOCK = 1 << 16
+
+
+class EventLog:
+    """An immutable log: its provenance and one row per impulse.
+
+    Every column is an attribute holding a read-only array (`log.time`, `log.vxa`, ...): `log.kind` holds codes
+    (`log.kinds` the text), `log.wall` indices into `log.provenance.wall_names` (`log.wall_name` the text).
+    path: the file that it was read from, None where it comes from a run.
+
+    In a compact log the columns that replay computes are missing (NaN); `expand()` gives the full log.
+    """
+
+    event: Column
+    time: Column
+    kind: Column
+    a: Column
+    b: Column
+    wall: Column
+    xa: Column
+    ya: Column
+    vxa: Column
+    vya: Column
+    xb: Column
+    yb: Column
+    vxb: Column
+    vyb: Column
+    impulse: Column
+    joint: Column
+    epoch: Column
+    remainder: Column
+
+    def __init__(self, provenance: Provenance, rows: Rows) -> None:
+        view = rows.view()
+        view.flags.writeable = False
+        self.path: Path | None = None
+        self.provenance = provenance
+        self.rows = view
+        for name in COLUMNS:
+            setattr(self, name, view[name])
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __repr__(self) -> str:
+        ending = self.provenance.ending
+        ended = "still open" if ending is None else f"stopped: {ending.reason}"
+        form = "compact, " if self.compact else ""
+        return f"EventLog({len(self)} rows, {form}{ended}, engine {self.provenance.engine})"
+
+    @property
+    def scene(self) -> Scene:
+        """The realised scene that the log tells about."""
+        return self.provenance.scene
+
+    @property
+    def compact(self) -> bool:
+        """Whether the computable columns are missing."""
+        return self.provenance.compact
+
+    @cached_property
+    def kinds(self) -> Column:
+        """The kinds as text, an array of str (rows,)."""
+        texts: Column = np.array(LABELS)[self.kind]
+        return texts
+
+    @cached_property
+    def wall_name(self) -> Column:
+        """The names of the walls as text, an array of str (rows,), empty where there is none."""
+        texts: Column = np.array([*self.provenance.wall_names, ""])[self.wall]
+        return texts
+
+    def expand(self) -> EventLog:
+        """Return the full log: of a compact one by replay, bit for bit what the engine would have logged."""
+        if not self.compact:
+            return self
+        from eventsim.replay.expand import expand_rows  # replay stands above the log it reads
+
+        full = EventLog(replace(self.provenance, compact=False), expand_rows(self))
+        full.path = self.path
+        return full
+
+    def verify(self, name: str) -> None:
+        """Warn (LogWarning) where full rows are not those that the run closed the log with; `name` is how to call it.
+
+        Nothing is known of a log without the digest of its run.  A compact one needs none: a contact that is not due at its
+        time does not replay.
+        """
+        ending = self.provenance.ending
+        if ending is None or ending.digest is None or self.compact or ending.digest == self.digest():
+            return
+        warnings.warn(
+            f"{name} is not what its run wrote: its rows have another digest than the one it was closed with",
+            LogWarning,
+            stacklevel=2,
+        )
+
+    def digest(self) -> str:
+        """Return the SHA-256 of the log (see `eventsim.record.digest`); a compact log is expanded first."""
+        return digest_of(self.expand().rows)
+
+    def save(self, path: str | PathLike[str], compact: bool = False) -> None:
+        """Write the log to `path`, in the format of its suffix: .csv, .jsonl, .npz or .parquet.
+
+        compact: leave out what replay computes. Raises LogError where the file cannot be written.
+        """
+        from eventsim.record.files import open_sink  # files read logs, so they import this module
+
+        log = self if compact else self.expand()
+        ending = log.provenance.ending
+        if ending is not None and ending.digest is None and not log.compact:
+            ending = replace(ending, digest=log.digest())
+        sink = open_sink(path, log.provenance, compact=compact)
+        try:
+            for first in range(0, len(log), SAVE_BLOCK):
+                sink.write(log.rows[first : first + SAVE_BLOCK])
+        except BaseException:
+            sink.abandon()
+            raise
+        sink.close(ending)
+
+
+class MemorySink:
+    """Keeps the rows of a run in memory; `log()` is what has been written so far."""
+
+    def __init__(self, provenance: Provenance) -> None:
+        self._provenance = provenance
+        self._blocks: list[Rows] = []
+        self._ending: Ending | None = None
+
+    def write(self, rows: Rows) -> None:
+        """Append a block of rows; it is copied, so the caller may reuse it."""
+        self._blocks.append(rows.copy())
+
+    def close(self, ending: Ending | None = None) -> None:
+        """Say where the run ended."""
+        self._ending = ending
+
+    def leave(self) -> None:
+        """Memory holds what it holds."""
+
+    def abandon(self) -> None:
+        """Forget all rows."""
+        self._blocks.clear()
+
+    def log(self) -> EventLog:
+        """Return the rows so far as a log."""
+        rows = np.concatenate(self._blocks) if self._blocks else blank_rows(0)
+        self._blocks = [rows]
+        finished = self._provenance.finished(self._ending, tuple(kicks_of(rows)), len(rows))
+        return EventLog(finished, rows)
+
+
+def load_log(path: str | PathLike[str]) -> EventLog:
+    """Read a log file of any format; raise LogError with a sentence where it is not one.
+
+    A text log that still grows (NAME.csv.part, NAME.jsonl.part) is read up to its last whole line.  Warns (LogWarning) where
+    its numbers were changed since it was written.
+    """
+    from eventsim.record.files import reader_for
+
+    file = Path(path)
+    read: Callable[[Path], EventLog] = reader_for(file)
+    log = read(file)
+    log.verify(str(file))
+    log.path = file
+    return log

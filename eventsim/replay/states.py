@@ -1,0 +1,63 @@
+"""Files of states: where all disks are at some times, as a table that a scene can start from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from eventsim.errors import EventsimError
+from eventsim.record.events import Column, State
+from eventsim.record.files.whole import whole_file
+from eventsim.replay import exchange
+from eventsim.scene import Scene
+
+SUFFIXES = (".csv", ".npz", *exchange.SUFFIXES)
+STATE_COLUMNS = ("time", "disk", "x", "y", "vx", "vy", "radius", "mass")
+
+
+def state_columns(scene: Scene, states: Sequence[State]) -> dict[str, Column]:
+    """Return the columns of a table with one row per time and disk; radius and mass come from the scene."""
+    count = len(scene.disks)
+    position = np.concatenate([np.empty((0, 2)), *(state.position for state in states)])
+    velocity = np.concatenate([np.empty((0, 2)), *(state.velocity for state in states)])
+    return {
+        "time": np.repeat(np.array([state.time for state in states]), count),
+        "disk": np.tile(np.arange(count), len(states)),
+        "x": position[:, 0],
+        "y": position[:, 1],
+        "vx": velocity[:, 0],
+        "vy": velocity[:, 1],
+        "radius": np.tile(scene.disks.radius, len(states)),
+        "mass": np.tile(scene.disks.mass, len(states)),
+    }
+
+
+def write_states(path: str | PathLike[str], scene: Scene, states: Sequence[State]) -> None:
+    """Write states to `path`: .csv (floats that read back as the same bits), .npz (one array per column), or
+    .xyz or .gsd for other programs (see `exchange`).
+
+    The file appears under its name only when whole. Raises EventsimError where it cannot be written.
+    """
+    file = Path(path)
+    if file.suffix.lower() not in SUFFIXES:
+        raise EventsimError(f"{file}: a file of states ends in {', '.join(SUFFIXES)}")
+    if file.suffix.lower() in exchange.SUFFIXES:
+        exchange.write_exchange(file, scene, states)
+        return
+    columns = state_columns(scene, states)
+    with whole_file(file) as part, part.open("wb") as target:
+        if file.suffix.lower() == ".npz":
+            np.savez(target, allow_pickle=False, **columns)
+        else:
+            write_csv(target, columns)
+
+
+def write_csv(target: IO[bytes], columns: dict[str, Column]) -> None:
+    """Write columns as CSV with a header row; used for files and for standard output."""
+    target.write((",".join(columns) + "\n").encode())
+    words = (map(repr, column.tolist()) for column in columns.values())
+    target.writelines(f"{','.join(line)}\n".encode() for line in zip(*words, strict=True))

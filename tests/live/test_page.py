@@ -1,0 +1,273 @@
+"""The page in a real browser: what it shows is what the engine says, and its buttons do what they say."""
+
+import time
+
+import pytest
+
+import eventsim as es
+from eventsim.replay.replay import Replay
+from eventsim.scene.gallery import names
+from tests.live.driven import CLOSE, Page
+from tests.live.running import live_server
+from tests.show.browser import browser
+
+pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
+
+
+@pytest.fixture(scope="module")
+def address():
+    with live_server() as (found, _):
+        yield found
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory):
+    with browser(tmp_path_factory.mktemp("profile")) as opened:
+        yield opened
+
+
+@pytest.fixture
+def page(chromium, address):
+    """The page of a server; in the end the console must have said nothing."""
+    chromium.set_window_size(1100, 760)
+    yield Page(chromium, address)
+    assert chromium.get_log("browser") == []
+
+
+@pytest.mark.parametrize(("masses", "radii"), [("equal", "equal"), ("different", "different")])
+def test_fifty_disks_are_where_the_engine_says(page, tmp_path, masses, radii):
+    page.open()
+    page.fill(count=50, masses=masses, radii=radii, speed=400, packing=0.25)
+    page.press("play")
+    page.wait("live.player.view.time > 1.0")
+    page.press("play")
+    log = es.load_log(page.fetch("log-file", tmp_path / "log.csv"))
+    assert len(log.scene.disks) == 50
+    assert len(set(log.scene.disks.mass)) == (5 if masses == "different" else 1)
+    assert len(log) > 100
+    page.assert_true_to(Replay(log))
+    scene = es.load_scene(page.fetch("scene-file", tmp_path / "scene.toml"))
+    again = es.simulate(scene, events=len(log), log=True).log
+    assert again.rows[: len(log)].tobytes() == log.rows.tobytes()
+
+
+def test_start_pause_resume_step_and_reverse(page):
+    page.open("count=40&speed=300&packing=0.2&seed=5")
+    page.press("play")
+    time.sleep(0.6)
+    page.press("play")
+    reached = page.time
+    assert 0.2 < reached < 2.0
+    time.sleep(0.2)
+    assert page.time == reached
+    page.press("forward")
+    after = page.time
+    assert after == page.js("return live.player.world.previousEvent(live.player.view.time + 1e-12)") > reached
+    page.press("back")
+    assert page.time < after
+    page.press("play")
+    page.wait(f"live.player.view.time > {reached} + 0.3")
+    page.press("reverse")
+    page.wait(f"live.player.view.time < {reached}")
+    page.press("play")
+    page.press("reset")
+    assert page.time == 0.0
+    for _ in range(5):
+        page.press("forward")
+    assert page.js("return live.player.world.eventsUntil(live.player.view.time)") == 5
+
+
+def test_a_step_beyond_what_is_known_waits_for_the_server(page):
+    page.open("gallery=two-disks")
+    page.js("live.player.seek(live.player.duration)")
+    known = page.js("return live.player.world.event.time.length")
+    page.press("forward")
+    page.wait(f"live.player.awaited === null && live.player.world.event.time.length >= {known}")
+
+
+def test_the_window_is_the_world(page):
+    page.open("")
+    page.fill(count=30, packing=0.05, speed=200)
+    page.js("live.player.seek(1.0)")
+    before = page.js("return [live.player.stage.size, live.player.state()]")
+    edition = page.js("return live.edition")
+    page.driver.set_window_size(1000, 640)
+    page.wait(f"live.edition > {edition}")
+    size, state = page.js("return [live.player.stage.size, live.player.state()]")
+    assert size[0] < before[0][0]
+    assert size[1] < before[0][1]
+    for name, values in before[1].items():  # the disks are where they were, at the time that was shown
+        assert state[name] == pytest.approx(values, rel=CLOSE)
+    window = page.js("return live.size()")
+    assert size[0] >= window[0]
+    assert size[1] >= window[1]
+    page.fill(count=31)
+    assert page.js("return live.player.stage.size") == window
+    assert page.js("return live.player.world.count") == 31
+
+
+def test_a_built_in_scene_with_its_parameters(page, tmp_path):
+    page.open()
+    page.js(
+        "live.menu.field('scene').value = 'periodic-fluid'; live.menu.field('scene').dispatchEvent(new Event('change'))"
+    )
+    page.fill(**{"parameter.n": 64, "parameter.packing_fraction": 0.3})
+    assert page.js("return live.player.world.count") == 64
+    assert "gallery=periodic-fluid" in page.driver.current_url
+    page.assert_true_to(Replay(es.load_log(page.fetch("log-file", tmp_path / "log.csv"))), 5)
+    page.open("gallery=galperin&mass_ratio=10000")
+    page.js("live.player.seek(0)")
+    page.js("live.player.await(arguments[0], false)", 10.0)
+    page.wait("live.player.awaited === null")
+    assert page.js("return live.player.world.event.time.length") == 314
+
+
+@pytest.mark.slow
+def test_every_built_in_scene_plays(page, tmp_path):
+    for name in names():
+        page.open(f"gallery={name}")
+        assert page.js("return live.part('notice').hidden"), name
+        page.js(
+            "for (const part of ['trails', 'flash', 'arrows']) if (!live.player.view[part]) live.part(part).click()"
+        )
+        page.js("live.player.play()")
+        page.wait("live.player.script.frames > 5")
+        page.js("live.player.pause()")
+        page.assert_true_to(Replay(es.load_log(page.fetch("log-file", tmp_path / "log.csv"))), 3)
+
+
+def test_an_address_restores_its_scene(page):
+    page.open()
+    page.fill(count=17, masses="different", seed=9, gravity=300)
+    state, link = page.js("return live.player.state()"), page.driver.current_url
+    page.driver.set_window_size(900, 700)
+    page.open(link.partition("#")[2])
+    assert page.js("return live.player.state()") == state
+    assert page.js("return live.menu.field('masses').value") == "different"
+
+
+def test_a_disk_is_thrown_and_moved(page, tmp_path):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    page.open()
+    page.fill(count=5, packing=0.05, speed=100)
+    page.js("live.player.seek(0.5)")
+
+    def drag(disk, dx, dy):
+        x, y = page.js(
+            """
+            const d = live.player.drawing, box = d.canvas.getBoundingClientRect();
+            const s = live.player.world.state(live.player.view.time);
+            return [d._x(s.x[arguments[0]]) / d.ratio + box.left, d._y(s.y[arguments[0]]) / d.ratio + box.top];
+            """,
+            disk,
+        )
+        hand = ActionChains(page.driver)
+        pointer = hand.w3c_actions.pointer_action
+        pointer.move_to_location(int(x), int(y)).pointer_down()
+        pointer.move_to_location(int(x + dx / 2), int(y + dy / 2)).move_to_location(
+            int(x + dx), int(y + dy)
+        ).pointer_up()
+        hand.perform()
+
+    drag(2, 60, -40)
+    page.wait("live.player.world.event.kind.values.subarray(0, live.player.world.event.kind.length).includes(3)")
+    state = page.js("return live.player.state()")
+    assert (state["time"], state["vx"][2], state["vy"][2]) == (0.5, 60.0, 40.0)
+    page.wait("live.player.duration > 1")
+    log = es.load_log(page.fetch("log-file", tmp_path / "log.csv"))
+    assert (log.kinds == "kick").sum() == 1
+    page.assert_true_to(Replay(log))
+    page.js("live.part('drag').value = 'move'; live.player.seek(0.5)")
+    place = page.js("return live.player.state()")
+    edition = page.js("return live.edition")
+    drag(2, 12, 12)
+    page.wait(f"live.edition > {edition} || !live.part('notice').hidden")
+    if page.js("return live.part('notice').hidden"):
+        moved = page.js("return live.player.state()")
+        assert (moved["time"], moved["x"][2] - place["x"][2]) == (0.5, pytest.approx(12.0))
+        assert moved["x"][1] == place["x"][1]
+
+
+def test_side_by_side_with_the_per_frame_engine(page):
+    page.open("count=40&speed=600&packing=0.3&seed=2&rate=30")
+    page.wait("live.player.comparison && live.player.duration > 1")
+    page.press("play")
+    page.wait("live.player.view.time > 1.5")
+    page.press("play")
+    told = page.js("return live.part('differences').textContent")
+    assert "per frame" in told
+    astray, overlapping = page.js("const c = live.player.comparison; return [c.astray.size, c.overlapping]")
+    assert f"{astray} of 40 astray" in told
+    assert f"{overlapping} pairs overlap" in told
+    assert astray > 0
+    page.fill(compare=False)
+    assert page.js("return live.player.comparison === null && live.part('beside').hidden")
+
+
+def test_two_windows_on_one_world(page):
+    page.open("count=20&seed=4")
+    page.js("live.player.seek(0.25)")
+    link = page.js("return live.part('world').href").partition("#")[2]
+    first = page.driver.current_window_handle
+    page.driver.switch_to.new_window("window")
+    try:
+        page.driver.get(f"{page.address}#{link}")
+        page.wait("window.live && live.player && live.player.duration > 0")
+        second = page.js("return live.player.world.count")
+        assert second == 20
+        page.driver.switch_to.window(first)
+        page.js("live.player.seek(0.5); live.controlled()")
+        page.driver.switch_to.window(page.driver.window_handles[-1])
+        page.wait("live.player.view.time === 0.5")
+    finally:
+        page.driver.switch_to.window(page.driver.window_handles[-1])
+        page.driver.close()
+        page.driver.switch_to.window(first)
+
+
+def test_the_page_finds_its_server_again(chromium, tmp_path):
+    with live_server() as (address, process):
+        port = int(address.rstrip("/").rpartition(":")[2])
+        page = Page(chromium, address).open("count=25&seed=6&speed=300")
+        page.js("live._act({type: 'throw', time: 0.5, disk: 1, velocity: [500, 0]}); live.player.seek(0.5)")
+        page.wait("live.link.pending === 0 && live.player.duration > 2")
+        page.js("live.player.seek(1.5)")
+        before = page.js("return live.player.state()")
+        process.kill()
+        process.wait()
+        page.wait("!live.part('notice').hidden")
+        assert "lost" in page.js("return live.part('notice').textContent")
+    with live_server(port=port):
+        page.wait(
+            "live.link.open && live.resume === null && live.player.awaited === null && live.player.duration >= 1.5"
+        )
+        assert page.js("return live.player.state()") == before
+        assert page.js("return live.part('notice').hidden")
+        page.press("play")
+        page.wait("live.player.view.time > 1.7")
+    chromium.get("about:blank")
+    said = chromium.get_log("browser")
+    assert all("WebSocket connection" in entry["message"] for entry in said)
+
+
+@pytest.mark.slow
+def test_two_thousand_disks_play_for_a_minute_without_starving(page):
+    page.open("count=2000&packing=0.3&seed=1", seconds=90)  # the engine may have to be compiled first
+    page.wait("live.player.duration > 2.9", 60)
+    page.js("live.player.script.starved = 0")
+    page.press("play")
+    lead = []
+    for _ in range(60):
+        time.sleep(1.0)
+        lead.append(page.js("return live.player.duration - live.player.view.time"))
+    script, events, shown = page.js(
+        "return [live.player.script, live.player.world.event.time.length, live.player.view.time]"
+    )
+    print(
+        f"{events / shown:.0f} events/s; lead {min(lead):.2f} to {max(lead):.2f} s; {script['frames'] / 60:.0f} frames/s, "
+        f"{script['spent'] / script['frames']:.2f} ms of script each, at most {script['worst']:.0f}; "
+        f"starved {script['starved']:.0f} ms"
+    )
+    assert shown > 55
+    assert script["starved"] < 100

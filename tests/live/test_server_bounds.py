@@ -1,0 +1,112 @@
+"""What the server refuses, and bounds: garbage, strangers, pages that do not read, events without end."""
+
+import asyncio
+import sys
+
+import pytest
+
+import eventsim as es
+from tests.live.running import menu
+from tests.live.serving import run, worlds_alive
+
+aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
+
+from eventsim.live.server import MOST_BYTES  # noqa: E402
+from eventsim.live.world import LEAD_SECONDS  # noqa: E402
+
+
+def test_a_page_that_does_not_read_holds_up_nobody_and_fills_no_memory(monkeypatch):
+    monkeypatch.setattr(sys.modules["eventsim.live.world"], "LEAD_EVENTS", 3000)
+
+    async def story(connect, session, address):
+        lazy, quick = await connect(), await connect()
+        await lazy.tell(menu(count=200, speed=3000))
+        await lazy.hear("opened")
+        await lazy.tell({"type": "shown", "edition": 1, "time": 1e6, "events": 0, "speed": 1.0})
+        for k in range(3):
+            await quick.tell(menu(seed=k))
+            await quick.hear("opened")
+            await quick.hear("rows", horizon=LEAD_SECONDS)
+        worlds = worlds_alive()
+        assert max(world.count for world in worlds) <= 3000 + 200
+
+    run(story)
+
+
+def test_garbage_is_answered_and_the_connection_lives():
+    async def story(connect, session, address):
+        client = await connect()
+        garbage = [
+            "",
+            "{",
+            "null",
+            "[[[",
+            '{"type": 5}',
+            '{"type": "throw", "time": "x"}',
+            "\x00" * 1000,
+            "9" * 100_000,
+        ]
+        for k in range(400):
+            await client.tell(garbage[k % len(garbage)])
+        for _ in range(400):
+            assert (await client.hear("error", most=1))["text"]
+        await client.tell({"type": "throw", "time": 0, "disk": 0, "velocity": [0, 0]})
+        assert "no scene" in (await client.hear("error"))["text"]
+        await client.tell({"type": "open", "scene": "given", "rate": None})
+        assert "without a scene" in (await client.hear("error"))["text"]
+        await client.tell({"type": "open", "scene": "gallery", "name": "gasp", "parameters": {}, "rate": None})
+        assert "did you mean 'gas'" in (await client.hear("error"))["text"]
+        await client.tell({"type": "open", "scene": "gallery", "name": "gas", "parameters": {"n": 10**7}, "rate": None})
+        assert "at most" in (await client.hear("error"))["text"]
+        await client.tell({"type": "open", "scene": "gallery", "name": "break", "parameters": {}, "rate": None})
+        assert (await client.hear("opened"))["title"] == es.gallery("break").name
+        await client.tell({"type": "throw", "time": 0, "disk": 99, "velocity": [0, 0]})
+        assert "disk 99 does not exist; there are 16" in (await client.hear("error"))["text"]
+        await client.socket.send_bytes(b"\x00\x01")
+        assert "must be text" in (await client.hear("error"))["text"]
+
+    run(story)
+
+
+def test_an_oversized_message_ends_its_connection_alone():
+    async def story(connect, session, address):
+        client, other = await connect(), await connect()
+        await client.tell("x" * (MOST_BYTES + 1))
+        ended = await asyncio.wait_for(client.socket.receive(), 10)
+        assert (ended.type, ended.data) == (aiohttp.WSMsgType.CLOSE, aiohttp.WSCloseCode.MESSAGE_TOO_BIG)
+        await other.tell(menu())
+        await other.hear("opened")
+
+    run(story)
+
+
+def test_pages_from_elsewhere_are_refused():
+    async def story(connect, session, address):
+        for path in ("socket", "", "live.js"):
+            for headers in ({"Origin": "http://evil.example"}, {"Host": "evil.example"}, {"Origin": "null"}):
+                async with session.get(address + path, headers=headers) as answer:
+                    assert answer.status == 403
+                    assert "this machine" in await answer.text()
+        async with session.get(address, headers={"Origin": address.rstrip("/")}) as answer:
+            assert answer.status == 200
+            assert "default-src 'none'" in answer.headers["Content-Security-Policy"]
+        async with session.get(address + "../server.py") as answer:
+            assert answer.status == 404
+
+    run(story)
+
+
+def test_events_that_are_kept_are_bounded(monkeypatch):
+    monkeypatch.setattr(sys.modules["eventsim.live.world"], "MOST_EVENTS", 300)
+
+    async def story(connect, session, address):
+        client = await connect()
+        await client.tell(menu(speed=2000))
+        await client.hear("opened")
+        for _ in range(50):
+            rows = await client.hear("rows")
+            if rows["ended"] is not None:
+                break
+        assert "as many as are kept" in rows["ended"]
+
+    run(story)
