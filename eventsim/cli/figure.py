@@ -7,13 +7,33 @@ import click
 from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.source import stop_options
 from eventsim.cli.target import FIGURE_SUFFIXES, writable
+from eventsim.show.figures import TITLES
 
-KINDS = ("trajectories", "raster", "speeds", "msd", "free-paths", "residuals", "space-time")
+HELP = """Draw a figure of the run that LOG tells, or of SCENE, simulated now.
+
+\b
+Kinds:
+{kinds}
+
+\b
+Examples:
+  eventsim figure break.csv --kind trajectories --out break.png
+  eventsim figure gas --kind free-paths --out paths.pdf
+  eventsim figure corridor --kind space-time --out corridor.svg
+
+\b
+Keys of --json:
+  scene, kind, out      as typed; the file written
+  events                rows of the log
+  bytes, elapsed_s      the size of the file; seconds of drawing and writing
+
+Exit codes: 0 done; 2 bad usage, scene or file, or a log without what the figure shows; 130 interrupted.
+""".format(kinds="\n".join(f"  {kind:<14} {title}" for kind, title in TITLES.items()))
 
 
-@click.command()
+@click.command(help=HELP)
 @scene_options(required=True, metavar="LOG|SCENE")
-@click.option("--kind", type=click.Choice(KINDS), required=True, help="Which figure.")
+@click.option("--kind", type=click.Choice(tuple(TITLES)), required=True, help="Which figure.")
 @click.option("--out", required=True, metavar="FILE", help="FILE.png, .svg or .pdf.")
 @stop_options
 @json_option
@@ -29,32 +49,7 @@ def command(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Draw a figure of the run that LOG tells, or of SCENE, simulated now.
-
-    \b
-    Kinds:
-      trajectories   the ways of the disks, contacts marked
-      raster         which disk had an event when, and how many there were
-      speeds         speed histogram, with Maxwell's curve
-      msd            mean squared displacement against time
-      free-paths     distances between contacts, with kinetic theory
-      residuals      energy and overlaps over time: how good the run is
-      space-time     positions against time, for disks in a corridor
-
-    \b
-    Examples:
-      eventsim figure break.csv --kind trajectories --out break.png
-      eventsim figure gas --kind free-paths --out paths.pdf
-      eventsim figure corridor --kind space-time --out corridor.svg
-
-    \b
-    Keys of --json:
-      scene, kind, out      as typed; the file written
-      events                rows of the log
-      bytes, elapsed_s      the size of the file; seconds of drawing and writing
-
-    Exit codes: 0 done; 2 bad usage, scene or file, or a log without what the figure shows; 130 interrupted.
-    """
+    """Draw one kind of figure, see HELP."""
     target = writable(out, "--out", FIGURE_SUFFIXES)
     assert target is not None
 

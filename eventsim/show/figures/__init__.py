@@ -1,14 +1,15 @@
 """Figures: one module a kind, each with `draw(figure, log)`; every number is worked out from the log.
 
-`TITLES` names the kinds; `write.write_figure` draws one of them to a file.
+`TITLES` is the table of kinds: command line and help read it, and `write.write_figure` draws one of them to a file.
 """
 
 TITLES = {
     "trajectories": "the ways of the disks, contacts marked",
-    "raster": "which disk had an event when",
+    "raster": "which disk had an event when, and how many there were",
     "speeds": "speed histogram, with Maxwell's curve",
     "msd": "mean squared displacement against time",
     "free-paths": "distances between contacts, with kinetic theory",
     "residuals": "energy and overlaps over time: how good the run is",
     "space-time": "positions against time, for disks in a corridor",
 }
+"""Kind -> what it shows; its module has the same name, with _ for -."""
