@@ -25,7 +25,7 @@ Line: TypeAlias = tuple[Fraction, Fraction, Fraction]
 ZERO = Fraction(0)
 
 
-class Moments:
+class ExactTimes:
     """The exact times of contacts in one stage; flight(i): the present flight of disk i."""
 
     def __init__(self, stage: Stage, flight: Callable[[int], Flight]) -> None:

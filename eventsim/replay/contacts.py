@@ -13,7 +13,7 @@ from functools import cmp_to_key
 from itertools import product
 from typing import NamedTuple
 
-from eventsim.engines.exact_times import Flight, Moments, exact_place
+from eventsim.engines.exact_times import ExactTimes, Flight, exact_place
 from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.low_place import Low, apart, wide_border_delay, wide_pair_delay
@@ -46,7 +46,7 @@ class Contacts:
     def __init__(self, stage: Stage, disks: Mapping[int, DiskFlight]) -> None:
         self._stage = stage
         self._disks = disks
-        self._moments = Moments(stage, self._flight)
+        self._moments = ExactTimes(stage, self._flight)
         self._boundaries = len(stage.boundaries)
         self._surfaces = Surfaces(stage, stage.radius.tolist())
         along_x, along_y = ((0,) if length is None else (-1, 0, 1) for length in stage.period)

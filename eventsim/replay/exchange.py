@@ -10,7 +10,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, State
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def write_exchange(path: Path, scene: Scene, states: Sequence[State]) -> None:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise EventsimError(f"{path}: a trajectory ends in {' or '.join(SUFFIXES)}")
-    with whole_file(path) as part:
+    with atomic_write(path) as part:
         if suffix == ".xyz":
             _write_xyz(part, scene, states)
         else:

@@ -11,7 +11,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.record.events import Column, State
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.replay import exchange
 from eventsim.scene import Scene
 
@@ -49,7 +49,7 @@ def write_states(path: str | PathLike[str], scene: Scene, states: Sequence[State
         exchange.write_exchange(file, scene, states)
         return
     columns = state_columns(scene, states)
-    with whole_file(file) as part, part.open("wb") as target:
+    with atomic_write(file) as part, part.open("wb") as target:
         if file.suffix.lower() == ".npz":
             np.savez(target, allow_pickle=False, **columns)
         else:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import EventLog
 from eventsim.replay.replay import Replay
 from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
@@ -75,7 +75,7 @@ def animate(
     suffix = suffix_of(file, SUFFIXES, "an animation")
     if suffix == ".html":
         text = _page(log, film, look)
-        with whole_file(file) as part:
+        with atomic_write(file) as part:
             write_page(part, text)
         return
     replay = Replay(log)
@@ -85,7 +85,7 @@ def animate(
     hidden = BANDS if suffix == ".png" and look.trails else 0
     trail_frames = BANDS if suffix == ".png" else round(TRAIL * timing.fps)
     picture = Picture(replay, look, ROOM[suffix], timing.times, trail_frames)
-    with whole_file(file) as part:
+    with atomic_write(file) as part:
         drawn = _drawn(picture, replay, timing, hidden, progress)
         if suffix == ".mp4":
             write_mp4(part, drawn, picture.layout.size, timing.fps)

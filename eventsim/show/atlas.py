@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.show.output import suffix_of
 from eventsim.show.palette import LIGHT
 from eventsim.validate.stress.catalogue import CASES
@@ -44,7 +44,7 @@ def write_atlas(verdicts: Sequence[Verdict], path: Path) -> None:
         figure = _drawn(verdicts)
         FigureCanvasAgg(figure)
         dates = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-        with whole_file(path) as part:
+        with atomic_write(path) as part:
             figure.savefig(part, format=suffix[1:], metadata=dates[suffix])
 
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eventsim.errors import EventsimError
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.sweep.task import Cell, Row
 
 SUFFIXES = (".csv", ".parquet")
@@ -33,7 +33,7 @@ def columns_of(rows: Sequence[Row]) -> list[str]:
 def write_table(path: Path, rows: Sequence[Row], provenance: Mapping[str, object]) -> None:
     """Write rows to .csv (missing: empty; a first line that begins with "# " carries the provenance) or .parquet."""
     text = json.dumps(provenance)
-    with whole_file(path) as part:
+    with atomic_write(path) as part:
         if path.suffix.lower() == ".csv":
             with part.open("w", newline="", encoding="utf-8") as file:
                 file.write(f"# {text}\n")

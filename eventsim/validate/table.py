@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim import __version__
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.validate.advantages import advantages
 from eventsim.validate.chart import Chart
 from eventsim.validate.compare import Comparison, Line
@@ -117,7 +117,7 @@ def write_csv(path: Path, rows: Sequence[Mapping[str, Any]], comments: Sequence[
     writer = csv.DictWriter(text, keys, lineterminator="\n", restval="")
     writer.writeheader()
     writer.writerows({key: "" if value is None else _plain(value) for key, value in row.items()} for row in rows)
-    with whole_file(path) as part:
+    with atomic_write(path) as part:
         part.write_text(text.getvalue(), encoding="utf-8")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.exact_times import Flight, Moments, exact_place
+from eventsim.engines.exact_times import ExactTimes, Flight, exact_place
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.crossing import crossing_delay
@@ -20,7 +20,7 @@ class Ties:
     def __init__(self, stage: Stage, state: EngineState) -> None:
         self._stage = stage
         self._state = state
-        self._moments = Moments(stage, self._exact_flight)
+        self._moments = ExactTimes(stage, self._exact_flight)
 
     def settle(self, near: list[Event]) -> list[Event]:
         """Of contacts within NEARLY of the earliest: those that are to be resolved in one instant, in the order of rows.

@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from eventsim.errors import EventsimError
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import EventLog
 from eventsim.show.figures import TITLES
 from eventsim.show.figures.style import new_figure
@@ -41,5 +41,5 @@ def save_figure(draw: Callable[[Figure], None], file: Path) -> None:
         FigureCanvasAgg(figure)
         draw(figure)
         dates = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-        with whole_file(file) as part:
+        with atomic_write(file) as part:
             figure.savefig(part, format=suffix[1:], metadata=dates[suffix])

@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 from eventsim.show.figures.write import SUFFIXES
 from eventsim.show.output import suffix_of
 
@@ -21,5 +21,5 @@ def save_page(figure: Figure, path: str | PathLike[str]) -> None:
     with rc_context({"svg.hashsalt": "eventsim", "svg.fonttype": "path"}):
         FigureCanvasAgg(figure)
         dates = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-        with whole_file(file) as part:
+        with atomic_write(file) as part:
             figure.savefig(part, format=suffix[1:], metadata=dates[suffix])

@@ -3,12 +3,12 @@
 import pytest
 
 from eventsim.errors import EventsimError
-from eventsim.record.files.whole import whole_file
+from eventsim.record.files.atomic import atomic_write
 
 
 def test_two_runs_that_write_one_file_do_not_mix(tmp_path):
     path = tmp_path / "end.csv"
-    with whole_file(path) as one, whole_file(path) as other:
+    with atomic_write(path) as one, atomic_write(path) as other:
         one.write_text("one")
         other.write_text("other")
         assert not path.exists()
@@ -17,9 +17,9 @@ def test_two_runs_that_write_one_file_do_not_mix(tmp_path):
 
 
 def test_what_cannot_be_written_leaves_nothing_behind(tmp_path):
-    with pytest.raises(EventsimError, match="cannot be written"), whole_file(tmp_path / "none" / "end.csv") as part:
+    with pytest.raises(EventsimError, match="cannot be written"), atomic_write(tmp_path / "none" / "end.csv") as part:
         part.write_text("text")
-    with pytest.raises(KeyboardInterrupt), whole_file(tmp_path / "end.csv") as part:
+    with pytest.raises(KeyboardInterrupt), atomic_write(tmp_path / "end.csv") as part:
         interrupted(part)
     assert list(tmp_path.iterdir()) == []
 

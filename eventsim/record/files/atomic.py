@@ -13,7 +13,7 @@ from eventsim.record.files.sink import PART
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
+def atomic_write(path: Path) -> Iterator[Path]:
     """Give a name to write to; rename it in the end, remove it where something went wrong or was interrupted.
 
     The name is nobody else's: two runs that write the same file do not mix, the later one stays.
