@@ -6,11 +6,11 @@ import re
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.source import stop_options
 from eventsim.cli.target import writable
 
-PICTURE_SUFFIXES = (".mp4", ".gif", ".html", ".png")
 COLORS = ("mass", "speed", "species", "contacts", "index")
 
 
@@ -89,20 +89,20 @@ def command(
 
     Exit codes: 0 done; 2 bad usage, scene or file, or no ffmpeg for an mp4; 130 interrupted, no file left.
     """
-    target = writable(out, "--out", PICTURE_SUFFIXES)
+    target = writable(out, "--out", suffixes.ANIMATIONS)
     assert target is not None
     if speed is not None and duration is not None:
         raise click.UsageError("--speed and --duration exclude each other: the one follows from the other")
     movies, drawn = (".mp4", ".gif"), (".mp4", ".gif", ".png")
-    for option, value, suffixes in (
+    for option, value, allowed in (
         ("--moments", moments, (".png",)),
         ("--fps", fps, movies),
         ("--size", size, drawn),
         ("--from", begin, drawn),
         ("--to", end, drawn),
     ):
-        if value is not None and target.suffix.lower() not in suffixes:
-            raise click.UsageError(f"{option} is for {', '.join(suffixes)} files, and --out is {target}")
+        if value is not None and target.suffix.lower() not in allowed:
+            raise click.UsageError(f"{option} is for {', '.join(allowed)} files, and --out is {target}")
 
     from time import perf_counter
 

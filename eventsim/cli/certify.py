@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
-from eventsim.cli.target import LOG_SUFFIXES, writable
+from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
     from eventsim.engines.certified.proof import Proof
@@ -26,7 +27,7 @@ STOPPED = {"until": "its next contact is due after the stop", "quiet": "it sees 
 @scene_options(required=True)
 @click.option("--events", type=Whole(min=1), metavar="N", help="Prove this many events (1000 without a stop).")
 @click.option("--until", type=float, metavar="T", help="Prove what happens up to this time.")
-@click.option("--log", metavar="FILE", help=f"Keep the certified log in FILE, one of {', '.join(LOG_SUFFIXES)}.")
+@click.option("--log", metavar="FILE", help=f"Keep the certified log in FILE, one of {', '.join(suffixes.LOGS)}.")
 @click.option("--bits", type=click.IntRange(64, 2**20), default=1024, show_default=True, help="Of the first attempt.")
 @click.option("--most-bits", type=click.IntRange(64, 2**20), default=2**17, show_default=True, help="Of the last one.")
 @json_option
@@ -78,7 +79,7 @@ def command(
     Exit codes: 0 proven; 2 bad usage, scene or file; 3 an undecided tie or a collapse; 130 interrupted.
     1 is kept for comparisons that fail: where float64 differs from the proof is a result, not a failure.
     """
-    path = writable(log, "--log", LOG_SUFFIXES)
+    path = writable(log, "--log", suffixes.LOGS)
     if most_bits < bits:
         raise click.UsageError(f"--most-bits {most_bits}: the last attempt cannot have fewer bits than the first, --bits {bits}")
 

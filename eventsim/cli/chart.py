@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option
-from eventsim.cli.target import FIGURE_SUFFIXES, writable
+from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
     from eventsim.validate.chart import Chart
@@ -55,7 +56,7 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
 
     Exit codes: 0 done; 2 bad usage or scene.
     """
-    figure = writable(out, "--out", FIGURE_SUFFIXES)
+    figure = writable(out, "--out", suffixes.FIGURES)
     assert figure is not None
     table = writable(csv if csv is not None else str(figure.with_suffix(".csv")), "--csv", (".csv",))
     assert table is not None

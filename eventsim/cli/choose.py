@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.suggest import did_you_mean
 from eventsim.errors import SceneError
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
 
-SCENE_SUFFIXES = (".toml", ".json")
 
 
 def chosen_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene:
@@ -33,7 +33,7 @@ def _draws_at_random(scene: str, settings: Sequence[str]) -> bool:
     from eventsim.scene.files import draws_at_random
     from eventsim.scene.gallery import describe
 
-    if Path(scene).suffix.lower() in SCENE_SUFFIXES:
+    if Path(scene).suffix.lower() in suffixes.SCENES:
         return draws_at_random(scene, settings)
     return "seed" in describe(scene).parameters
 
@@ -43,14 +43,14 @@ def seeded_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene
     from eventsim.scene.files import load_scene
     from eventsim.scene.gallery import names
 
-    if Path(scene).suffix.lower() in SCENE_SUFFIXES:
+    if Path(scene).suffix.lower() in suffixes.SCENES:
         return load_scene(scene, overrides=settings, seed=seed)
     if scene in names():
         return built_in_scene(scene, settings, seed)
     if Path(scene).exists():
-        raise SceneError(f"{scene}: a scene file ends in {' or '.join(SCENE_SUFFIXES)}")
+        raise SceneError(f"{scene}: a scene file ends in {' or '.join(suffixes.SCENES)}")
     raise SceneError(
-        f"{scene!r} is neither a scene file ({', '.join(SCENE_SUFFIXES)}) nor a built-in scene"
+        f"{scene!r} is neither a scene file ({', '.join(suffixes.SCENES)}) nor a built-in scene"
         f"{did_you_mean(scene, names())}; eventsim gallery lists the built-in ones"
     )
 

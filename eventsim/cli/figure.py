@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.source import stop_options
-from eventsim.cli.target import FIGURE_SUFFIXES, writable
+from eventsim.cli.target import writable
 from eventsim.show.figures import TITLES
 
 HELP = """Draw a figure of the run that LOG tells, or of SCENE, simulated now.
@@ -50,7 +51,7 @@ def command(
     quiet: bool,
 ) -> None:
     """Draw one kind of figure, see HELP."""
-    target = writable(out, "--out", FIGURE_SUFFIXES)
+    target = writable(out, "--out", suffixes.FIGURES)
     assert target is not None
 
     from time import perf_counter

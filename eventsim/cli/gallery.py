@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.options import SEED_HELP, SET_HELP, json_option, quiet_option
 from eventsim.cli.target import writable
 
@@ -74,12 +75,12 @@ def _list(as_json: bool, quiet: bool) -> None:
 
 def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool) -> None:
     """Print the story of one scene, or copy it into a file."""
-    from eventsim.cli.choose import SCENE_SUFFIXES, chosen_scene
+    from eventsim.cli.choose import chosen_scene
     from eventsim.cli.words import aligned, as_json_text
     from eventsim.scene.gallery import describe
 
     entry = describe(name)
-    target = writable(copy, "--copy", SCENE_SUFFIXES)
+    target = writable(copy, "--copy", suffixes.SCENES)
     if target is not None:
         if target.exists():
             raise click.UsageError(f"--copy {target}: there is such a file already; it is left as it is")

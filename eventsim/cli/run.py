@@ -7,10 +7,11 @@ from typing import Any
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.engine_options import DT_HELP, KNOWN, OPTION_HELP, engine_options
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
-from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES, Files, writable
+from eventsim.cli.target import Files, writable
 
 FIRST_SCENE = "break"
 ENGINE_HELP = f"Which engine simulates: auto, reference, fast, certified; with time steps: {', '.join(KNOWN)}."
@@ -27,7 +28,7 @@ EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
     metavar="N",
     help="Stop after this many events; contacts at one instant are not cut apart.",
 )
-@click.option("--log", metavar="FILE", help=f"Keep every event in FILE, one of {', '.join(LOG_SUFFIXES)}.")
+@click.option("--log", metavar="FILE", help=f"Keep every event in FILE, one of {', '.join(suffixes.LOGS)}.")
 @click.option("--compact", is_flag=True, help="Log only what replay cannot compute.")
 @click.option("--state", metavar="FILE", help="Write the final state to FILE (.csv or .npz).")
 @click.option("--engine", metavar="NAME", help=f"{ENGINE_HELP}  [default: auto]")
@@ -106,8 +107,8 @@ def command(
     1 is kept for comparisons that fail, in stress and validate.
     """
     files = Files(
-        writable(log, "--log", LOG_SUFFIXES, source=scene),
-        writable(state, "--state", STATE_SUFFIXES, source=scene),
+        writable(log, "--log", suffixes.LOGS, source=scene),
+        writable(state, "--state", suffixes.STATES, source=scene),
         writable(checkpoint or resume, "--checkpoint", None, source=scene),
     )
     named = [path.resolve() for path in files if path is not None]

@@ -8,15 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eventsim.cli.choose import SCENE_SUFFIXES
+from eventsim import suffixes
 from eventsim.cli.options import Verb, Whole
-from eventsim.cli.target import LOG_SUFFIXES
 from eventsim.errors import SceneError
 
 if TYPE_CHECKING:
     from eventsim.replay.log import EventLog
-
-GROWING = ".part"
 
 
 def stop_options(verb: Verb) -> Verb:
@@ -33,13 +30,13 @@ def is_log(source: str) -> bool:
     """
     file = Path(source)
     suffix = file.suffix.lower()
-    if suffix in LOG_SUFFIXES or source.endswith(GROWING):
+    if suffix in suffixes.LOGS or source.endswith(suffixes.PART):
         return True
-    if suffix not in SCENE_SUFFIXES and file.exists():
+    if suffix not in suffixes.SCENES and file.exists():
         from eventsim.scene.gallery import names
 
         if source not in names():
-            logs, scenes = ", ".join(LOG_SUFFIXES), " or ".join(SCENE_SUFFIXES)
+            logs, scenes = ", ".join(suffixes.LOGS), " or ".join(suffixes.SCENES)
             raise SceneError(f"{source}: is neither a log nor a scene file: these end in {logs}, or in {scenes}")
     return False
 

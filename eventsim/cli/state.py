@@ -6,8 +6,9 @@ import sys
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option
-from eventsim.cli.target import STATE_SUFFIXES, writable
+from eventsim.cli.target import writable
 
 
 class ManyTimes(click.Command):
@@ -66,7 +67,7 @@ def command(
 
     Exit codes: 0 done; 2 bad usage, no such log, or a time that the log does not cover.
     """
-    target = writable(out, "--out", STATE_SUFFIXES, source=log)
+    target = writable(out, "--out", suffixes.STATES, source=log)
     if (not times) == (frames is None):
         raise click.UsageError("say at which times: either --at T [T ...] or --frames N")
 

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.exits import FAILED, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
 from eventsim.cli.signals import terminable
-from eventsim.cli.target import FIGURE_SUFFIXES, writable
+from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
     from eventsim.validate.stress.soak import Finding
@@ -100,7 +101,7 @@ def command(
         against = tuple(engine_named(name).name for name in dict.fromkeys(engines)) or ("reference", "fast")
         _soak(range(seed, seed + soak), against, workers, as_json, quiet)
         return
-    figure_path = writable(out, "--out", FIGURE_SUFFIXES)
+    figure_path = writable(out, "--out", suffixes.FIGURES)
     table_path = writable(table, "--csv", (".csv",))
 
     from eventsim.cli.progress import ProgressBar

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.exits import BAD_INPUT, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
-from eventsim.cli.target import FIGURE_SUFFIXES, writable
+from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
 
-TABLE_SUFFIXES = (".csv", ".parquet")
 
 SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given several times: every combination."
 
@@ -71,8 +71,8 @@ def command(
 
     Exit codes: 0 done; 2 bad usage, scene or file, or every run failed; 130 interrupted (what was done is kept).
     """
-    target = writable(out, "--out", TABLE_SUFFIXES)
-    drawn = writable(figure, "--figure", FIGURE_SUFFIXES)
+    target = writable(out, "--out", suffixes.TABLES)
+    drawn = writable(figure, "--figure", suffixes.FIGURES)
     assert target is not None
     if dask is not None and workers is not None:
         raise click.UsageError("--workers is for this machine, --dask for a cluster: give one of them")

@@ -9,10 +9,6 @@ from typing import NamedTuple
 
 import click
 
-LOG_SUFFIXES = (".csv", ".jsonl", ".npz", ".parquet")
-STATE_SUFFIXES = (".csv", ".npz", ".xyz", ".gsd")
-FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
-
 
 class Files(NamedTuple):
     """What a run writes; None: that is not wanted."""

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim import suffixes
 from eventsim.cli.exits import FAILED
 from eventsim.cli.options import json_option, quiet_option, scene_options
-from eventsim.cli.target import FIGURE_SUFFIXES, writable
+from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
     from eventsim.validate.compare import Comparison, Line
@@ -84,7 +85,7 @@ def command(
 
     Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.
     """
-    csv_path, figure_path = writable(csv, "--csv", (".csv",)), writable(figure, "--figure", FIGURE_SUFFIXES)
+    csv_path, figure_path = writable(csv, "--csv", (".csv",)), writable(figure, "--figure", suffixes.FIGURES)
     for step in steps:
         if not 0.0 < step < math.inf:
             raise click.UsageError(f"--dt {step!r}: a step must be a finite time above 0")

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, TypeAlias
+from typing import Annotated, Any, NamedTuple, TypeAlias, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
+
+Rows: TypeAlias = NDArray[np.void]
+Floats: TypeAlias = NDArray[np.float64]
+Column: TypeAlias = NDArray[Any]
 
 
 class Kind(IntEnum):
@@ -26,50 +30,78 @@ class Kind(IntEnum):
 
 LABELS = tuple(kind.label for kind in Kind)
 
-ROW = np.dtype(
-    [
-        ("event", "<i8"),
-        ("time", "<f8"),
-        ("kind", "<i4"),
-        ("a", "<i4"),
-        ("b", "<i4"),
-        ("wall", "<i4"),
-        ("xa", "<f8"),
-        ("ya", "<f8"),
-        ("vxa", "<f8"),
-        ("vya", "<f8"),
-        ("xb", "<f8"),
-        ("yb", "<f8"),
-        ("vxb", "<f8"),
-        ("vyb", "<f8"),
-        ("impulse", "<f8"),
-        ("joint", "<i8"),
-        ("epoch", "<i8"),
-        ("remainder", "<f8"),
-    ]
-)
+
+class Field(NamedTuple):
+    """A column of the log.
+
+    Attributes:
+        type: of its numbers, little-endian.
+        missing: what stands where there is none; None: there always is one.
+        kept: A compact log has it too; replay computes the others.
+        steady: It hardly changes from row to row.
+        labelled: Its numbers are codes, for which files show texts.
+    """
+
+    type: str
+    missing: float | None = None
+    kept: bool = False
+    steady: bool = False
+    labelled: bool = False
+
+
+FLOAT = Field("<f8", missing=np.nan)
+DISK = Field("<i4", kept=True)
+
+
+class Columns:
+    """The columns of a log as attributes, in the order of its rows.
+
+    This is the one place that lists them.  Rows, files and compact logs follow; what goes into the digest is `record.digest`'s.
+    """
+
+    event: Annotated[Column, Field("<i8", kept=True)]
+    time: Annotated[Column, Field("<f8")]
+    kind: Annotated[Column, Field("<i4", kept=True, steady=True, labelled=True)]
+    a: Annotated[Column, DISK]
+    b: Annotated[Column, DISK._replace(missing=-1)]
+    wall: Annotated[Column, Field("<i4", missing=-1, kept=True, steady=True, labelled=True)]
+    xa: Annotated[Column, FLOAT]
+    ya: Annotated[Column, FLOAT]
+    vxa: Annotated[Column, FLOAT]
+    vya: Annotated[Column, FLOAT]
+    xb: Annotated[Column, FLOAT]
+    yb: Annotated[Column, FLOAT]
+    vxb: Annotated[Column, FLOAT]
+    vyb: Annotated[Column, FLOAT]
+    impulse: Annotated[Column, FLOAT]
+    joint: Annotated[Column, Field("<i8", missing=-1, kept=True, steady=True)]
+    epoch: Annotated[Column, Field("<i8", kept=True, steady=True)]
+    remainder: Annotated[Column, Field("<f8", kept=True)]
+
+
+FIELDS: dict[str, Field] = {
+    name: hint.__metadata__[0] for name, hint in get_type_hints(Columns, include_extras=True).items()
+}
+
+ROW = np.dtype([(name, field.type) for name, field in FIELDS.items()])
 """One row per impulse; b, wall and joint are -1 and floats NaN where there is none.  128 bytes without gaps: two cache lines."""
 
-COLUMNS: tuple[str, ...] = tuple(ROW.names or ())
+COLUMNS: tuple[str, ...] = tuple(FIELDS)
 OFFSETS = {name: int(field[1]) for name, field in (ROW.fields or {}).items()}
 """Where each column lies in a row, bytes."""
 
-COMPACT_COLUMNS: tuple[str, ...] = ("event", "kind", "a", "b", "wall", "joint", "epoch", "remainder")
+COMPACT_COLUMNS: tuple[str, ...] = tuple(name for name, field in FIELDS.items() if field.kept)
 """What a compact log keeps; replay computes the others."""
-
-Rows: TypeAlias = NDArray[np.void]
-Floats: TypeAlias = NDArray[np.float64]
-Column: TypeAlias = NDArray[Any]
 
 
 def blank_rows(count: int) -> Rows:
     """Return `count` rows in which everything is missing: zeros for event, epoch and kind, else -1 or NaN."""
     rows = np.zeros(count, dtype=ROW)
-    for name in COLUMNS:
+    for name, field in FIELDS.items():
         if ROW[name].kind == "f":
             rows[name] = np.nan
-    for name in ("b", "wall", "joint"):
-        rows[name] = -1
+        elif field.missing is not None:
+            rows[name] = field.missing
     return rows
 
 

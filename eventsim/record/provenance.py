@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim.errors import LogError, SceneError
-from eventsim.record.events import Kind, Rows
+from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Kind, Rows
 from eventsim.scene import Scene
 from eventsim.scene.files import scene_from_dict, scene_to_json
 
@@ -60,6 +60,11 @@ class Provenance:
     def finished(self, ending: Ending | None, kicks: tuple[Kick, ...], rows: int) -> Provenance:
         """Return the provenance of the whole log."""
         return replace(self, ending=ending, kicks=kicks, rows=rows)
+
+
+def columns_kept(provenance: Provenance) -> tuple[str, ...]:
+    """Return the names of the columns that a log has, in order."""
+    return COMPACT_COLUMNS if provenance.compact else COLUMNS
 
 
 def kicks_of(rows: Rows) -> list[Kick]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, State
 from eventsim.record.files.atomic import atomic_write
@@ -16,7 +17,6 @@ from eventsim.scene.scene import Scene
 if TYPE_CHECKING:
     from gsd.hoomd import Frame
 
-SUFFIXES = (".xyz", ".gsd")
 THICKNESS = 1.0
 """The extent of the cell across the plane, where a format wants one."""
 
@@ -28,8 +28,8 @@ def write_exchange(path: Path, scene: Scene, states: Sequence[State]) -> None:
     Raises EventsimError for another suffix, a missing library, or a file that cannot be written.
     """
     suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise EventsimError(f"{path}: a trajectory ends in {' or '.join(SUFFIXES)}")
+    if suffix not in suffixes.EXCHANGE:
+        raise EventsimError(f"{path}: a trajectory ends in {' or '.join(suffixes.EXCHANGE)}")
     with atomic_write(path) as part:
         if suffix == ".xyz":
             _write_xyz(part, scene, states)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
@@ -13,14 +13,15 @@ import numpy as np
 
 from eventsim.errors import LogWarning
 from eventsim.record.digest import digest_of
-from eventsim.record.events import COLUMNS, LABELS, Column, Rows, blank_rows
+from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, blank_rows
+from eventsim.record.files import FileSink, open_log, open_sink, read_log
 from eventsim.record.provenance import Ending, Provenance, kicks_of
 from eventsim.scene import Scene
 
 SAVE_BLOCK = 1 << 16
 
 
-class EventLog:
+class EventLog(Columns):
     """An immutable log: its provenance and one row per impulse.
 
     Every column is an attribute holding a read-only array (`log.time`, `log.vxa`, ...): `log.kind` holds codes
@@ -29,25 +30,6 @@ class EventLog:
 
     In a compact log the columns that replay computes are missing (NaN); `expand()` gives the full log.
     """
-
-    event: Column
-    time: Column
-    kind: Column
-    a: Column
-    b: Column
-    wall: Column
-    xa: Column
-    ya: Column
-    vxa: Column
-    vya: Column
-    xb: Column
-    yb: Column
-    vxb: Column
-    vyb: Column
-    impulse: Column
-    joint: Column
-    epoch: Column
-    remainder: Column
 
     def __init__(self, provenance: Provenance, rows: Rows) -> None:
         view = rows.view()
@@ -123,8 +105,6 @@ class EventLog:
 
         compact: leave out what replay computes. Raises LogError where the file cannot be written.
         """
-        from eventsim.record.files import open_sink  # files read logs, so they import this module
-
         log = self if compact else self.expand()
         ending = log.provenance.ending
         if ending is not None and ending.digest is None and not log.compact:
@@ -176,11 +156,18 @@ def load_log(path: str | PathLike[str]) -> EventLog:
     A text log that still grows (NAME.csv.part, NAME.jsonl.part) is read up to its last whole line.  Warns (LogWarning) where
     its numbers were changed since it was written.
     """
-    from eventsim.record.files import reader_for
-
     file = Path(path)
-    read: Callable[[Path], EventLog] = reader_for(file)
-    log = read(file)
+    log = EventLog(*read_log(file))
     log.verify(str(file))
     log.path = file
     return log
+
+
+def rows_so_far(sink: FileSink) -> Iterator[Rows]:
+    """Yield the full rows that a writer has written, in blocks; those of a compact log all at once."""
+    provenance, blocks = open_log(sink.part)
+    if not provenance.compact:
+        yield from blocks
+        return
+    rows = np.concatenate([blank_rows(0), *blocks])
+    yield EventLog(replace(provenance, kicks=sink.sync().kicks), rows).expand().rows

@@ -9,13 +9,13 @@ from typing import IO
 
 import numpy as np
 
+from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.events import Column, State
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay import exchange
 from eventsim.scene import Scene
 
-SUFFIXES = (".csv", ".npz", *exchange.SUFFIXES)
 STATE_COLUMNS = ("time", "disk", "x", "y", "vx", "vy", "radius", "mass")
 
 
@@ -43,9 +43,9 @@ def write_states(path: str | PathLike[str], scene: Scene, states: Sequence[State
     The file appears under its name only when whole. Raises EventsimError where it cannot be written.
     """
     file = Path(path)
-    if file.suffix.lower() not in SUFFIXES:
-        raise EventsimError(f"{file}: a file of states ends in {', '.join(SUFFIXES)}")
-    if file.suffix.lower() in exchange.SUFFIXES:
+    if file.suffix.lower() not in suffixes.STATES:
+        raise EventsimError(f"{file}: a file of states ends in {', '.join(suffixes.STATES)}")
+    if file.suffix.lower() in suffixes.EXCHANGE:
         exchange.write_exchange(file, scene, states)
         return
     columns = state_columns(scene, states)

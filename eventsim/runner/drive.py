@@ -16,10 +16,10 @@ from eventsim.errors import EventsimError
 from eventsim.formulas.clock import MOST_EPOCHS, clock_time
 from eventsim.record.digest import Digester
 from eventsim.record.events import Rows, State
-from eventsim.record.files import FileSink, continued_sink, open_sink, rows_so_far
+from eventsim.record.files import FileSink, continued_sink, open_sink
 from eventsim.record.places import on_scene_axes
 from eventsim.record.provenance import Ending, Provenance
-from eventsim.replay.log import EventLog, MemorySink
+from eventsim.replay.log import EventLog, MemorySink, rows_so_far
 from eventsim.runner.checkpoint import Checkpoint, Every
 from eventsim.runner.checkpoint_writer import USUALLY, Keeper
 from eventsim.runner.loop import Sink, Work

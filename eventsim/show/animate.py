@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import EventLog
@@ -24,7 +25,6 @@ from eventsim.show.player.page import page, write_page
 from eventsim.show.strip import write_strip
 from eventsim.show.strokes import BANDS
 
-SUFFIXES = (".mp4", ".gif", ".html", ".png")
 FPS = {".mp4": 30.0, ".gif": 20.0}
 DURATION = {".mp4": 10.0, ".gif": 6.0}
 """Seconds that a movie lasts where neither duration nor speed is given."""
@@ -72,7 +72,7 @@ def animate(
     ffmpeg is missing or the file cannot be written.
     """
     file, film, look = Path(path), film or Film(), look or Look()
-    suffix = suffix_of(file, SUFFIXES, "an animation")
+    suffix = suffix_of(file, suffixes.ANIMATIONS, "an animation")
     if suffix == ".html":
         text = _page(log, film, look)
         with atomic_write(file) as part:

@@ -10,13 +10,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from eventsim import suffixes
 from eventsim.record.files.atomic import atomic_write
 from eventsim.show.output import suffix_of
 from eventsim.show.palette import LIGHT
 from eventsim.validate.stress.catalogue import CASES
 from eventsim.validate.stress.verdict import Verdict, Word
-
-SUFFIXES = (".png", ".svg", ".pdf")
 
 COLOURS = {
     Word.RIGHT: "#009E73",
@@ -39,7 +38,7 @@ def write_atlas(verdicts: Sequence[Verdict], path: Path) -> None:
 
     Raises EventsimError where the suffix is unknown or the file cannot be written.
     """
-    suffix = suffix_of(path, SUFFIXES, "the atlas")
+    suffix = suffix_of(path, suffixes.FIGURES, "the atlas")
     with rc_context({"svg.hashsalt": "eventsim", "svg.fonttype": "path"}):
         figure = _drawn(verdicts)
         FigureCanvasAgg(figure)

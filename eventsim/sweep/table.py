@@ -8,18 +8,18 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
 from eventsim.sweep.task import Cell, Row
 
-SUFFIXES = (".csv", ".parquet")
 FORMAT = 1
 
 
 def check_suffix(path: Path) -> Path:
     """The path of a table; EventsimError where it is none that can be written."""
-    if path.suffix.lower() not in SUFFIXES:
-        raise EventsimError(f"{path}: a table is written as {' or '.join(SUFFIXES)}")
+    if path.suffix.lower() not in suffixes.TABLES:
+        raise EventsimError(f"{path}: a table is written as {' or '.join(suffixes.TABLES)}")
     if not path.parent.is_dir():
         raise EventsimError(f"{path}: there is no directory {path.parent}")
     return path

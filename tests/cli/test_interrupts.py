@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.record.files import SUFFIXES
+from eventsim.suffixes import LOGS
 
 LONG = 2400
 """Events of a run that is killed: a second or so."""
@@ -71,7 +71,7 @@ def kill_again_and_again(place, suffix, compact, engine, kills, seed):
         assert log.read_bytes() == whole.log_path.read_bytes()
 
 
-CASES = [(suffix, compact) for suffix in SUFFIXES for compact in (False, True)]
+CASES = [(suffix, compact) for suffix in LOGS for compact in (False, True)]
 
 
 @pytest.mark.parametrize(("suffix", "compact"), [(".csv", False), (".npz", True), (".parquet", False)])
@@ -100,7 +100,7 @@ def limited(size):
     return limit
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_a_full_disk_ends_a_run_with_a_readable_part_from_which_it_goes_on(tmp_path, suffix, eventsim):
     log, checkpoint = tmp_path / f"run{suffix}", tmp_path / "run.checkpoint"
     words = ("run", "gas", "--set", "n=30", "--events", 6000, "--engine", "reference", "--log", log)

@@ -8,14 +8,15 @@ from pathlib import Path
 import pytest
 
 from eventsim.errors import LogError, LogWarning
-from eventsim.record.files import SUFFIXES, open_sink
+from eventsim.record.files import open_sink
 from eventsim.replay.log import load_log
 from eventsim.scene.gallery import gallery
 from eventsim.simulation import simulate
+from eventsim.suffixes import LOGS
 from tests.record.logs import provenance, random_log
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 @pytest.mark.parametrize(
     "content", [b"", b"hello\n", b"\x00\xff\xfe\x80" * 40, b"# {}\n", b"{}\n", b"PK\x03\x04", b"PAR1"]
 )
@@ -47,8 +48,8 @@ def test_a_changed_number_in_a_compact_log_does_not_replay(tmp_path: Path) -> No
         load_log(path).expand()
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
-@pytest.mark.parametrize("named", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
+@pytest.mark.parametrize("named", LOGS)
 def test_a_log_under_another_suffix_is_told_by_its_looks(tmp_path: Path, suffix: str, named: str) -> None:
     random_log(20).save(tmp_path / f"log{suffix}")
     (tmp_path / f"log{suffix}").rename(tmp_path / f"other{named}")
@@ -59,7 +60,7 @@ def test_a_log_under_another_suffix_is_told_by_its_looks(tmp_path: Path, suffix:
         load_log(tmp_path / f"other{named}")
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 @pytest.mark.parametrize("share", [0.05, 0.5, 0.9, 0.999])
 def test_a_log_that_was_cut_off_is_refused(tmp_path: Path, suffix: str, share: float) -> None:
     random_log(200).save(tmp_path / f"log{suffix}")

@@ -15,12 +15,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, ROW
-from eventsim.record.files import SUFFIXES, open_sink
+from eventsim.record.files import open_sink
 from eventsim.replay.log import EventLog, load_log
+from eventsim.suffixes import LOGS
 from tests.record.logs import FLOATS, any_float, provenance, random_log, random_rows
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 @pytest.mark.parametrize("count", [0, 1, 500])
 def test_a_log_comes_back_from_its_file_bit_for_bit(tmp_path: Path, suffix: str, count: int) -> None:
     log = random_log(count)
@@ -41,7 +42,7 @@ def test_the_digest_survives_the_way_through_all_formats(tmp_path: Path) -> None
     assert len(digests) == 1
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 @settings(max_examples=25, deadline=None)
 @given(values=st.lists(st.tuples(any_float, any_float, st.floats(0, 1e300)), min_size=1, max_size=5))
 def test_any_float_round_trips(
@@ -55,7 +56,7 @@ def test_any_float_round_trips(
     assert load_log(path).rows.tobytes() == rows.tobytes()
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_the_blocks_of_a_stream_do_not_show_in_the_file(tmp_path: Path, suffix: str) -> None:
     rows = random_rows(100)
     for name, cuts in (("one", [100]), ("many", [0, 1, 7, 8, 60, 100])):
@@ -66,7 +67,7 @@ def test_the_blocks_of_a_stream_do_not_show_in_the_file(tmp_path: Path, suffix: 
     assert (tmp_path / f"one{suffix}").read_bytes() == (tmp_path / f"many{suffix}").read_bytes()
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_a_compact_log_keeps_what_cannot_be_computed(tmp_path: Path, suffix: str) -> None:
     log = random_log(200)
     log.save(tmp_path / f"log{suffix}", compact=True)
@@ -95,7 +96,7 @@ def test_a_csv_log_is_a_table_for_pandas(tmp_path: Path) -> None:
 def test_odd_names_of_walls_come_back(tmp_path: Path, name: str) -> None:
     rows = random_rows(20)
     names = (name, "right", "bottom", "top")
-    for suffix in SUFFIXES:
+    for suffix in LOGS:
         EventLog(provenance(wall_names=names), rows).save(tmp_path / f"log{suffix}")
         again = load_log(tmp_path / f"log{suffix}")
         assert np.array_equal(again.wall, rows["wall"])

@@ -11,16 +11,17 @@ import pytest
 
 from eventsim.errors import LogError
 from eventsim.record import Ending
-from eventsim.record.files import SUFFIXES, Mark, continued_sink, open_sink, rows_so_far
+from eventsim.record.files import Mark, continued_sink, open_sink
 from eventsim.record.files.journal import ROOM
-from eventsim.replay.log import load_log
+from eventsim.replay.log import load_log, rows_so_far
+from eventsim.suffixes import LOGS
 from tests.record.logs import provenance, random_log, random_rows, scene
 
 TEXT = (".csv", ".jsonl")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there the second run fails by itself")
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_a_second_run_that_writes_the_same_log_is_refused(tmp_path: Path, suffix: str) -> None:
     log = random_log(20)
     path = tmp_path / f"log{suffix}"
@@ -37,7 +38,7 @@ def test_a_second_run_that_writes_the_same_log_is_refused(tmp_path: Path, suffix
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_a_file_appears_only_when_it_is_whole(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"log{suffix}"
     path.write_text("what was there before")
@@ -82,7 +83,7 @@ def test_a_growing_binary_log_can_be_read_up_to_its_last_whole_row(tmp_path: Pat
 
 @pytest.mark.parametrize("compact", [False, True])
 @pytest.mark.parametrize("ended", ["killed", "closed"])
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_a_log_that_is_continued_is_the_same_file_as_one_written_at_once(
     tmp_path: Path, suffix: str, ended: str, compact: bool
 ) -> None:
@@ -133,7 +134,7 @@ def test_a_log_stays_as_it_is_though_its_journal_was_left_over_and_is_continued(
     assert path.read_bytes() == (tmp_path / f"once{suffix}").read_bytes()
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_what_is_not_the_log_of_a_run_is_not_continued(tmp_path: Path, suffix: str) -> None:
     path, log = tmp_path / f"log{suffix}", random_log(20)
     with pytest.raises(LogError, match="neither this log nor"):
@@ -151,7 +152,7 @@ def test_what_is_not_the_log_of_a_run_is_not_continued(tmp_path: Path, suffix: s
     assert load_log(path).rows.tobytes() == log.rows.tobytes()
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_a_vanished_directory_is_noticed_with_the_next_rows(tmp_path: Path, suffix: str) -> None:
     place = tmp_path / "place"
     place.mkdir()

@@ -10,11 +10,11 @@ import pytest
 
 from eventsim.errors import LogError
 from eventsim.record import State
-from eventsim.record.files import SUFFIXES
 from eventsim.replay.log import EventLog, load_log
 from eventsim.replay.replay import Replay
 from eventsim.scene import Arc, Box, Channel, Circle, Disks, Domain, Open, Periodic, Polygon, Polyline, Scene, Segment
 from eventsim.simulation import Simulation, simulate
+from eventsim.suffixes import LOGS
 
 UNEVEN = np.where(np.arange(16) % 3 == 0, 2.0**20, np.where(np.arange(16) % 7 == 1, np.inf, 1.0))
 POSTS = np.where(np.arange(16) % 5 == 0, np.inf, 1.0 + np.arange(16) % 3)
@@ -156,7 +156,7 @@ def kicked(mass: object) -> Simulation:
     return simulation
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 @pytest.mark.parametrize("compact", [False, True])
 @pytest.mark.parametrize("mass", [1.0, UNEVEN], ids=["equal", "uneven"])
 def test_a_file_with_kicks_replays_to_the_final_state(tmp_path: Path, suffix: str, compact: bool, mass: object) -> None:
@@ -173,7 +173,7 @@ def test_a_streamed_log_is_the_one_in_memory(tmp_path: Path) -> None:
     scene, until = SCENES["periodic"]
     kept = simulate(scene, until=until, log=True).log
     assert kept is not None
-    for suffix in SUFFIXES:
+    for suffix in LOGS:
         run = simulate(scene, until=until, log=tmp_path / f"log{suffix}")
         streamed = load_log(tmp_path / f"log{suffix}")
         assert isinstance(streamed, EventLog)

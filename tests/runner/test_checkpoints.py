@@ -11,9 +11,9 @@ import pytest
 import eventsim as es
 import eventsim.engines.auto
 from eventsim.formulas.rest import SUPPORTED
-from eventsim.record.files import SUFFIXES
 from eventsim.runner import checkpoint as checkpoints
 from eventsim.runner.checkpoint import Every, interval, load_checkpoint
+from eventsim.suffixes import LOGS
 from tests.engines.scenes import lattice_gas
 from tests.engines.test_purity import SCENES
 
@@ -62,7 +62,7 @@ def test_a_run_goes_on_from_any_event(tmp_path, name, engine):
 
 
 @pytest.mark.parametrize("compact", [False, True])
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", LOGS)
 def test_a_broken_run_leaves_a_readable_part_and_joins_to_the_same_log(tmp_path, suffix, compact):
     scene = SCENES["channel"]()
     whole, log, path = tmp_path / f"whole{suffix}", tmp_path / f"run{suffix}", tmp_path / "run.checkpoint"

@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import eventsim as es
-from eventsim.record.files import SUFFIXES
 from eventsim.runner.checkpoint import interval, load_checkpoint
 from eventsim.scene.files import apply_overrides, load_scene, scene_from_dict
+from eventsim.suffixes import LOGS
 
 SCENE = {
     "until": 1.0,
@@ -169,13 +169,13 @@ def written(tmp_path_factory):
     """Name -> bytes of good logs and a checkpoint."""
     place = tmp_path_factory.mktemp("good")
     scene = scene_from_dict(SCENE)
-    for suffix in SUFFIXES:
+    for suffix in LOGS:
         es.simulate(scene, events=10, until=9.0, log=place / f"log{suffix}")
     es.simulate(scene, events=10, until=9.0, checkpoint=place / "run.checkpoint")
     return {path.name: path.read_bytes() for path in place.iterdir()}
 
 
-@pytest.mark.parametrize("name", [*(f"log{suffix}" for suffix in SUFFIXES), "run.checkpoint"])
+@pytest.mark.parametrize("name", [*(f"log{suffix}" for suffix in LOGS), "run.checkpoint"])
 @pytest.mark.filterwarnings("ignore::eventsim.errors.LogWarning")
 def test_damage_anywhere_in_a_file_is_answered(tmp_path, written, name):
     """Bytes changed, left out, doubled: what is read is used, what is not is refused."""

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from eventsim.errors import EventsimError
-from eventsim.record.files.sink import PART
+from eventsim.suffixes import PART
 
 
 @contextmanager

@@ -9,10 +9,11 @@ import csv
 import math
 from collections.abc import Sequence
 
-from eventsim.record.events import ROW, Rows
-from eventsim.record.files.table import columns_kept, labels_of, rows_from_columns
-from eventsim.record.files.text import TextForm, TextSink, words_of
-from eventsim.record.provenance import Provenance
+from eventsim.record.events import FIELDS, ROW, Rows
+from eventsim.record.files.sink import Format
+from eventsim.record.files.table import labels_of, rows_from_columns
+from eventsim.record.files.text import TextForm, TextSink, text_format, words_of
+from eventsim.record.provenance import Provenance, columns_kept
 
 PREFIX = "# "
 
@@ -60,7 +61,7 @@ def _parse(lines: list[str], provenance: Provenance) -> Rows:
     if any(len(record) != len(names) for record in records):
         raise ValueError(f"{len(names)} values were expected")
     for name, words in zip(names, zip(*records, strict=True), strict=True):
-        if name in ("kind", "wall"):
+        if FIELDS[name].labelled:
             columns[name] = words
         elif ROW[name].kind == "f":
             columns[name] = [float(word) if word else math.nan for word in words]
@@ -69,4 +70,4 @@ def _parse(lines: list[str], provenance: Provenance) -> Rows:
     return rows_from_columns(columns, provenance)
 
 
-FORM = TextForm(PREFIX, _header, _parse)
+FORMAT: Format = text_format(CsvSink, TextForm(PREFIX, _header, _parse))

@@ -18,18 +18,19 @@ from typing import IO, TypeAlias
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import ROW, Column, Rows, blank_rows
-from eventsim.record.files.runs import STEADY, columns_of_runs, cut_runs, rows_in_runs, runs_of
-from eventsim.record.files.sink import PART, FileSink, demand_same
-from eventsim.record.files.table import columns_kept
+from eventsim.record.events import FIELDS, ROW, Column, Rows, blank_rows
+from eventsim.record.files.runs import columns_of_runs, cut_runs, rows_in_runs, runs_of
+from eventsim.record.files.sink import FileSink, Opened, demand_same
 from eventsim.record.provenance import (
     BEFORE_SCENE,
     Provenance,
+    columns_kept,
     provenance_from_text,
     provenance_text,
     text_after_scene,
 )
 from eventsim.scene.files import scene_beside, scene_texts
+from eventsim.suffixes import PART
 
 METADATA = "eventsim"
 """The file with the metadata beside the columns."""
@@ -188,7 +189,7 @@ def journal_provenance(part: Path) -> Provenance:
 
 def raw(columns: Iterable[str]) -> tuple[str, ...]:
     """Those of some columns that have a file of their own."""
-    return tuple(name for name in columns if name != NUMBER and name not in STEADY)
+    return tuple(name for name in columns if name != NUMBER and not FIELDS[name].steady)
 
 
 def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
@@ -222,8 +223,8 @@ def blocks_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterato
         yield rows
 
 
-def open_journal(part: Path) -> tuple[Provenance, Iterator[Rows]]:
+def open_journal(part: Path) -> Opened:
     """The metadata and the rows of a log that grows, in blocks; LogError where it is none."""
     provenance = journal_provenance(part)
     columns = columns_kept(provenance)
-    return provenance, blocks_of_journal(part, columns, rows_in_journal(part, columns))
+    return Opened(provenance, blocks_of_journal(part, columns, rows_in_journal(part, columns)))

@@ -7,9 +7,10 @@ import json
 import numpy as np
 
 from eventsim.record.events import Rows
-from eventsim.record.files.table import columns_kept, labels_of, rows_from_columns
-from eventsim.record.files.text import TextForm, TextSink, words_of
-from eventsim.record.provenance import Provenance
+from eventsim.record.files.sink import Format
+from eventsim.record.files.table import labels_of, rows_from_columns
+from eventsim.record.files.text import TextForm, TextSink, text_format, words_of
+from eventsim.record.provenance import Provenance, columns_kept
 
 
 class JsonlSink(TextSink):
@@ -47,4 +48,4 @@ def _parse(lines: list[str], provenance: Provenance) -> Rows:
     return rows_from_columns(columns, provenance)
 
 
-FORM = TextForm("", lambda provenance: "", _parse)
+FORMAT: Format = text_format(JsonlSink, TextForm("", lambda provenance: "", _parse))

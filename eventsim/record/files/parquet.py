@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from eventsim.errors import LogError
-from eventsim.record.events import COLUMNS, ROW, Column, blank_rows
-from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink
-from eventsim.record.files.table import DAMAGE, checked_log, columns_kept, labels_of, rows_from_columns
-from eventsim.record.provenance import Provenance, provenance_from_text
-from eventsim.replay.log import EventLog
+from eventsim.errors import LogError, told_as
+from eventsim.record.events import FIELDS, ROW, Column, Rows
+from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink, open_journal
+from eventsim.record.files.sink import Format, Opened
+from eventsim.record.files.table import labels_of, rows_from_columns
+from eventsim.record.provenance import Provenance, columns_kept, provenance_from_text
 
 try:
     import pyarrow as pa
@@ -20,8 +22,8 @@ try:
 except ImportError:
     raise LogError("parquet logs need pyarrow: install eventsim-disks[parquet]") from None
 
-TEXTS = ("kind", "wall")
-NULLABLE = frozenset(name for name in COLUMNS if ROW[name].kind == "f") - {"time", "remainder"}
+TEXTS = tuple(name for name, field in FIELDS.items() if field.labelled)
+NULLABLE = frozenset(name for name, field in FIELDS.items() if ROW[name].kind == "f" and field.missing is not None)
 GROUP = 1 << 15
 """Rows in a group, which are held at a time: more would push what the engine needs out of the caches that cores share."""
 
@@ -84,23 +86,27 @@ def write_plain_table(path: Path, columns: dict[str, list[Any]], metadata: dict[
     pq.write_table(pa.table(arrays).replace_schema_metadata(metadata), path)
 
 
-def read_parquet(path: Path) -> EventLog:
-    """Read a parquet log; raise LogError where it is none."""
-    try:
-        with pq.ParquetFile(path) as file:
-            text = (file.metadata.metadata or {}).get(METADATA.encode())
-            if text is None:
-                raise LogError(f"{path}: not an event log: its metadata have no key {METADATA}")
-            provenance = provenance_from_text(text.decode(), str(path))
-            names = columns_kept(provenance)
-            blocks = [blank_rows(0)]
-            for group in range(file.num_row_groups):
-                table = file.read_row_group(group, columns=list(names))
-                columns = {name: _column(table.column(name)) for name in names}
-                blocks.append(rows_from_columns(columns, provenance))
-    except (*DAMAGE, OSError, pa.ArrowException) as error:
-        raise LogError(f"{path}: not a whole parquet event log ({error})") from None
-    return checked_log(provenance, np.concatenate(blocks), path)
+def open_parquet(path: Path) -> Opened:
+    """The metadata of a parquet log, and its rows in blocks, one group after the other."""
+    with ExitStack() as opened, _told(path):
+        file = opened.enter_context(pq.ParquetFile(path))
+        text = (file.metadata.metadata or {}).get(METADATA.encode())
+        if text is None:
+            raise LogError(f"{path}: not an event log: its metadata have no key {METADATA}")
+        provenance = provenance_from_text(text.decode(), str(path))
+        return Opened(provenance, _blocks(opened.pop_all(), file, provenance, path))
+    raise AssertionError("either metadata or an error")
+
+
+def _blocks(opened: ExitStack, file: Any, provenance: Provenance, path: Path) -> Iterator[Rows]:
+    names = columns_kept(provenance)
+    with opened, _told(path):
+        for batch in file.iter_batches(GROUP, columns=list(names)):
+            yield rows_from_columns({name: _column(batch.column(name)) for name in names}, provenance)
+
+
+def _told(path: Path) -> AbstractContextManager[None]:
+    return told_as(LogError, path, "not a whole parquet event log")
 
 
 def _schema(names: tuple[str, ...]) -> Any:
@@ -130,5 +136,8 @@ def _numbers(values: Column) -> Any:
 
 
 def _column(column: Any) -> Column:
-    values: Column = column.to_numpy()
+    values: Column = column.to_numpy(zero_copy_only=False)
     return values
+
+
+FORMAT = Format(ParquetSink, open_parquet, open_journal)

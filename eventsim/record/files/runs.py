@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from eventsim.record.events import ROW, Column, Rows
+from eventsim.record.events import FIELDS, ROW, Column, Rows
 
-STEADY = ("kind", "wall", "joint", "epoch")
+STEADY = tuple(name for name, field in FIELDS.items() if field.steady)
 RUN = np.dtype([("end", "<i8"), *((name, ROW[name]) for name in STEADY)])
 """end: how many rows of the log there are up to the end of the run."""
 

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 from eventsim.errors import LogError
-from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Rows
+from eventsim.record.events import Rows
 from eventsim.record.files.claim import Claim
-from eventsim.record.provenance import Ending, Kick, Provenance, kicks_of
-
-PART = ".part"
+from eventsim.record.provenance import Ending, Kick, Provenance, columns_kept, kicks_of
+from eventsim.suffixes import PART
 
 
 class Mark(NamedTuple):
@@ -42,7 +41,7 @@ class FileSink(ABC):
         self.path = path
         self.part = part_of(path)
         self.provenance = provenance
-        self.columns = COMPACT_COLUMNS if provenance.compact else COLUMNS
+        self.columns = columns_kept(provenance)
         self._kicks_come_with_rows = kicks is None
         self._kicks = list(kicks or ()) if mark is None else list(mark.kicks)
         self._count = 0 if mark is None else mark.rows
@@ -136,6 +135,21 @@ class FileSink(ABC):
 
     @abstractmethod
     def _discard(self) -> None: ...
+
+
+class Opened(NamedTuple):
+    """A log file that is read: where it comes from, and its rows block by block."""
+
+    provenance: Provenance
+    blocks: Iterator[Rows]
+
+
+class Format(NamedTuple):
+    """How logs of one suffix are written and read; the readers raise LogError."""
+
+    sink: type[FileSink]
+    open_whole: Callable[[Path], Opened]
+    open_part: Callable[[Path], Opened]
 
 
 def part_of(path: Path) -> Path:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, LABELS, ROW, Column, Kind, Rows, blank_rows
-from eventsim.record.provenance import Provenance
-from eventsim.replay.log import EventLog
+from eventsim.record.events import COLUMNS, FIELDS, LABELS, ROW, Column, Kind, Rows, blank_rows
+from eventsim.record.provenance import Provenance, columns_kept
 
 DAMAGE = (
     ArithmeticError,
@@ -30,18 +29,11 @@ BLOCK = 1 << 12
 """Rows that are filled in, or looked at, at a time: they stay in a core's own cache."""
 
 
-def columns_kept(provenance: Provenance) -> tuple[str, ...]:
-    """Return the names of the columns in a file, in order."""
-    return COMPACT_COLUMNS if provenance.compact else COLUMNS
-
-
 def labels_of(name: str, wall_names: Sequence[str]) -> Column | None:
     """Return the texts that a column of codes stands for (the last one for the code -1), or None for numbers."""
-    if name == "kind":
-        return np.array(LABELS)
-    if name == "wall":
-        return np.array([*wall_names, ""])
-    return None
+    if not FIELDS[name].labelled:
+        return None
+    return np.array(LABELS) if name == "kind" else np.array([*wall_names, ""])
 
 
 def rows_from_columns(columns: Mapping[str, Sequence[object] | Column], provenance: Provenance) -> Rows:
@@ -91,18 +83,24 @@ def integers_of(values: Sequence[object] | Column, dtype: np.dtype[Any]) -> Colu
     return narrow
 
 
-def checked_log(provenance: Provenance, rows: Rows, path: Path) -> EventLog:
-    """Return the log if its rows can be those of its scene; raise LogError naming the file and the first bad row."""
-    if provenance.rows not in (None, len(rows)):
-        raise LogError(f"{path}: holds {len(rows)} rows where {provenance.rows} were written; the file was cut off")
-    epoch = 0
-    for first in range(0, len(rows), BLOCK):
-        block = rows[first : first + BLOCK]
-        for rule, broken in _rules(block, first, epoch, len(provenance.scene.disks)).items():
-            if broken.any():
-                raise LogError(f"{path}: row {first + int(np.argmax(broken))}: {rule}")
-        epoch = block["epoch"][-1]
-    return EventLog(provenance, rows)
+def checked(provenance: Provenance, blocks: Iterable[Rows], path: Path) -> Iterator[Rows]:
+    """Yield rows block by block if they can be those of their scene.
+
+    Raises:
+        LogError: naming the file and the first bad row, or how many rows are missing in the end.
+    """
+    count = epoch = 0
+    for rows in blocks:
+        for first in range(0, len(rows), BLOCK):
+            block = rows[first : first + BLOCK]
+            for rule, broken in _rules(block, count + first, epoch, len(provenance.scene.disks)).items():
+                if broken.any():
+                    raise LogError(f"{path}: row {count + first + int(np.argmax(broken))}: {rule}")
+            epoch = block["epoch"][-1]
+        count += len(rows)
+        yield rows
+    if provenance.rows not in (None, count):
+        raise LogError(f"{path}: holds {count} rows where {provenance.rows} were written; the file was cut off")
 
 
 def _rules(rows: Rows, first: int, epoch: int, count: int) -> dict[str, Column]:

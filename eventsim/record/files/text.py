@@ -14,11 +14,10 @@ from typing import IO, NamedTuple
 import numpy as np
 
 from eventsim.errors import LogError
-from eventsim.record.events import Column, Rows, blank_rows
-from eventsim.record.files.sink import PART, FileSink, demand_same
-from eventsim.record.files.table import checked_log
+from eventsim.record.events import Column, Rows
+from eventsim.record.files.sink import FileSink, Format, Opened, demand_same
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
-from eventsim.replay.log import EventLog
+from eventsim.suffixes import PART
 
 RESERVE = 512
 """Blanks after the first metadata line, so that the ending can be entered without moving the rows."""
@@ -159,14 +158,15 @@ def words_of(values: Column, missing: str) -> list[str]:
     return words
 
 
-def read_text(path: Path, form: TextForm) -> EventLog:
-    """Read a text log; of a growing file (NAME.part) an unfinished last line is left out.  Raises LogError."""
-    provenance, blocks = open_text(path, form)
-    return checked_log(provenance, np.concatenate([blank_rows(0), *blocks]), path)
+def text_format(sink: type[TextSink], form: TextForm) -> Format:
+    """The format of a text log."""
+    return Format(sink, lambda path: open_text(path, form), lambda path: open_text(path, form))
 
 
-def open_text(path: Path, form: TextForm) -> tuple[Provenance, Iterator[Rows]]:
-    """The metadata of a text log and its rows in blocks, not checked yet; LogError from either."""
+def open_text(path: Path, form: TextForm) -> Opened:
+    """The metadata of a text log and its rows in blocks; of a growing file an unfinished last line is left out."""
+    if not path.is_file():
+        raise LogError(f"{path}: not a file")
     with ExitStack() as opened:
         opened.enter_context(_told_as_log_error(path))
         # Editors on some systems add a mark and other line ends.
@@ -178,7 +178,7 @@ def open_text(path: Path, form: TextForm) -> tuple[Provenance, Iterator[Rows]]:
         header = form.header_of(provenance)
         if header and next(lines, "") + "\n" != header:
             raise LogError(f"{path}: the columns are not those of an event log: {header.strip()}")
-        return provenance, _blocks(opened.pop_all(), lines, form, provenance, path)
+        return Opened(provenance, _blocks(opened.pop_all(), lines, form, provenance, path))
     raise AssertionError("either metadata or an error")
 
 

@@ -11,14 +11,13 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import EventLog
 from eventsim.show.figures import TITLES
 from eventsim.show.figures.style import new_figure
 from eventsim.show.output import suffix_of
-
-SUFFIXES = (".png", ".svg", ".pdf")
 
 
 def write_figure(log: EventLog, kind: str, path: str | PathLike[str]) -> None:
@@ -35,7 +34,7 @@ def write_figure(log: EventLog, kind: str, path: str | PathLike[str]) -> None:
 
 def save_figure(draw: Callable[[Figure], None], file: Path) -> None:
     """Write the figure that `draw` fills, to a file that depends on nothing else: no date, no random names inside an svg."""
-    suffix = suffix_of(file, SUFFIXES, "a figure")
+    suffix = suffix_of(file, suffixes.FIGURES, "a figure")
     with rc_context({"svg.hashsalt": "eventsim", "svg.fonttype": "path"}):
         figure = new_figure()
         FigureCanvasAgg(figure)

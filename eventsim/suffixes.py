@@ -1,0 +1,14 @@
+"""What the names of files end in, by what is in them; no other module lists them."""
+
+SCENES = (".toml", ".json")
+LOGS = (".csv", ".jsonl", ".npz", ".parquet")
+PART = ".part"
+"""After the name of a file that grows, or is not whole yet."""
+
+EXCHANGE = (".xyz", ".gsd")
+"""States for other programs."""
+
+STATES = (".csv", ".npz", *EXCHANGE)
+TABLES = (".csv", ".parquet")
+FIGURES = (".png", ".svg", ".pdf")
+ANIMATIONS = (".mp4", ".gif", ".html", ".png")
