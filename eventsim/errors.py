@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from pathlib import Path
-
-LONGEST_REASON = 200
-"""Letters of what a library has to say."""
+from collections.abc import Iterable
 
 
 class EventsimError(Exception):
@@ -41,23 +36,3 @@ class CollapseError(EventsimError):
 
 class CheckpointError(EventsimError):
     """A checkpoint cannot be read or written, or belongs to another scene or version."""
-
-
-@contextmanager
-def told_as(error: type[EventsimError], path: Path, what: str) -> Iterator[None]:
-    """Tell whatever a library raises over the bytes of a file, of which every one may be any, as one error of ours.
-
-    Args:
-        error: its type.
-        path: the file.
-        what: what it then is, such as "not a whole .npz event log".
-    """
-    try:
-        yield
-    except EventsimError:
-        raise
-    except OSError as problem:
-        raise error(f"{path}: cannot be read ({problem.strerror or problem})") from problem
-    except Exception as problem:  # zipfile alone has ten kinds, and numpy's readers let those of Python's parser through
-        why = " ".join(str(problem).split())[:LONGEST_REASON]
-        raise error(f"{path}: {what} ({why or type(problem).__name__})") from problem

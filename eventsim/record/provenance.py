@@ -12,7 +12,7 @@ from typing import Any
 from eventsim.errors import LogError, SceneError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Kind, Rows
 from eventsim.scene import Scene
-from eventsim.scene.files import scene_from_dict, scene_to_json
+from eventsim.scene.files import listed_scene, scene_to_json
 
 FORMAT = 1
 """Version of the file format; a reader refuses versions it does not know."""
@@ -106,10 +106,16 @@ def text_after_scene(provenance: Provenance) -> str:
     return f", {json.dumps(data)[1:]}"
 
 
-def provenance_from_text(text: str, source: str, base_dir: Path | None = None) -> Provenance:
-    """Read what `provenance_text` wrote; raise LogError naming `source` for anything else.
+def provenance_from_text(text: str, source: str, folder: Path | None = None) -> Provenance:
+    """Read what `provenance_text` wrote.  No file that it names is opened.
 
-    base_dir: where the disks of a scene are that has them beside it.
+    Args:
+        text: one line of JSON.
+        source: what messages call the file that it comes from.
+        folder: of a journal, where the disks of its scene are.
+
+    Raises:
+        LogError: for anything else.
     """
     try:
         data = json.loads(text)
@@ -122,7 +128,7 @@ def provenance_from_text(text: str, source: str, base_dir: Path | None = None) -
             f"{source}: written in log format {data['format']!r}; this version of eventsim reads format {FORMAT}"
         )
     try:
-        scene = scene_from_dict(data["scene"], base_dir, source=f"scene in {source}")
+        scene = listed_scene(data["scene"], folder)
     except SceneError as error:
         raise LogError(f"{source}: the scene inside the log is damaged: {error}") from None
     try:

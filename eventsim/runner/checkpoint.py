@@ -8,22 +8,21 @@ from __future__ import annotations
 
 import json
 import os
-import zipfile
 from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
 from math import inf
 from os import PathLike
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
 from eventsim import __version__
 from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.errors import CheckpointError, LogError
+from eventsim.reading import Npz, reading
 from eventsim.record.events import ROW, Rows
 from eventsim.record.files import Mark
-from eventsim.record.files.table import DAMAGE
 from eventsim.record.provenance import Provenance, provenance_from_text
 from eventsim.runner.checking import demand_fit
 from eventsim.runner.snapshots import Arrays, packed, unpacked
@@ -148,17 +147,11 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
     Raises CheckpointError with a sentence where the file is none, is damaged, or was written by another version of eventsim.
     """
     file = Path(path)
-    try:
-        with file.open("rb") as opened:
-            return _checkpoint(*_contents(opened, file), file)
-    except OSError as error:
-        raise CheckpointError(f"{file}: cannot be read ({error.strerror or error})") from None
-    except LogError as error:
-        raise CheckpointError(str(error)) from None
-    except (*DAMAGE, zipfile.BadZipFile) as error:
-        # What these say is for a reader; the text of others, a bare key, is not.
-        why = f" ({error})" if isinstance(error, ValueError | zipfile.BadZipFile) else ""
-        raise CheckpointError(f"{file}: not a checkpoint, or cut short or damaged{why}") from None
+    with reading(file, CheckpointError, "not a checkpoint, or cut short or damaged") as opened:
+        try:
+            return _checkpoint(*_contents(Npz(opened), file), file)
+        except LogError as error:
+            raise CheckpointError(str(error)) from None
 
 
 def place_for(path: str | PathLike[str]) -> Path:
@@ -172,25 +165,22 @@ def place_for(path: str | PathLike[str]) -> Path:
 def _is_checkpoint(path: Path) -> bool:
     """Whether a file looks like a checkpoint."""
     try:
-        with zipfile.ZipFile(path) as archive:
-            return {f"{METADATA}.npy", f"{LAST_ROWS}.npy"} <= set(archive.namelist())
-    except (OSError, zipfile.BadZipFile, ValueError, NotImplementedError):
+        with reading(path, CheckpointError, "not a checkpoint") as file:
+            return {METADATA, LAST_ROWS} <= set(Npz(file).names)
+    except CheckpointError:
         return False
 
 
-def _contents(opened: IO[bytes], path: Path) -> tuple[dict[str, Any], Arrays]:
+def _contents(arrays: Npz, path: Path) -> tuple[dict[str, Any], Arrays]:
     """The metadata and the arrays; none is larger than the file."""
-    with zipfile.ZipFile(opened) as archive:
-        if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
-            raise ValueError("its arrays are compressed")
-    opened.seek(0)
-    with np.load(opened, allow_pickle=False) as archive:
-        if METADATA not in archive or LAST_ROWS not in archive:
-            raise CheckpointError(f"{path}: not a checkpoint")
-        data = json.loads(bytes(np.asarray(archive[METADATA], np.uint8)).decode("ascii"))
-        if not isinstance(data, dict) or data.get("checkpoint") != FORMAT:
-            raise CheckpointError(f"{path}: not a checkpoint of format {FORMAT}, which this version of eventsim reads")
-        return data, {name: archive[name] for name in archive.files if name != METADATA}
+    if not {METADATA, LAST_ROWS} <= set(arrays.names):
+        raise CheckpointError(f"{path}: not a checkpoint")
+    if arrays.packed:
+        raise ValueError("its arrays are compressed")
+    data = json.loads(arrays.read(METADATA).tobytes().decode("ascii"))
+    if not isinstance(data, dict) or data.get("checkpoint") != FORMAT:
+        raise CheckpointError(f"{path}: not a checkpoint of format {FORMAT}, which this version of eventsim reads")
+    return data, {name: arrays.read(name) for name in arrays.names if name != METADATA}
 
 
 def _checkpoint(data: dict[str, Any], arrays: Arrays, path: Path) -> Checkpoint:

@@ -6,14 +6,20 @@ import csv
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 
 from eventsim.errors import SceneError
+from eventsim.reading import Npz, reading
 from eventsim.scene.cells import Indices
 from eventsim.scene.disks import Disks, Floats
+from eventsim.scene.gas import MOST_DISKS
 
 COLUMNS = ("x", "y", "vx", "vy", "radius", "mass")
+
+MOST_BYTES = 1 << 32
+"""What a file may have: enough for as many disks as a scene may have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +39,10 @@ def read_disks_file(path: Path) -> DisksFile:
     Raises:
         SceneError: naming the file, and the line where there is one.
     """
-    try:
-        columns, row, number = _read_npz(path) if path.suffix.lower() == ".npz" else _read_csv(path)
-    except OSError as error:
-        raise SceneError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    packed = path.suffix.lower() == ".npz"
+    what = "is not an npz file with arrays of numbers" if packed else "is not a table of disks"
+    with reading(path, SceneError, what, MOST_BYTES) as file:
+        columns, row, number = _read_npz(path, file) if packed else _read_csv(path, file)
     if "time" in columns:
         times = np.unique(columns["time"])
         if len(times) > 1:
@@ -54,10 +60,10 @@ def write_disks_file(path: Path, disks: Disks) -> None:
     np.savez(path, **dict(zip(COLUMNS, columns, strict=True)))
 
 
-def _read_csv(path: Path) -> tuple[dict[str, Floats], str, Indices]:
+def _read_csv(path: Path, file: IO[bytes]) -> tuple[dict[str, Floats], str, Indices]:
     """The columns by name, and the line of each row; lines that begin with # are comments."""
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        lines = file.read().decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
         raise SceneError(f"{path}: is not a text file (UTF-8)") from None
     number = [n for n, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
@@ -95,16 +101,17 @@ def _bad_lines(
     return problems or [f"{path}: cannot be read as comma-separated numbers"]
 
 
-def _read_npz(path: Path) -> tuple[dict[str, Floats], str, Indices]:
+def _read_npz(path: Path, file: IO[bytes]) -> tuple[dict[str, Floats], str, Indices]:
     """The columns by name, and the index of each row."""
-    try:
-        with np.load(path, allow_pickle=False) as arrays:
-            _demand_columns(path, list(arrays.files))
-            wanted = [*COLUMNS, *(["time"] if "time" in arrays.files else [])]
-            columns = {name: np.asarray(arrays[name], dtype=np.float64) for name in wanted}
-    except (ValueError, TypeError, EOFError, AttributeError, zipfile.BadZipFile):
-        hint = "" if zipfile.is_zipfile(path) else "; a table of text is named .csv"
-        raise SceneError(f"{path}: is not an npz file with arrays of numbers{hint}") from None
+    if not zipfile.is_zipfile(file):
+        raise SceneError(f"{path}: is not an npz file with arrays of numbers; a table of text is named .csv")
+    arrays = Npz(file)
+    _demand_columns(path, arrays.names)
+    wanted = [*COLUMNS, *(["time"] if "time" in arrays.names else [])]
+    longest = max(arrays.open(name).count for name in wanted)
+    if longest > MOST_DISKS:
+        raise SceneError(f"{path}: holds {longest} disks: must be at most {MOST_DISKS}")
+    columns = {name: np.asarray(arrays.read(name), dtype=np.float64) for name in wanted}
     shapes = {name: array.shape for name, array in columns.items() if name != "time"}
     if len(set(shapes.values())) > 1 or len(shapes["x"]) != 1:
         listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())

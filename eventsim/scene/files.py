@@ -20,6 +20,7 @@ from eventsim.scene.walls import Wall
 __all__ = [
     "apply_overrides",
     "draws_at_random",
+    "listed_scene",
     "load_scene",
     "scene_beside",
     "scene_from_dict",
@@ -125,6 +126,25 @@ def scene_beside(scene: Scene, folder: Path) -> str:
     tables = _tables(scene)
     del tables["disk"]
     return json.dumps({**tables, "disks_file": [{"path": DISKS_BESIDE}]})
+
+
+def listed_scene(data: Mapping[str, Any], folder: Path | None = None) -> Scene:
+    """The scene of a log or checkpoint, which lists its disks: no other file is opened for it, and no gas is made.
+
+    Args:
+        data: the tables of `scene_to_dict`, or of `scene_beside`.
+        folder: where its disks are, if they are beside it; under their own name and no other.
+
+    Raises:
+        SceneError: with all problems, or the table that no such scene has.
+    """
+    if not isinstance(data, Mapping):
+        raise SceneError("it is no table with the keys of a scene")
+    beside = folder is not None and data.get("disks_file") == [{"path": DISKS_BESIDE}]
+    for table in ("gas", *(() if beside else ("disks_file",))):
+        if table in data:
+            raise SceneError(f"{table}: a log lists its disks; it makes none and reads no other file")
+    return scene_from_dict(data, folder)
 
 
 def _tables(scene: Scene) -> dict[str, Any]:

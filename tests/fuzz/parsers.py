@@ -18,7 +18,6 @@ import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 PATIENCE = 60
 """Seconds, on a machine that is shared; a usual input takes milliseconds."""
@@ -127,21 +126,20 @@ def _log(suffix: str) -> Callable[[bytes, Path], None]:
 
 def _rows(suffix: str) -> Callable[[bytes, Path], None]:
     """Lines of a compact text log whose metadata are as they should be."""
-    known: list[tuple[Any, Any]] = []
+    heads: list[bytes] = []
 
     def read(data: bytes, place: Path) -> None:
-        from eventsim.record.files import _text_form
-        from eventsim.record.files.table import checked_log
-        from eventsim.record.files.text import _parse_block
+        from eventsim.record.provenance import provenance_text
         from eventsim.replay.log import load_log
 
-        if not known:
-            _good_log(place, f"good{suffix}", compact=True)
-            provenance = replace(load_log(place / f"good{suffix}").provenance, rows=None)
-            known.append((_text_form(suffix), provenance))
-        form, provenance = known[0]
-        lines = data.decode("utf-8", "replace").splitlines()
-        log = checked_log(provenance, _parse_block(form.parse, lines, provenance, "log", 1), place)
+        if not heads:
+            _, *lines = _good_log(place, f"good{suffix}", compact=True).splitlines(keepends=True)
+            open_ended = replace(load_log(place / f"good{suffix}").provenance, rows=None)
+            prefix, header = (b"# ", lines[0]) if suffix == ".csv" else (b"", b"")
+            heads.append(prefix + provenance_text(open_ended).encode() + b"\n" + header)
+        path = place / f"rows{suffix}"
+        path.write_bytes(heads[0] + data)
+        log = load_log(path)
         if len(log):
             log.expand()
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import shutil
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from itertools import chain, islice
 from pathlib import Path
 from typing import IO, TypeAlias
@@ -214,7 +214,7 @@ def columns_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterat
         yield found
 
 
-def blocks_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterator[Rows]:
+def blocks_of_journal(part: Path, names: tuple[str, ...], count: int) -> Generator[Rows]:
     """The first `count` rows, in blocks."""
     for columns in columns_of_journal(part, names, count):
         rows = blank_rows(len(columns["event"]))

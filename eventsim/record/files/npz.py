@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import io
 import os
-import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import AbstractContextManager, ExitStack
+from collections.abc import Generator, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
-from eventsim.errors import LogError, told_as
-from eventsim.record.events import ROW, Column, Rows
+from eventsim.errors import LogError
+from eventsim.reading import ArrayReader, Npz, reading
+from eventsim.record.events import ROW, Rows
 from eventsim.record.files.archive import Deflated, Entry, Stored, write_archive
 from eventsim.record.files.counting import Counting
 from eventsim.record.files.journal import GROUP, METADATA, NUMBER, ROOM, WHOLE, Columns, JournalSink, open_journal
@@ -29,6 +29,7 @@ from eventsim.record.files.table import labels_of, rows_from_columns
 from eventsim.record.provenance import Provenance, columns_kept, provenance_from_text
 
 DEFLATED_FILE = ".deflated"
+NOT_ONE = "not a whole .npz event log"
 
 
 class NpzSink(JournalSink):
@@ -79,55 +80,26 @@ class NpzSink(JournalSink):
 
 def open_npz(path: Path) -> Opened:
     """The metadata of an NPZ log, and its rows in blocks, which are read side by side from all of its arrays."""
-    with ExitStack() as opened, _told(path):
-        archive = opened.enter_context(zipfile.ZipFile(path))
-        if f"{METADATA}.npy" not in archive.namelist():
+    with ExitStack() as opened:
+        arrays = Npz(opened.enter_context(reading(path, LogError, NOT_ONE)))
+        if METADATA not in arrays.names:
             raise LogError(f"{path}: not an event log: there is no array named {METADATA}")
-        text = _Array(archive, METADATA, opened)
-        provenance = provenance_from_text(text.read(text.count).tobytes().decode("ascii"), str(path))
-        arrays = {name: _Array(archive, name, opened) for name in columns_kept(provenance)}
-        if len({array.count for array in arrays.values()}) > 1:
+        text = arrays.read(METADATA).tobytes().decode("ascii")
+        provenance = provenance_from_text(text, str(path))
+        readers = {name: arrays.open(name) for name in columns_kept(provenance)}
+        shapes = {reader.shape for reader in readers.values()}
+        if len(shapes) > 1 or len(*shapes) != 1:
             raise LogError(f"{path}: not an event log: its columns differ in length")
-        return Opened(provenance, _blocks(opened.pop_all(), arrays, provenance, path))
+        return Opened(provenance, _blocks(opened.pop_all(), readers, provenance))
     raise AssertionError("either metadata or an error")
 
 
-def _blocks(
-    opened: ExitStack, arrays: dict[str, _Array], provenance: Provenance, path: Path
-) -> Iterator[Rows]:
-    with opened, _told(path):
-        for first in range(0, arrays[NUMBER].count, GROUP):
-            taken = min(GROUP, arrays[NUMBER].count - first)
-            yield rows_from_columns({name: array.read(taken) for name, array in arrays.items()}, provenance)
-
-
-class _Array:
-    """An array (count,) of an archive, read from its beginning to its end."""
-
-    def __init__(self, archive: zipfile.ZipFile, name: str, opened: ExitStack) -> None:
-        """Open it; raises ValueError where its length and that of its entry do not agree."""
-        entry = archive.getinfo(f"{name}.npy")
-        self._file = opened.enter_context(archive.open(entry))
-        shape, _, dtype = _read_header(self._file)
-        if len(shape) != 1 or dtype.hasobject or dtype.itemsize == 0:
-            raise ValueError(f"{name} is no column of numbers or texts")
-        if self._file.tell() + shape[0] * dtype.itemsize != entry.file_size:
-            raise ValueError(f"{name} is not as long as it says")
-        self.count, self._dtype = shape[0], dtype
-
-    def read(self, count: int) -> Column:
-        """The next `count` numbers or texts."""
-        data = self._file.read(count * self._dtype.itemsize)
-        if len(data) != count * self._dtype.itemsize:
-            raise ValueError("the file was cut off")
-        return np.frombuffer(data, self._dtype)
-
-
-def _read_header(file: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    version = np.lib.format.read_magic(file)
-    if version == (1, 0):
-        return np.lib.format.read_array_header_1_0(file)
-    return np.lib.format.read_array_header_2_0(file)
+def _blocks(opened: ExitStack, readers: dict[str, ArrayReader], provenance: Provenance) -> Generator[Rows]:
+    rows = readers[NUMBER].count
+    with opened:
+        for first in range(0, rows, GROUP):
+            columns = {name: reader.read(min(GROUP, rows - first)) for name, reader in readers.items()}
+            yield rows_from_columns(columns, provenance)
 
 
 def _header(dtype: np.dtype[Any], count: int) -> bytes:
@@ -136,10 +108,6 @@ def _header(dtype: np.dtype[Any], count: int) -> bytes:
     target = io.BytesIO()
     np.lib.format.write_array_header_2_0(target, header)
     return target.getvalue()
-
-
-def _told(path: Path) -> AbstractContextManager[None]:
-    return told_as(LogError, path, "not a whole .npz event log")
 
 
 FORMAT = Format(NpzSink, open_npz, open_journal)

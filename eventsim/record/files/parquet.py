@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, ExitStack
+from collections.abc import Generator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from eventsim.errors import LogError, told_as
+from eventsim.errors import LogError
+from eventsim.reading import reading
 from eventsim.record.events import FIELDS, ROW, Column, Rows
 from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink, open_journal
 from eventsim.record.files.sink import Format, Opened
@@ -24,6 +25,8 @@ except ImportError:
 
 TEXTS = tuple(name for name, field in FIELDS.items() if field.labelled)
 NULLABLE = frozenset(name for name, field in FIELDS.items() if ROW[name].kind == "f" and field.missing is not None)
+NOT_ONE = "not a whole parquet event log"
+
 GROUP = 1 << 15
 """Rows in a group, which are held at a time: more would push what the engine needs out of the caches that cores share."""
 
@@ -88,25 +91,21 @@ def write_plain_table(path: Path, columns: dict[str, list[Any]], metadata: dict[
 
 def open_parquet(path: Path) -> Opened:
     """The metadata of a parquet log, and its rows in blocks, one group after the other."""
-    with ExitStack() as opened, _told(path):
-        file = opened.enter_context(pq.ParquetFile(path))
+    with ExitStack() as opened:
+        file = pq.ParquetFile(opened.enter_context(reading(path, LogError, NOT_ONE)))
         text = (file.metadata.metadata or {}).get(METADATA.encode())
         if text is None:
             raise LogError(f"{path}: not an event log: its metadata have no key {METADATA}")
         provenance = provenance_from_text(text.decode(), str(path))
-        return Opened(provenance, _blocks(opened.pop_all(), file, provenance, path))
+        return Opened(provenance, _blocks(opened.pop_all(), file, provenance))
     raise AssertionError("either metadata or an error")
 
 
-def _blocks(opened: ExitStack, file: Any, provenance: Provenance, path: Path) -> Iterator[Rows]:
+def _blocks(opened: ExitStack, file: Any, provenance: Provenance) -> Generator[Rows]:
     names = columns_kept(provenance)
-    with opened, _told(path):
+    with opened:
         for batch in file.iter_batches(GROUP, columns=list(names)):
             yield rows_from_columns({name: _column(batch.column(name)) for name in names}, provenance)
-
-
-def _told(path: Path) -> AbstractContextManager[None]:
-    return told_as(LogError, path, "not a whole parquet event log")
 
 
 def _schema(names: tuple[str, ...]) -> Any:

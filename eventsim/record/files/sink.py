@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -141,7 +141,7 @@ class Opened(NamedTuple):
     """A log file that is read: where it comes from, and its rows block by block."""
 
     provenance: Provenance
-    blocks: Iterator[Rows]
+    blocks: Generator[Rows]
 
 
 class Format(NamedTuple):

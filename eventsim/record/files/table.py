@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -11,19 +12,6 @@ import numpy as np
 from eventsim.errors import LogError
 from eventsim.record.events import COLUMNS, FIELDS, LABELS, ROW, Column, Kind, Rows, blank_rows
 from eventsim.record.provenance import Provenance, columns_kept
-
-DAMAGE = (
-    ArithmeticError,
-    AttributeError,
-    EOFError,
-    LookupError,
-    MemoryError,
-    RuntimeError,  # an entry is encrypted, or packed in a way of its own
-    SyntaxError,
-    TypeError,
-    ValueError,
-)
-"""What libraries raise over damaged binary files, whose every byte may be any: all but what the machine or the user does."""
 
 BLOCK = 1 << 12
 """Rows that are filled in, or looked at, at a time: they stay in a core's own cache."""
@@ -83,22 +71,23 @@ def integers_of(values: Sequence[object] | Column, dtype: np.dtype[Any]) -> Colu
     return narrow
 
 
-def checked(provenance: Provenance, blocks: Iterable[Rows], path: Path) -> Iterator[Rows]:
+def checked(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Generator[Rows]:
     """Yield rows block by block if they can be those of their scene.
 
     Raises:
         LogError: naming the file and the first bad row, or how many rows are missing in the end.
     """
     count = epoch = 0
-    for rows in blocks:
-        for first in range(0, len(rows), BLOCK):
-            block = rows[first : first + BLOCK]
-            for rule, broken in _rules(block, count + first, epoch, len(provenance.scene.disks)).items():
-                if broken.any():
-                    raise LogError(f"{path}: row {count + first + int(np.argmax(broken))}: {rule}")
-            epoch = block["epoch"][-1]
-        count += len(rows)
-        yield rows
+    with closing(blocks):
+        for rows in blocks:
+            for first in range(0, len(rows), BLOCK):
+                block = rows[first : first + BLOCK]
+                for rule, broken in _rules(block, count + first, epoch, len(provenance.scene.disks)).items():
+                    if broken.any():
+                        raise LogError(f"{path}: row {count + first + int(np.argmax(broken))}: {rule}")
+                epoch = block["epoch"][-1]
+            count += len(rows)
+            yield rows
     if provenance.rows not in (None, count):
         raise LogError(f"{path}: holds {count} rows where {provenance.rows} were written; the file was cut off")
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
 from abc import abstractmethod
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Generator, Iterator
+from contextlib import ExitStack
 from itertools import islice
 from pathlib import Path
 from typing import IO, NamedTuple
@@ -14,6 +15,7 @@ from typing import IO, NamedTuple
 import numpy as np
 
 from eventsim.errors import LogError
+from eventsim.reading import reading, reason_of
 from eventsim.record.events import Column, Rows
 from eventsim.record.files.sink import FileSink, Format, Opened, demand_same
 from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
@@ -165,12 +167,10 @@ def text_format(sink: type[TextSink], form: TextForm) -> Format:
 
 def open_text(path: Path, form: TextForm) -> Opened:
     """The metadata of a text log and its rows in blocks; of a growing file an unfinished last line is left out."""
-    if not path.is_file():
-        raise LogError(f"{path}: not a file")
     with ExitStack() as opened:
-        opened.enter_context(_told_as_log_error(path))
+        file = opened.enter_context(reading(path, LogError, "not an event log of this format"))
         # Editors on some systems add a mark and other line ends.
-        lines = _whole_lines(opened.enter_context(open(path, encoding="utf-8-sig")), path)
+        lines = _whole_lines(opened.enter_context(io.TextIOWrapper(file, encoding="utf-8-sig")), path)
         head = next(lines, "")
         if not head.startswith(form.prefix):
             raise LogError(f"{path}: not an event log: the first line does not hold its scene")
@@ -184,22 +184,12 @@ def open_text(path: Path, form: TextForm) -> Opened:
 
 def _blocks(
     opened: ExitStack, lines: Iterator[str], form: TextForm, provenance: Provenance, path: Path
-) -> Iterator[Rows]:
+) -> Generator[Rows]:
     number = 2 + form.header_of(provenance).count("\n")
     with opened:
         while block := list(islice(lines, BLOCK_LINES)):
             yield _parse_block(form.parse, block, provenance, f"{path}", number)
             number += len(block)
-
-
-@contextmanager
-def _told_as_log_error(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except UnicodeDecodeError:
-        raise LogError(f"{path}: not a text file, so not an event log of this format") from None
-    except OSError as error:
-        raise LogError(f"{path}: cannot be read ({error.strerror or error})") from None
 
 
 def _whole_lines(file: IO[str], path: Path) -> Iterator[str]:
@@ -217,15 +207,14 @@ def _parse_block(
     parse: Callable[[list[str], Provenance], Rows], block: list[str], provenance: Provenance, path: str, number: int
 ) -> Rows:
     """Parse a block; where that fails, parse line by line to name the first bad one."""
-    wrong = (ValueError, TypeError, OverflowError, KeyError, RecursionError)
     try:
         return parse(block, provenance)
-    except wrong as error:
+    except Exception as error:  # whatever a parser raises over lines that may say anything
         place, reason = f"lines {number} to {number + len(block) - 1}", error
         for offset, line in enumerate(block):
             try:
                 parse([line], provenance)
-            except wrong as single:
+            except Exception as single:
                 place, reason = f"line {number + offset}", single
                 break
-        raise LogError(f"{path}: {place}: not a row of an event log ({reason})") from None
+        raise LogError(f"{path}: {place}: not a row of an event log ({reason_of(reason)})") from None

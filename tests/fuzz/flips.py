@@ -1,0 +1,156 @@
+"""Flips single bits of files that eventsim reads, and looks at what comes of it.
+
+    python -m tests.fuzz.flips [--flips N] [--seed S] [--only NAME ...]
+
+Each flip ends in one of: `refused` with an EventsimError, `told` by a LogWarning, `same` (what was read is what was written:
+rows, scene, all that loads), `rows` or `scene` (read, another one, and nothing was said), `raised` (any other exception).  The
+last line counts them; every flip that raised is printed with the place and the bit, so that it can be tried again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import tempfile
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import eventsim as es
+from eventsim.errors import LogWarning
+from eventsim.record.provenance import Provenance
+from eventsim.scene.disks_file import read_disks_file, write_disks_file
+from eventsim.simulation import resume
+from eventsim.suffixes import LOGS
+
+
+class Target(NamedTuple):
+    """A file, and how what it says is read: pairs of a word and something that can be compared."""
+
+    file: Path
+    read: Callable[[Path], list[tuple[str, Any]]]
+
+
+class Flip(NamedTuple):
+    """What came of a flip."""
+
+    target: str
+    place: int
+    bit: int
+    outcome: str
+    words: str
+
+
+def small_scene() -> es.Scene:
+    """Disks of unlike masses and a wall with a name: some of everything that files tell."""
+    walls = (es.Segment((0.1, 0.1), (0.4, 0.2), name="ramp"),)
+    disks = es.Disks([(0.3, 0.5), (0.7, 0.5), (0.5, 0.8)], [(1.0, 0.1), (0.0, 0.0), (0.0, -0.5)], 0.05, [1.0, 2.0, 1.0])
+    return es.Scene(disks, es.Box((1.0, 1.0)), walls, name="flips")
+
+
+def targets(place: Path) -> dict[str, Target]:
+    """All kinds of files, written into a folder."""
+    scene, found = small_scene(), {}
+    for suffix in LOGS:
+        for compact in (False, True):
+            name = f"{'compact' if compact else 'full'}{suffix}"
+            es.simulate(scene, events=12, engine="reference", log=place / name, compact=compact)
+            found[name] = Target(place / name, read_log)
+    es.simulate(scene, events=12, engine="reference", checkpoint=place / "run.checkpoint")
+    found["run.checkpoint"] = Target(place / "run.checkpoint", read_checkpoint)
+    write_disks_file(place / "disks.npz", scene.disks)
+    es.simulate(scene, events=12, engine="reference").state  # noqa: B018
+    found["disks.npz"] = Target(place / "disks.npz", read_disks)
+    for suffix in (".toml", ".json"):
+        (place / f"scene{suffix}").write_text(_text_of(scene, suffix))
+        found[f"scene{suffix}"] = Target(place / f"scene{suffix}", lambda path: [("scene", es.load_scene(path))])
+    return found
+
+
+def _text_of(scene: es.Scene, suffix: str) -> str:
+    from eventsim.scene.files import scene_to_json, scene_to_toml
+
+    return scene_to_toml(scene) if suffix == ".toml" else scene_to_json(scene)
+
+
+def read_log(path: Path) -> list[tuple[str, Any]]:
+    log = es.load_log(path).expand()
+    return [("scene", _story(log.provenance)), ("rows", log.rows.tobytes())]
+
+
+def _story(provenance: Provenance) -> Any:
+    return (provenance.scene, provenance.epoch_length, provenance.wall_names, provenance.kicks, provenance.ending)
+
+
+def read_checkpoint(path: Path) -> list[tuple[str, Any]]:
+    run = resume(path, events=30, engine="reference")
+    return [("scene", run.scene), ("rows", (run.state.position.tobytes(), run.state.velocity.tobytes(), run.state.time))]
+
+
+def read_disks(path: Path) -> list[tuple[str, Any]]:
+    return [("scene", read_disks_file(path).disks)]
+
+
+def flips(chosen: dict[str, Target], count: int, seed: int) -> Iterator[Flip]:
+    """Flip `count` bits in turn over the targets, each in a copy of the whole file."""
+    chance = random.Random(seed)
+    wholes = {name: (target.file.read_bytes(), target.read(target.file)) for name, target in chosen.items()}
+    for number in range(count):
+        name = list(chosen)[number % len(chosen)]
+        whole, right = wholes[name]
+        place, bit = chance.randrange(len(whole)), chance.randrange(8)
+        damaged = bytearray(whole)
+        damaged[place] ^= 1 << bit
+        path = chosen[name].file.with_name(f"flipped-{name}")
+        path.write_bytes(damaged)
+        yield Flip(name, place, bit, *outcome(chosen[name].read, path, right))
+
+
+def outcome(read: Callable[[Path], list[tuple[str, Any]]], path: Path, right: list[tuple[str, Any]]) -> tuple[str, str]:
+    """What comes of reading a damaged file, in one word, and what was said."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always", LogWarning)
+        try:
+            found = read(path)
+        except es.EventsimError as error:
+            return "refused", str(error)
+        except Exception as error:
+            return "raised", f"{type(error).__name__}: {error}"
+    if any(issubclass(warning.category, LogWarning) for warning in said):
+        return "told", str(said[0].message)
+    differing = [word for (word, here), (_, there) in zip(found, right, strict=True) if not _same(here, there)]
+    return differing[0] if differing else "same", ""
+
+
+def _same(one: Any, other: Any) -> bool:
+    return bool(np.all(one == other))
+
+
+def main() -> int:
+    """Flip, and print what came of it."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--flips", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", nargs="+", default=[])
+    asked = parser.parse_args()
+    counts: dict[str, Counter[str]] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        chosen = {name: target for name, target in targets(Path(folder)).items() if not asked.only or name in asked.only}
+        for flip in flips(chosen, asked.flips, asked.seed):
+            counts.setdefault(flip.target, Counter())[flip.outcome] += 1
+            if flip.outcome == "raised":
+                print(f"{flip.target} byte {flip.place} bit {flip.bit}: {flip.words}", flush=True)
+    for name, count in counts.items():
+        print(f"{name:16} {dict(sorted(count.items()))}")
+    total = sum(counts.values(), Counter())
+    print(f"seed {asked.seed}, {asked.flips} flips: {dict(sorted(total.items()))}")
+    return 1 if total["raised"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
