@@ -28,8 +28,6 @@ TYPE_CHECKING = False  # type checkers know better; `typing` itself takes ten ti
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from eventsim.engines import ENGINES as ENGINES
-    from eventsim.engines.base import Run as Run
     from eventsim.engines.base import Stop as Stop
     from eventsim.errors import CheckpointError as CheckpointError
     from eventsim.errors import CollapseError as CollapseError
@@ -39,6 +37,8 @@ if TYPE_CHECKING:
     from eventsim.record.events import State as State
     from eventsim.replay.log import EventLog as EventLog
     from eventsim.replay.log import load_log as load_log
+    from eventsim.run import ENGINES as ENGINES
+    from eventsim.run import Run as Run
     from eventsim.scene import Arc as Arc
     from eventsim.scene import Box as Box
     from eventsim.scene import Channel as Channel
@@ -75,12 +75,12 @@ _HOMES = {
     "simulate": "simulation",
     "resume": "simulation",
     "Simulation": "simulation",
-    "Run": "engines.base",
+    "Run": "run",
     "Stop": "engines.base",
     "State": "record.events",
     "EventLog": "replay.log",
     "load_log": "replay.log",
-    "ENGINES": "engines",
+    "ENGINES": "run",
     "EventsimError": "errors",
     "SceneError": "errors",
     "LogError": "errors",

@@ -9,18 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.engines import AUTO, ENGINES, Engine
-from eventsim.engines.base import Counters, OnEvent, Progress, Run, Snapshot, Stop
+from eventsim.engines import engine_named
+from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, State
 from eventsim.record.provenance import Ending
+from eventsim.replay.expand import expand_rows
 from eventsim.replay.log import EventLog
+from eventsim.run import Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
-from eventsim.runner.drive import Wishes, diagnosed, memory_log, provenance_of, state_of
+from eventsim.runner.loop import run_scene
+from eventsim.runner.options import OnEvent, Progress, RunOptions, stop_of
+from eventsim.runner.outcome import diagnosed, provenance_of, state_of
+from eventsim.runner.writer import MemorySink
 from eventsim.scene import Scene
 from eventsim.scene.difference import difference
-from eventsim.scene.numbers import FASTEST, LONGEST, number, optional_number, optional_whole, point
+from eventsim.scene.numbers import FASTEST, LONGEST, number, point
 from eventsim.scene.stage import stage_of
 
 STEP_BUDGET = 4096
@@ -59,18 +64,18 @@ def simulate(
     written: a log that has rows then stays as NAME.part, which `load_log` reads.
     """
     stop = stop_of(a_scene(scene), until, events)
-    wishes = Wishes(log=log, compact=compact, digest=digest, progress=progress, on_event=on_event, command=command)
+    wanted = RunOptions(log=log, compact=compact, digest=digest, progress=progress, on_event=on_event, command=command)
     if checkpoint is not None:
-        wishes.checkpoint, wishes.every = place_for(checkpoint), interval(every)
+        wanted.checkpoint, wanted.every = place_for(checkpoint), interval(every)
         if measure is not False:
             raise EventsimError("measures are not in a checkpoint: keep a log, and measure that")
     if measure is False:
-        return engine_named(engine).run(scene, stop, wishes, **options)
+        return Run.of(run_scene(engine_named(engine), scene, stop, wanted, **options))
     from eventsim.measure import Meter  # only who measures pays for it
 
     meter = Meter(scene, None if measure is True else measure)
-    wishes.takers.append(meter.write)
-    run = engine_named(engine).run(scene, stop, wishes, **options)
+    wanted.takers.append(meter.write)
+    run = Run.of(run_scene(engine_named(engine), scene, stop, wanted, **options))
     if run.time > scene.start_time:
         run.measures = meter.finish(run.time - scene.start_time)
     return run
@@ -110,7 +115,7 @@ def resume(
     stop = saved.stop if until is None and events is None else stop_of(provenance.scene, until, events)
     if stop != saved.stop:
         _demand_ahead(stop, saved, path)
-    wishes = Wishes(
+    wanted = RunOptions(
         log=False if saved.log is None else saved.log.path if log is None else log,
         compact=saved.log is not None and saved.log.compact,
         digest=digest,
@@ -119,8 +124,10 @@ def resume(
         checkpoint=place_for(path if checkpoint is None else checkpoint),
         every=saved.every if every is None else interval(every),
         resumed=saved,
+        expanded=expand_rows,
     )
-    return engine_named(provenance.engine if engine is None else engine).run(provenance.scene, stop, wishes)
+    chosen = engine_named(provenance.engine if engine is None else engine)
+    return Run.of(run_scene(chosen, provenance.scene, stop, wanted))
 
 
 def _demand_ahead(stop: Stop, saved: Checkpoint, path: str | PathLike[str]) -> None:
@@ -131,26 +138,9 @@ def _demand_ahead(stop: Stop, saved: Checkpoint, path: str | PathLike[str]) -> N
     if stop.until is not None and stop.until < time:
         raise CheckpointError(f"{path}: the run has come to t = {time!r}, past until = {stop.until!r}{earlier}")
     if stop.events is not None and stop.events < saved.counters.events:
-        raise CheckpointError(f"{path}: the run has {saved.counters.events} events, past events = {stop.events}{earlier}")
-
-
-def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:
-    """When to stop: what is asked for here, else what the scene says.
-
-    Raises SceneError for what is neither a finite time on the scene's clock nor a number of events.
-    """
-    if until is None and events is None:
-        until, events = scene.until, scene.events
-    if until is None and events is None:
-        raise SceneError("nothing says when to stop: give until or events, in the scene or to simulate()")
-    until, events = optional_number(until, "until"), optional_whole(events, "events")
-    if until is not None and not math.isfinite(until):
-        raise SceneError(f"until = {until!r}: must be a finite time")
-    if until is not None and until < scene.start_time:
-        raise SceneError(f"until = {until!r}: must not be before the start of the clock, {scene.start_time!r}")
-    if events is not None and events < 0:
-        raise SceneError(f"events = {events}: must be at least 0")
-    return Stop(until, events)
+        raise CheckpointError(
+            f"{path}: the run has {saved.counters.events} events, past events = {stop.events}{earlier}"
+        )
 
 
 def a_scene(scene: object) -> Scene:
@@ -158,15 +148,6 @@ def a_scene(scene: object) -> Scene:
     if not isinstance(scene, Scene):
         raise SceneError(f"{scene!r} is not a scene: load_scene(path) and gallery(name) give one")
     return scene
-
-
-def engine_named(name: str) -> Engine:
-    """The engine of a name; "auto" is the one that suits."""
-    if name == "auto":
-        return AUTO
-    if name not in ENGINES:
-        raise EventsimError(f"engine {name!r} does not exist; there are: auto, {', '.join(ENGINES)}")
-    return ENGINES[name]
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +194,11 @@ class Simulation:
     @property
     def log(self) -> EventLog:
         """All that happened so far."""
-        return memory_log(self._provenance, self._blocks, Ending(*self._session.clock, "until"))
+        sink = MemorySink(self._provenance)
+        for block in self._blocks:
+            sink.write(block)
+        sink.close(Ending(*self._session.clock, "until"))
+        return EventLog(*sink.recorded())
 
     @property
     def counters(self) -> Counters:
@@ -254,7 +239,9 @@ class Simulation:
 
     def snapshot(self) -> SavedSimulation:
         """A point to come back to."""
-        return SavedSimulation(self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count(), self._time)
+        return SavedSimulation(
+            self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count(), self._time
+        )
 
     def restore(self, saved: SavedSimulation) -> None:
         """Go back to a snapshot; what happened since is forgotten.

@@ -18,7 +18,8 @@ def members():
         value = getattr(es, name)
         yield name, value
         if inspect.isclass(value):
-            for key, member in vars(value).items():
+            own = [base for base in value.__mro__ if base.__module__.startswith("eventsim")]
+            for key, member in {key: member for base in reversed(own) for key, member in vars(base).items()}.items():
                 if not key.startswith("_") and (callable(member) or isinstance(member, property | classmethod)):
                     yield f"{name}.{key}", member
 

@@ -13,8 +13,8 @@ from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
-    from eventsim.engines.certified.proof import Proof
-    from eventsim.engines.certified.rounded import Rounded
+    from eventsim.validate.proof import Proof
+    from eventsim.validate.rounded import Rounded
 
 DISKS_SHOWN = 8
 USUAL_EVENTS = 1000
@@ -90,7 +90,7 @@ def command(
     from eventsim.errors import EventsimError
 
     try:
-        from eventsim.engines.certified.proof import prove
+        from eventsim.validate.proof import prove
     except ModuleNotFoundError:
         raise EventsimError("certify needs python-flint: pip install 'eventsim-disks[certify]'") from None
 

@@ -69,7 +69,7 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
     estimate = None
     if horizon:
         from eventsim.engines.base import Stop
-        from eventsim.engines.horizon import horizon as horizon_of
+        from eventsim.validate.horizon import horizon as horizon_of
 
         estimate = horizon_of(chosen, Stop(chosen.until, chosen.events))
     if as_json:

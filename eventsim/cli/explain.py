@@ -12,7 +12,7 @@ from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.cli.needs import Needs
-    from eventsim.engines.near_ties import NearTie
+    from eventsim.validate.near_ties import NearTie
 
 DOMAINS = {
     "box": "hard walls left, right, bottom and top",

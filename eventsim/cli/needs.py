@@ -10,7 +10,6 @@ import numpy as np
 
 from eventsim.engines.auto import first_engine
 from eventsim.engines.base import Stop
-from eventsim.engines.near_ties import NearTie, near_ties
 from eventsim.engines.reference.cells import images_of, plan
 from eventsim.scene.disks import Disks
 from eventsim.scene.overlaps import pair_overlaps
@@ -18,6 +17,7 @@ from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
 from eventsim.scene.stage import stage_of
 from eventsim.scene.validate import touching_by_rounding
 from eventsim.scene.walls import wall_names
+from eventsim.validate.near_ties import NearTie, near_ties
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene

@@ -162,7 +162,7 @@ def command(
     estimate = None
     if horizon:
         from eventsim.engines.base import Stop
-        from eventsim.engines.horizon import horizon as horizon_of
+        from eventsim.validate.horizon import horizon as horizon_of
 
         estimate = horizon_of(
             run.scene, Stop(events=run.counters.events) if run.stopped == "events" else Stop(run.time)

@@ -93,7 +93,7 @@ def command(
     Exit codes: 0 done; 1 an event-driven engine is at fault; 2 bad usage; 130 interrupted (a soak tells what
     it found so far).
     """
-    from eventsim.simulation import engine_named
+    from eventsim.engines import engine_named
 
     if soak is not None:
         if names or out or table:

@@ -12,15 +12,15 @@ from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.cli.target import Files
-    from eventsim.engines.base import Run
-    from eventsim.engines.horizon import Horizon
+    from eventsim.runner.outcome import Outcome
+    from eventsim.validate.horizon import Horizon
 
 
 WORTH_A_WORD, MOMENT = 0.01, 1e-3
 """Of the time that simulating took, and seconds: what takes less is left out of the text."""
 
 
-def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> dict[str, object]:
+def summary_data(asked: str, run: Outcome, files: Files, horizon: Horizon | None = None) -> dict[str, object]:
     """Return the keys that `eventsim run --help` documents."""
     return {
         "scene": asked,
@@ -48,7 +48,7 @@ def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = N
     }
 
 
-def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> str:
+def summary_text(asked: str, run: Outcome, files: Files, horizon: Horizon | None = None) -> str:
     """Return the summary as aligned lines."""
     counters, residuals = run.counters, run.residuals
     rows = [
@@ -90,12 +90,12 @@ def horizon_words(horizon: Horizon) -> str:
     )
 
 
-def _rate(run: Run) -> float | None:
+def _rate(run: Outcome) -> float | None:
     """Events per second of simulating; None where there was nothing to time."""
     return run.counters.events / run.elapsed_s if run.elapsed_s > 0 else None
 
 
-def _events(run: Run) -> str:
+def _events(run: Outcome) -> str:
     counters = run.counters
     pairs = plural(counters.pair_contacts, "pair contact")
     more = [(counters.rests, "rest"), (counters.kicks, "kick")]
@@ -109,7 +109,7 @@ def _seconds(seconds: float) -> str:
     return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
 
 
-def _engine(run: Run) -> str:
+def _engine(run: Outcome) -> str:
     """Who simulated, and what that took; times that are not simulating where they are worth a word."""
     name = run.engine if run.begun_by is None else f"{run.begun_by}, then {run.engine}"
     apart = [("compiling", run.compile_s), ("writing", run.write_s)]
@@ -132,7 +132,7 @@ def _overlap(deepest: float) -> str:
     return "none at any contact" if deepest <= 0 else f"deepest at a contact {deepest:.1e} of the reach"
 
 
-def stop_words(run: Run) -> str:
+def stop_words(run: Outcome) -> str:
     """Return why a run stopped, in words."""
     if run.reason is not None:
         return f"early ({run.stopped}): {run.reason}"

@@ -7,12 +7,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from eventsim.engines.base import Run, Session, Stop
+from eventsim.engines.base import Session
 from eventsim.errors import EventsimError
-from eventsim.runner.drive import Wishes, drive
-from eventsim.runner.interrupts import unmissed_interrupts
-from eventsim.scene import Scene
-from eventsim.scene.stage import stage_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,20 +17,6 @@ class Engine:
 
     name: str
     open: Callable[..., Session]
-
-    def run(self, scene: Scene, stop: Stop | float, wishes: Wishes | None = None, **options: Any) -> Run:
-        """Run a scene to its stop, a Stop or a time on its clock; options are the engine's own.
-
-        Raises EventsimError for options and wishes that the engine cannot fulfil.
-        """
-        wishes = Wishes() if wishes is None else wishes
-        if not isinstance(stop, Stop):
-            stop = Stop(until=float(stop))
-        stage = stage_of(scene)
-        # Where contacts can pile up, the last rows say how.
-        with unmissed_interrupts():
-            session = self.open(stage, keep_rows=wishes.rows or stage.loses_energy, **options)
-        return drive(session, self.name, scene, stop, wishes)
 
 
 def _reference(*args: Any, **options: Any) -> Session:
@@ -95,4 +77,13 @@ ENGINES: dict[str, Engine] = {
     "certified": Engine("certified", _certified),
     **STEPPED,
 }
-"""name -> engine; every engine is run(scene, stop) -> Run."""
+"""name -> engine."""
+
+
+def engine_named(name: str) -> Engine:
+    """The engine of a name; "auto" is the one that suits.  Raises EventsimError for one that does not exist."""
+    if name == "auto":
+        return AUTO
+    if name not in ENGINES:
+        raise EventsimError(f"engine {name!r} does not exist; there are: auto, {', '.join(ENGINES)}")
+    return ENGINES[name]

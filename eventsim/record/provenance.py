@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from eventsim.errors import LogError, SceneError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Kind, Rows
@@ -65,6 +65,13 @@ class Provenance:
 def columns_kept(provenance: Provenance) -> tuple[str, ...]:
     """Return the names of the columns that a log has, in order."""
     return COMPACT_COLUMNS if provenance.compact else COLUMNS
+
+
+class Recorded(NamedTuple):
+    """A log as it is kept: where its rows come from, and the rows; of a compact one what replay computes is missing."""
+
+    provenance: Provenance
+    rows: Rows
 
 
 def kicks_of(rows: Rows) -> list[Kick]:

@@ -23,9 +23,9 @@ from eventsim.formulas.rest import STRUCK, SUPPORTED, resting_place, slope
 from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import JointContact, resolve_together
 from eventsim.record.events import Column, Kind, Rows
+from eventsim.record.provenance import Provenance
 from eventsim.replay.contacts import Contact, Contacts
 from eventsim.replay.disk_flight import DiskFlight
-from eventsim.replay.log import EventLog
 from eventsim.replay.windows import Windows
 from eventsim.scene.stage import Stage, stage_of
 
@@ -64,19 +64,19 @@ class Disks(dict[int, DiskFlight]):
 class Expansion:
     """The disks of a compact log on their way from row to row."""
 
-    def __init__(self, log: EventLog) -> None:
-        stage = self.stage = stage_of(log.scene)
-        self._log = log
-        self.windows = Windows(stage, log.epoch)
+    def __init__(self, provenance: Provenance, rows: Rows) -> None:
+        stage = self.stage = stage_of(provenance.scene)
+        self._rows = rows
+        self.windows = Windows(stage, rows["epoch"])
         masses = [stage.common_mass] * stage.n if stage.mass is None else stage.mass.tolist()
         self._mass: list[float] = masses
         self.disks = Disks(stage, masses)
         self._contacts = Contacts(stage, self.disks)
-        self._set = {event: (vx, vy) for event, vx, vy in log.provenance.kicks}
+        self._set = {event: (vx, vy) for event, vx, vy in provenance.kicks}
 
     def numbers(self, first: int = 0, end: int | None = None) -> Iterator[Numbers]:
         """Yield what the rows from `first` on leave out, in order; clusters must be whole."""
-        entries = self._entries(self._log.rows[first:end])
+        entries = self._entries(self._rows[first:end])
         for joint, group in groupby(entries, key=lambda entry: (entry.joint, entry.event * (entry.joint < 0))):
             cluster = list(group)
             for entry in cluster:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
@@ -13,9 +12,9 @@ import numpy as np
 
 from eventsim.errors import LogWarning
 from eventsim.record.digest import digest_of
-from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, blank_rows
-from eventsim.record.files import FileSink, open_log, open_sink, read_log
-from eventsim.record.provenance import Ending, Provenance, kicks_of
+from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows
+from eventsim.record.files import open_sink, read_log
+from eventsim.record.provenance import Provenance
 from eventsim.scene import Scene
 
 SAVE_BLOCK = 1 << 16
@@ -75,9 +74,9 @@ class EventLog(Columns):
         """Return the full log: of a compact one by replay, bit for bit what the engine would have logged."""
         if not self.compact:
             return self
-        from eventsim.replay.expand import expand_rows  # replay stands above the log it reads
+        from eventsim.replay.expand import expand_rows  # only who has a compact log pays for it
 
-        full = EventLog(replace(self.provenance, compact=False), expand_rows(self))
+        full = EventLog(replace(self.provenance, compact=False), expand_rows(self.provenance, self.rows))
         full.path = self.path
         return full
 
@@ -119,37 +118,6 @@ class EventLog(Columns):
         sink.close(ending)
 
 
-class MemorySink:
-    """Keeps the rows of a run in memory; `log()` is what has been written so far."""
-
-    def __init__(self, provenance: Provenance) -> None:
-        self._provenance = provenance
-        self._blocks: list[Rows] = []
-        self._ending: Ending | None = None
-
-    def write(self, rows: Rows) -> None:
-        """Append a block of rows; it is copied, so the caller may reuse it."""
-        self._blocks.append(rows.copy())
-
-    def close(self, ending: Ending | None = None) -> None:
-        """Say where the run ended."""
-        self._ending = ending
-
-    def leave(self) -> None:
-        """Memory holds what it holds."""
-
-    def abandon(self) -> None:
-        """Forget all rows."""
-        self._blocks.clear()
-
-    def log(self) -> EventLog:
-        """Return the rows so far as a log."""
-        rows = np.concatenate(self._blocks) if self._blocks else blank_rows(0)
-        self._blocks = [rows]
-        finished = self._provenance.finished(self._ending, tuple(kicks_of(rows)), len(rows))
-        return EventLog(finished, rows)
-
-
 def load_log(path: str | PathLike[str]) -> EventLog:
     """Read a log file of any format; raise LogError with a sentence where it is not one.
 
@@ -161,13 +129,3 @@ def load_log(path: str | PathLike[str]) -> EventLog:
     log.verify(str(file))
     log.path = file
     return log
-
-
-def rows_so_far(sink: FileSink) -> Iterator[Rows]:
-    """Yield the full rows that a writer has written, in blocks; those of a compact log all at once."""
-    provenance, blocks = open_log(sink.part)
-    if not provenance.compact:
-        yield from blocks
-        return
-    rows = np.concatenate([blank_rows(0), *blocks])
-    yield EventLog(replace(provenance, kicks=sink.sync().kicks), rows).expand().rows

@@ -19,7 +19,7 @@ GOES_ON_AFTER = ("until", "events", "quiet", "interrupted")
 """Ends after which a run can be continued; before a collapse the last checkpoint stays the one to go on from."""
 
 
-class Keeper:
+class CheckpointWriter:
     """Writes the checkpoints of one run to one file.
 
     every: how often.  provenance, stop: of the run.  log: where its rows go, None where they are not kept.

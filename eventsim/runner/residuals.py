@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from eventsim.engines.base import Motion, Residuals, Session
+from eventsim.engines.base import Motion, Session
 from eventsim.record.events import Floats
 from eventsim.scene.pace import pace_of, slowed
 from eventsim.scene.stage import Stage
+
+
+@dataclass(frozen=True, slots=True)
+class Residuals:
+    """How good the run is.
+
+    energy: relative change, None where energy is not conserved.  momentum: what is not booked against walls, immovable
+    disks, gravity and kicks, divided by sum m |v|.  max_overlap: the deepest overlap of a pair at contact, in reaches.
+    """
+
+    energy: float | None
+    momentum: float
+    max_overlap: float
 
 
 def residuals_of(session: Session) -> Residuals:

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from eventsim import __version__
+from eventsim.engines import engine_named
 from eventsim.errors import EventsimError
+from eventsim.measure import Meter
+from eventsim.runner.loop import run_scene
+from eventsim.runner.options import RunOptions, stop_of
 from eventsim.scene.scene import Scene
-from eventsim.simulation import simulate
 from eventsim.sweep.grid import Task
 
 Cell: TypeAlias = float | int | str | bool | None
@@ -53,13 +56,14 @@ def first_cells(task: Task) -> Row:
 
 def _measured(plan: Plan, task: Task) -> Row:
     scene = plan.make(task.overrides, task.seed)
-    measure = True if plan.discard is None else plan.discard
-    run = simulate(scene, until=plan.until, events=plan.events, engine=plan.engine, measure=measure)
+    meter = Meter(scene, plan.discard)
+    stop = stop_of(scene, plan.until, plan.events)
+    run = run_scene(engine_named(plan.engine), scene, stop, RunOptions(takers=[meter.write]))
     if run.stopped == "interrupted":
         raise KeyboardInterrupt
-    measures = run.measures
-    if measures is None:
+    if run.time == scene.start_time:
         raise EventsimError("no time passes in this run")
+    measures = meter.finish(run.time - scene.start_time)
     row: Row = {
         "disks": measures.disks,
         "packing_fraction": measures.packing_fraction,

@@ -13,7 +13,8 @@ from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Session, Stop
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
-from eventsim.runner.drive import Wishes
+from eventsim.runner.loop import run_scene
+from eventsim.runner.options import RunOptions
 from eventsim.scene import Scene
 from eventsim.scene.gallery import gallery
 from eventsim.scene.pace import typical_speed
@@ -128,7 +129,7 @@ def rates(patience_s: float, tell: Tell = lambda _: None) -> dict[str, list[tupl
     for n in SIZES:
         scene = gallery("gas", n=n)
         stage = stage_of(scene)
-        probe = ENGINES[best_engine(n)].run(scene, Stop(events=4 * n), Wishes(log=True))
+        probe = run_scene(ENGINES[best_engine(n)], scene, Stop(events=4 * n), RunOptions(log=True))
         free = probe.time * n / (2 * probe.counters.pair_contacts + probe.counters.wall_contacts)
         until = RATE_CONTACTS * free
         truth = follow(ENGINES[best_engine(n)].open(stage, keep_rows=True), [until])

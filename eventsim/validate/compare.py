@@ -13,7 +13,7 @@ from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Stop
 from eventsim.errors import EventsimError
 from eventsim.record.events import Rows
-from eventsim.runner.drive import state_of
+from eventsim.runner.outcome import state_of
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
 from eventsim.validate.contacts import RESTARTS, Census, census, longest_stuck

@@ -8,10 +8,10 @@ from time import perf_counter, thread_time
 
 import numpy as np
 
-from eventsim.engines.base import Counters, Residuals, Session, Stop
+from eventsim.engines.base import Counters, Session, Stop
 from eventsim.record.events import Floats, Rows, blank_rows
-from eventsim.runner.drive import state_of
-from eventsim.runner.residuals import residuals_of
+from eventsim.runner.outcome import state_of
+from eventsim.runner.residuals import Residuals, residuals_of
 from eventsim.scene.stage import Stage
 
 STINT = 20_000

@@ -16,6 +16,7 @@ from pathlib import Path
 from time import process_time
 
 import eventsim as es
+from eventsim.engines import ENGINES
 from eventsim.engines.base import Session, Stop
 from eventsim.formulas.clock import clock_time
 from eventsim.runner.residuals import residuals_of
@@ -80,7 +81,7 @@ def queue_of(session: Session) -> int:
 
 def soak(scene: es.Scene, engine: str, events: int, path: Path) -> list[Look]:
     """Run so many events; looks are written to `path` as they come."""
-    session = es.ENGINES[engine].open(stage_of(scene), keep_rows=False)
+    session = ENGINES[engine].open(stage_of(scene), keep_rows=False)
     marks = sorted({max(1, round(events * WARM_UP)), *(events * (k + 1) // LOOKS for k in range(LOOKS))})
     looks = []
     with path.open("w", newline="") as file:

@@ -107,7 +107,8 @@ def serve(without: str, n: int, eta: float, contacts: int) -> None:
         CUTS[without]()
     from eventsim.engines.base import Stop
     from eventsim.engines.fast import FastSession
-    from eventsim.runner.drive import Wishes, drive
+    from eventsim.runner.loop import run_session
+    from eventsim.runner.options import RunOptions
     from eventsim.scene.stage import stage_of
     from tests.benchmarks.rates import lattice_gas
 
@@ -117,7 +118,7 @@ def serve(without: str, n: int, eta: float, contacts: int) -> None:
     def advance() -> None:
         stop = Stop(events=session.counters.events + contacts)
         if without == WHOLE:
-            drive(session, "fast", scene, stop, Wishes())
+            run_session(session, "fast", scene, stop, RunOptions())
         else:
             session.advance(stop, 1 << 40)
 

@@ -11,12 +11,13 @@ import pytest
 import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.certified import CertifiedSession
-from eventsim.engines.certified.proof import prove
 from eventsim.errors import EventsimError
 from eventsim.record.compare import agreement, deviations
-from eventsim.runner.drive import Wishes, drive
+from eventsim.runner.loop import run_session
+from eventsim.runner.options import RunOptions
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
+from eventsim.validate.proof import prove
 from tests.engines.proofs import certified
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 
@@ -89,9 +90,9 @@ def test_an_interrupted_run_takes_the_rows_that_were_held_back():
             signal.raise_signal(signal.SIGINT)
 
     interrupted = []
-    run = drive(session, "certified", scene, Stop(None, 10_000), Wishes(log=True, progress=interrupt))
+    run = run_session(session, "certified", scene, Stop(None, 10_000), RunOptions(log=True, progress=interrupt))
     assert run.stopped == "interrupted"
-    assert len(run.log) == run.counters.events >= interrupted[0]
+    assert len(run.recorded.rows) == run.counters.events >= interrupted[0]
 
 
 def first_difference(scene, events=600):

@@ -65,7 +65,8 @@ def test_f18_one_large_disk_among_1e5_small_ones_has_one_log():
     velocity = np.vstack([[[0.0, 0.0]], np.random.default_rng(18).normal(size=small.shape)])
     radius = np.array([50.0, *[0.5] * len(small)])
     scene = es.Scene(
-        es.Disks(np.vstack([[[0.0, 0.0]], small]), velocity, radius, radius**2), es.Box((664.0, 664.0), (-332.0, -332.0))
+        es.Disks(np.vstack([[[0.0, 0.0]], small]), velocity, radius, radius**2),
+        es.Box((664.0, 664.0), (-332.0, -332.0)),
     )
     runs = [es.simulate(scene, events=20_000, engine=engine, log=True) for engine in BOTH]
     assert runs[0].log.digest() == runs[1].log.digest()

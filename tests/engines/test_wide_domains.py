@@ -126,7 +126,7 @@ def test_replay_has_the_bits_of_the_engine(name, tmp_path):
     assert final.position.tobytes() == run.state.position.tobytes()
     assert final.velocity.tobytes() == run.state.velocity.tobytes()
     compact = es.simulate(scene, events=EVENTS, engine="reference", log=tmp_path / "compact.npz", compact=True).log
-    rows = expand_rows(compact)
+    rows = expand_rows(compact.provenance, compact.rows)
     for field in rows.dtype.names:
         assert np.array_equal(rows[field], run.log.rows[field], equal_nan=rows[field].dtype.kind == "f"), field
 
@@ -144,7 +144,9 @@ QUICK = ("corner",)
 """The others need kernels of their own, which take seconds to compile."""
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in SCENES])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in SCENES]
+)
 def test_both_engines_have_one_log_and_kernels_expand_it(name, monkeypatch):
     pytest.importorskip("numba")
     from eventsim.engines.fast import FastSession
@@ -164,4 +166,4 @@ def test_both_engines_have_one_log_and_kernels_expand_it(name, monkeypatch):
     assert digest_of(fast.take_rows()) == digest_of(reference.take_rows())
     monkeypatch.setattr(expand, "MANY_ROWS", 0)
     log = es.simulate(scene, events=EVENTS, engine="reference", log=True).log
-    assert digest_of(expand_rows(log)) == log.digest()
+    assert digest_of(expand_rows(log.provenance, log.rows)) == log.digest()

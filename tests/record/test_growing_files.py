@@ -11,9 +11,9 @@ import pytest
 
 from eventsim.errors import LogError
 from eventsim.record import Ending
-from eventsim.record.files import Mark, continued_sink, open_sink
+from eventsim.record.files import Mark, continued_sink, open_log, open_sink
 from eventsim.record.files.journal import ROOM
-from eventsim.replay.log import load_log, rows_so_far
+from eventsim.replay.log import load_log
 from eventsim.suffixes import LOGS
 from tests.record.logs import provenance, random_log, random_rows, scene
 
@@ -104,7 +104,7 @@ def test_a_log_that_is_continued_is_the_same_file_as_one_written_at_once(
             sink.close(Ending(1, 0.5, "interrupted"))
         sink = continued_sink(path, kept, compact, mark)
         if not compact:  # random rows do not follow from their scene, so they cannot be expanded
-            assert b"".join(block.tobytes() for block in rows_so_far(sink)) == log.rows[:rows].tobytes()
+            assert b"".join(block.tobytes() for block in open_log(sink.part)[1]) == log.rows[:rows].tobytes()
         sink.write(log.rows[rows:])
         sink.close(whole.provenance.ending)
         assert load_log(path).rows.tobytes() == whole.rows.tobytes()

@@ -102,7 +102,9 @@ def test_a_compact_log_expands_to_the_full_one(tmp_path: Path, name: str) -> Non
     assert compact.digest() == log.digest()
 
 
-KERNELS = [pytest.param(name, marks=() if name in ("periodic", "rack on a torus") else pytest.mark.slow) for name in SCENES]
+KERNELS = [
+    pytest.param(name, marks=() if name in ("periodic", "rack on a torus") else pytest.mark.slow) for name in SCENES
+]
 """Most scenes need kernels of their own, which take seconds to compile."""
 
 

@@ -13,6 +13,7 @@ import pytest
 
 import eventsim as es
 import eventsim.engines.auto
+from eventsim.engines import ENGINES
 from eventsim.engines.base import Snapshot, Stop
 from eventsim.formulas.rest import SUPPORTED
 from eventsim.runner.checking import demand_fit
@@ -36,7 +37,7 @@ def saved(tmp_path):
 def test_every_field_of_a_snapshot_comes_back(name, engine):
     """A field of a new kind fails here until `packing` knows it."""
     scene = lattice_gas(36, 0.3, quantum=1.0) if name == "joint" else SCENES[name]()
-    session = es.ENGINES[engine].open(stage_of(scene))
+    session = ENGINES[engine].open(stage_of(scene))
     for events in (0, 50, 300):
         session.advance(Stop(events=events), 10**6)
         snapshot, arrays = session.snapshot(), {}

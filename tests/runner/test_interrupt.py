@@ -11,8 +11,9 @@ from eventsim.engines import auto
 from eventsim.engines.auto import AutoSession
 from eventsim.engines.base import BrokenOffError, Stop
 from eventsim.engines.reference import ReferenceSession
-from eventsim.runner.drive import Wishes, drive
 from eventsim.runner.interrupts import unmissed_interrupts
+from eventsim.runner.loop import run_session
+from eventsim.runner.options import RunOptions
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
 
@@ -45,13 +46,13 @@ class Busy(ReferenceSession):
 
 
 def driven(session):
-    return drive(session, "reference", SCENE, Stop(events=10**6), Wishes(log=True))
+    return run_session(session, "reference", SCENE, Stop(events=10**6), RunOptions(log=True))
 
 
 def test_an_interrupt_breaks_into_preparations_and_what_happened_is_kept():
     run = driven(Preparing(stage_of(SCENE)))
     assert run.stopped == "interrupted"
-    assert len(run.log) == run.counters.events >= 20
+    assert len(run.recorded.rows) == run.counters.events >= 20
 
 
 def test_an_interrupt_waits_for_the_end_of_a_stint():
@@ -59,7 +60,7 @@ def test_an_interrupt_waits_for_the_end_of_a_stint():
     run = driven(session)
     assert session.came_back
     assert run.stopped == "interrupted"
-    assert len(run.log) > 0
+    assert len(run.recorded.rows) > 0
 
 
 def test_a_second_interrupt_breaks_into_a_stint():
@@ -103,7 +104,7 @@ def test_nothing_is_kept_of_a_run_that_is_broken_off_before_it_began(monkeypatch
 
     monkeypatch.setattr(fast, "FastSession", refuse)
     with pytest.raises(KeyboardInterrupt):
-        drive(AutoSession(stage_of(SCENE)), "auto", SCENE, Stop(events=100), Wishes())
+        run_session(AutoSession(stage_of(SCENE)), "auto", SCENE, Stop(events=100), RunOptions())
 
 
 def test_the_fast_engine_prepares_itself_while_it_compiles():

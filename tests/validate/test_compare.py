@@ -38,7 +38,9 @@ def no_compiler():
 @pytest.fixture(scope="module")
 def gas(no_compiler):
     scene = es.gallery("gas", n=60)
-    return compare(scene, chosen_entrants(["frames", "stepped", "stepped-located"]), steps=(0.02, 0.002, 0.0005), until=0.4)
+    return compare(
+        scene, chosen_entrants(["frames", "stepped", "stepped-located"]), steps=(0.02, 0.002, 0.0005), until=0.4
+    )
 
 
 def test_energy_looks_perfect_while_contacts_go_missing(gas):
@@ -82,7 +84,9 @@ def test_patience_bounds_the_event_driven_run_too():
     assert not any("event-driven" in sentence for sentence in whole.left_out)
     cut = compare(scene, chosen_entrants(["stepped"]), steps=(0.02,), until=1e9, patience_s=0.01)
     assert cut.truth.times[-1] < 1e3
-    assert f"what comes after t = {cut.truth.times[-1]:g} is left out: the event-driven run took 0.1 s" in cut.left_out[0]
+    assert (
+        f"what comes after t = {cut.truth.times[-1]:g} is left out: the event-driven run took 0.1 s" in cut.left_out[0]
+    )
 
 
 def test_an_unknown_engine_is_named_with_those_that_there_are():

@@ -45,7 +45,6 @@ from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.record.times import two_sum
-from eventsim.replay.disk_flight import DiskFlight
 from eventsim.scene.stage import Stage
 
 PAIR_ROW, WALL_ROW = int(Kind.PAIR), int(Kind.WALL)
@@ -123,29 +122,6 @@ class Retracer:
             arrays, crowd, self._rules, self._sums, self._entries, self._timetable, places, first, window
         )
         return int(row), int(window)
-
-    def lend(self, i: int, flight: DiskFlight, window: int) -> None:
-        """Let a flight be that of disk i."""
-        s = self.state
-        flight.window, flight.t = window, s.t[i]
-        flight.anchor(s.t[i], (s.x[i], s.y[i]), (s.vx[i], s.vy[i]))
-        flight.wraps = [s.wraps_x[i], s.wraps_y[i]]
-        flight.met, flight.contact_time = s.met[i], s.contact_time[i]
-        if s.low_parts:
-            flight.low = s.low_vx[i], s.low_vy[i]
-        if s.low_places:
-            flight.low_place = s.low_x[i], s.low_y[i]
-
-    def take_back(self, i: int, flight: DiskFlight) -> None:
-        """Let disk i fly on as a flight does."""
-        s = self.state
-        s.t[i], s.x[i], s.y[i], s.vx[i], s.vy[i] = flight.t, flight.x, flight.y, flight.vx, flight.vy
-        s.wraps_x[i], s.wraps_y[i] = flight.wraps
-        s.met[i], s.contact_time[i] = flight.met, flight.contact_time
-        if s.low_parts:
-            s.low_vx[i], s.low_vy[i] = flight.low
-        if s.low_places:
-            s.low_x[i], s.low_y[i] = flight.low_place or (0.0, 0.0)
 
 
 @kernel

@@ -18,7 +18,7 @@ from eventsim.engines.stepped.clock import StepClock, usual_step
 from eventsim.engines.stepped.disks import Moving, moving_disks
 from eventsim.engines.stepped.found import BUFFER, MOVED, ROW_COUNT, Found, nothing_found, take_counters, tell_counters
 from eventsim.engines.stepped.ground import ground_of
-from eventsim.engines.stepped.trajectory import Trajectory
+from eventsim.engines.trajectory import Trajectory
 from eventsim.errors import EventsimError
 from eventsim.formulas.contact import FASTEST, SLOWEST
 from eventsim.record.events import ROW, Kind, Rows, blank_rows

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.engines import STEPPED
-from eventsim.engines.base import Run
+from eventsim.engines import STEPPED, engine_named
+from eventsim.replay.past import PastRun
+from eventsim.runner.loop import run_scene
+from eventsim.runner.options import RunOptions, stop_of
 from eventsim.scene import Scene
-from eventsim.simulation import simulate
 
 GOES_ON = ("until", "events", "quiet")
 """Reasons to stop that are none of the engine's; with any other it says that it cannot go on."""
@@ -54,10 +55,11 @@ class Bench:
         events: int | None = None,
         log: bool = False,
         may_give_up: bool = False,
-    ) -> Run:
+    ) -> PastRun:
         """Simulate a scene; raises GaveUpError where the engine stops early, unless that is what the case is about."""
         self._begun = None
-        run = simulate(scene, until, events, engine=self.engine, log=log, progress=self._watch)
+        wanted = RunOptions(log=log, progress=self._watch)
+        run = PastRun.of(run_scene(engine_named(self.engine), scene, stop_of(scene, until, events), wanted))
         change = run.residuals.energy
         if change is not None and abs(change) > abs(self.energy):
             self.energy = change

@@ -12,11 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.engines.base import Run
+from eventsim.engines import engine_named
 from eventsim.errors import SceneError
 from eventsim.formulas.roots import NEARLY
+from eventsim.runner.loop import run_scene
+from eventsim.runner.options import RunOptions, stop_of
+from eventsim.runner.outcome import Outcome
 from eventsim.scene import Box, Channel, Disks, Domain, Open, Periodic, Scene
-from eventsim.simulation import simulate
 from eventsim.validate.stress.workers import Silence, answers
 
 EVENTS, UNTIL = 80, 50.0
@@ -119,11 +121,11 @@ def by_kernels(seeds: range) -> list[list[int]]:
 def finding_of(seed: int, engines: tuple[str, ...]) -> Finding | None:
     """What is wrong with a seed, if anything."""
     scene = random_scene(seed)
-    first: Run | None = None
+    first: Outcome | None = None
     for engine in engines:
         began = process_time()
         try:
-            run = simulate(scene, engine=engine, log=True)
+            run = run_scene(engine_named(engine), scene, stop_of(scene, None, None), RunOptions(log=True))
         except Exception as failure:
             # An engine that fails is a finding; the other seeds are still to be looked at.
             return Finding(seed, engine, f"failed: {type(failure).__name__}: {failure}")
@@ -140,14 +142,14 @@ def finding_of(seed: int, engines: tuple[str, ...]) -> Finding | None:
     return None
 
 
-def _fault(run: Run) -> str | None:
+def _fault(run: Outcome) -> str | None:
     """What is wrong with a run by itself."""
-    log = run.log
-    assert log is not None
+    assert run.recorded is not None
+    time = run.recorded.rows["time"]
     if not (np.isfinite(run.state.position).all() and np.isfinite(run.state.velocity).all()):
         return "a position or a velocity is not a number"
     # Contacts so near to each other are taken in their exact order, so a logged time may step back by so much.
-    back, latest = float(np.max(-np.diff(log.time), initial=0.0)), float(np.max(log.time, initial=1.0))
+    back, latest = float(np.max(-np.diff(time), initial=0.0)), float(np.max(time, initial=1.0))
     if back > (NEARLY - 1.0) * latest + math.ulp(latest):
         return f"the clock steps back by {back:.2g}"
     if run.residuals.max_overlap > OVERLAP:
@@ -159,7 +161,7 @@ OVERLAP = 2.0**-24
 """In reaches: an ulp of the coordinates, 8, against the smallest reach, 2**-19, and 2**5 of them for flights between."""
 
 
-def _difference(one: Run, other: Run) -> str | None:
+def _difference(one: Outcome, other: Outcome) -> str | None:
     """Where two engines part."""
     if one.digest != other.digest:
         return (

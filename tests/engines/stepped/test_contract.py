@@ -9,7 +9,7 @@ import pytest
 import eventsim as es
 from eventsim.engines import STEPPED
 from eventsim.engines.base import Stop
-from eventsim.engines.stepped.trajectory import MOST_SAMPLES
+from eventsim.engines.trajectory import MOST_SAMPLES
 from eventsim.replay.replay import Replay
 from eventsim.scene.stage import stage_of
 

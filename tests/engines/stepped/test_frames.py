@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.engines import STEPPED
 from eventsim.engines.base import Stop
-from eventsim.runner.drive import Wishes
+from eventsim.run import ENGINES
+from eventsim.runner.options import RunOptions
 from eventsim.scene.stage import stage_of
 from eventsim.validate.contacts import longest_stuck
 
@@ -17,7 +17,7 @@ def run_at(radii, memory, until=4.0):
     """A run whose typical disk flies so many radii in a frame; and its frame."""
     stage = stage_of(THIN)
     dt = radii * stage.radius[0] / float(np.sqrt(np.mean(stage.vx**2 + stage.vy**2)))
-    return STEPPED["frames"].run(THIN, Stop(until), Wishes(log=True), dt=dt, memory=memory), dt
+    return ENGINES["frames"].run(THIN, Stop(until), RunOptions(log=True), dt=dt, memory=memory), dt
 
 
 def test_two_thirds_of_the_contacts_are_found_while_energy_looks_perfect():

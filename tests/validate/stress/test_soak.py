@@ -7,8 +7,8 @@ import pytest
 from click.testing import CliRunner
 
 from eventsim.cli import main
-from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
+from eventsim.run import ENGINES
 from eventsim.validate.stress.soak import Finding, by_kernels, finding_of, random_scene, soak
 
 
@@ -65,7 +65,7 @@ def test_an_engine_that_fails_is_a_finding(monkeypatch):
     def broken(*_args, **_options):
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr("eventsim.validate.stress.soak.simulate", broken)
+    monkeypatch.setattr("eventsim.validate.stress.soak.run_scene", broken)
     assert finding_of(3, ("reference",)) == Finding(3, "reference", "failed: ZeroDivisionError: division by zero")
 
 

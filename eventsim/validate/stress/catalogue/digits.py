@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from eventsim.engines.base import Run
 from eventsim.errors import SceneError
+from eventsim.replay.past import PastRun
 from eventsim.scene import Box, Disks, Scene
 from eventsim.scene.gallery import gallery
 from eventsim.validate.stress.case import Bench, Case, off
@@ -35,7 +35,7 @@ def _speeds(bench: Bench) -> float:
     return worst
 
 
-def _apart(run: Run, base: Run, exponent: int) -> float:
+def _apart(run: PastRun, base: PastRun, exponent: int) -> float:
     velocity = np.ldexp(run.state.velocity, -exponent)
     return max(off(velocity, base.state.velocity), off(run.state.position, base.state.position))
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
+from eventsim.runner.loop import run_scene
 from eventsim.scene import Box, Disks, Scene, Segment
 from eventsim.validate.stress.case import Bench, Case, off
 from eventsim.validate.stress.catalogue.scenes import lattice_gas, on_plane, with_disks
@@ -59,7 +60,7 @@ def _missing(bench: Bench) -> float:
     gas = lattice_gas(100, 0.3, seed=23)
     fast = Disks(gas.disks.position, FAST * gas.disks.velocity, 0.5)
     scene, until = with_disks(gas, fast), 10.0 / FAST
-    expected = ENGINES["reference"].run(scene, Stop(until)).counters.pair_contacts
+    expected = run_scene(ENGINES["reference"], scene, Stop(until)).counters.pair_contacts
     return abs(bench.run(scene, until=until).counters.pair_contacts / expected - 1.0)
 
 

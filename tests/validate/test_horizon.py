@@ -4,10 +4,10 @@ import pytest
 
 from eventsim.engines.base import Stop
 from eventsim.engines.certified import CertifiedSession
-from eventsim.engines.horizon import horizon
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
+from eventsim.validate.horizon import horizon
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 
 SHAPES = ((8, 0.2), (16, 0.3), (24, 0.4), (16, 0.5), (12, 0.1))

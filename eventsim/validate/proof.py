@@ -7,15 +7,17 @@ from os import PathLike
 
 import numpy as np
 
-from eventsim.engines.base import Progress, Run, Stop
-from eventsim.engines.certified.rounded import Rounded, rounded
+from eventsim.engines.base import Stop
 from eventsim.engines.certified.session import FIRST_BITS, MOST_BITS, Attempt, CertifiedSession
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import two_sum
-from eventsim.runner.drive import Wishes, drive
+from eventsim.replay.past import PastRun
+from eventsim.runner.loop import run_session
+from eventsim.runner.options import Progress, RunOptions
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
+from eventsim.validate.rounded import Rounded, rounded
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,7 @@ class Proof:
         difference_time: of the first event that float64 has otherwise, or not, on the scene's clock; None: there is none.
     """
 
-    run: Run
+    run: PastRun
     proven: int
     bits: int
     traced: bool
@@ -57,8 +59,8 @@ def prove(
     stage = stage_of(scene)
     session = CertifiedSession(stage, bits=bits, most_bits=most_bits)
     blocks: list[Rows] = [np.zeros(0, ROW)]
-    wishes = Wishes(log=log, progress=progress, on_event=blocks.append, command=command)
-    run = drive(session, "certified", scene, stop, wishes)
+    wanted = RunOptions(log=log, progress=progress, on_event=blocks.append, command=command)
+    run = PastRun.of(run_session(session, "certified", scene, stop, wanted))
     certified = np.concatenate(blocks)
     float64 = rounded(stage, scene.domain.size, certified, stop.until)
     time = None
@@ -77,7 +79,7 @@ def prove(
     )
 
 
-def _on_axes(session: CertifiedSession, run: Run) -> Floats:
+def _on_axes(session: CertifiedSession, run: PastRun) -> Floats:
     """How far the true numbers are from those of the final state: positions may lose a last bit on the scene's axes."""
     distances, motion, corner = session.distances(), session.motion(), session.stage.corner
     for axis, place in enumerate((motion.x, motion.y)):

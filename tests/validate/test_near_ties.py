@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 import eventsim as es
-from eventsim.engines import near_ties as module
-from eventsim.engines.near_ties import near_ties
 from eventsim.scene.gallery import gallery, names
+from eventsim.validate import near_ties as module
+from eventsim.validate.near_ties import near_ties
 from tests.engines.scenes import lattice_gas
 
 LAST_BIT = math.ulp(6.0)

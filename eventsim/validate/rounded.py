@@ -10,7 +10,7 @@ from eventsim.engines.base import Stop
 from eventsim.engines.reference import ReferenceSession
 from eventsim.record.compare import VELOCITIES, agreement, deviations
 from eventsim.record.events import Floats, Rows
-from eventsim.runner.drive import diagnosed
+from eventsim.runner.outcome import diagnosed
 from eventsim.scene.stage import Stage
 
 AHEAD = 4

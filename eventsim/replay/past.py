@@ -1,0 +1,54 @@
+"""A run that is over: what it gave, and the way back into its past."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Self
+
+from eventsim.errors import LogError
+from eventsim.record.events import State
+from eventsim.replay.log import EventLog, load_log
+from eventsim.replay.replay import Replay
+from eventsim.runner.outcome import Outcome
+
+
+@dataclass(slots=True)
+class PastRun(Outcome):
+    """An outcome that knows the states in between."""
+
+    _log: EventLog | None = None
+    _replay: Replay | None = None
+
+    @classmethod
+    def of(cls, outcome: Outcome) -> Self:
+        """What an engine's run came out as, to look back on."""
+        return cls(**{item.name: getattr(outcome, item.name) for item in fields(Outcome)})
+
+    @property
+    def log(self) -> EventLog | None:
+        """The log, if one was kept; one that was streamed to a file is read when first asked for."""
+        if self._log is None:
+            if self.recorded is not None:
+                self._log = EventLog(*self.recorded)
+            elif self.log_path is not None:
+                self._log = load_log(self.log_path)
+        return self._log
+
+    def state_at(self, time: float) -> State:
+        """The state at any time of the run, by replay of its log; at the time of an event, the state after it.
+
+        Of a stepped engine: free flight from the last sample of its trajectory before.
+        Raises LogError where no log was kept or the time is outside the run.
+        """
+        if self.trajectory is not None:
+            if not self.start_time <= time <= self.time:
+                raise LogError(
+                    f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}"
+                )
+            return self.trajectory.state_at(time, self.start_time)
+        log = self.log
+        if log is None:
+            raise LogError("state_at needs the log of the run: simulate(..., log=True)")
+        if self._replay is None:
+            self._replay = Replay(log)
+        return self._replay.state_at(time)

@@ -1,0 +1,79 @@
+"""A run, as its user has it in hand: what came out, its log, its states at any time, its measures, its pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from eventsim.engines import ENGINES as TABLE
+from eventsim.engines import Engine
+from eventsim.engines.base import Stop
+from eventsim.errors import LogError
+from eventsim.replay.past import PastRun
+from eventsim.runner.loop import run_scene
+from eventsim.runner.options import RunOptions
+from eventsim.scene import Scene
+
+if TYPE_CHECKING:
+    from eventsim.measure import Measures
+
+
+@dataclass(slots=True)
+class Run(PastRun):
+    """What a simulation gives: the state it ended in, the log if one was kept, how good it is and why it stopped.
+
+    begun_by: the engine that handed over to `engine`, where `auto` began with another one.
+    log_path: where the log was streamed to.  measures: where they were asked for.  stopped: `until`, `events`, `quiet` (no
+    event ahead), `collapse`, `digits`, `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s:
+    simulating only; compile_s and write_s (waiting for rows to be written and measured) apart, seconds.  trajectory: samples,
+    of a stepped engine, whose motion does not follow from its log.
+    """
+
+    measures: Measures | None = None
+
+    def __repr__(self) -> str:
+        name = self.scene.name or "a scene without a name"
+        return f"Run({name}: {self.counters.events:,} events to t = {self.time!r}, stopped: {self.stopped})"
+
+    def animate(self, path: str | PathLike[str], **options: Any) -> None:
+        """Write an animation to `path`: .mp4, .gif, .png (a strip of moments) or .html (a page that plays the run).
+
+        options: those of `eventsim animate` (fps, speed or duration, begin, end, moments, size, color, trails,
+        velocities, flash, dark).  Raises LogError where no log was kept, EventsimError for what does not fit.
+        """
+        from eventsim.show.animate import animate_with  # loaded by who wants a picture
+
+        if self.log is None:
+            raise LogError("animate needs the log of the run: simulate(..., log=True)")
+        animate_with(self.log, path, **options)
+
+    def _repr_html_(self) -> str | None:
+        """Return the player for a notebook; None, and so the plain text, without a log or with too large a one."""
+        from eventsim.show.player.page import notebook_frame
+
+        return None if self.log is None else notebook_frame(self.log)
+
+
+@dataclass(frozen=True, slots=True)
+class RunnableEngine:
+    """An engine of the table, to be run."""
+
+    engine: Engine
+
+    @property
+    def name(self) -> str:
+        """As in `ENGINES`."""
+        return self.engine.name
+
+    def run(self, scene: Scene, stop: Stop | float, wanted: RunOptions | None = None, **options: Any) -> Run:
+        """Run a scene to its stop, a Stop or a time on its clock; options are the engine's own.
+
+        Raises EventsimError for options and wishes that the engine cannot fulfil.
+        """
+        stop = stop if isinstance(stop, Stop) else Stop(until=float(stop))
+        return Run.of(run_scene(self.engine, scene, stop, wanted, **options))
+
+
+ENGINES = {name: RunnableEngine(engine) for name, engine in TABLE.items()}
+"""name -> engine; every engine is run(scene, stop) -> Run."""
