@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from eventsim.cli.words import paragraphs, point, short, title
 from eventsim.engines.reference.cells import ENOUGH_DISKS
 from eventsim.scene.names import plural
+from eventsim.scene.walls import SHAPES
 
 if TYPE_CHECKING:
     from eventsim.cli.needs import Needs
@@ -22,7 +23,7 @@ DOMAINS = {
 MANY = 10
 """Moving disks from which on a temperature is worth a word."""
 
-SHAPES = {"face": "straight face", "post": "post", "arc": "arc", "container": "container"}
+SHAPE_WORDS = {kind.__name__.lower(): kind.word() for kind in SHAPES}
 
 
 def page(asked: str, name: str | None, needs: Needs) -> str:
@@ -91,7 +92,7 @@ def _domain(needs: Needs) -> str:
 
 def _walls(needs: Needs) -> str:
     named = ", ".join(f"{name} ({kind})" for name, kind in needs.walls.items())
-    shapes = ", ".join(plural(count, SHAPES[shape]) for shape, count in needs.shapes.items())
+    shapes = ", ".join(plural(count, SHAPE_WORDS[shape]) for shape, count in needs.shapes.items())
     images = ", periodic images included" if needs.domain in ("periodic", "channel") else ""
     return f"{named}; made of {shapes}{images}, each tried by every disk"
 
@@ -101,7 +102,7 @@ def _flights(needs: Needs) -> str:
         text = "straight lines: no gravity, and no term is computed for it"
         return f"{text}; the domain is so wide that places carry what their rounding leaves" if needs.low_places else text
     text = f"parabolas, gravity {point(*needs.gravity)}; it cancels between disks, so only walls see the curve"
-    if any(needs.shapes.get(shape, 0) for shape in ("post", "arc", "container")):
+    if needs.shapes.keys() - {"face"}:
         text += "; a parabola against a round wall or a wall's end is a quartic, solved by bracketing"
     if needs.immovable:
         text += "; disks of mass inf fly straight, so others meet them on parabolas too"

@@ -8,9 +8,8 @@ from typing import TypeAlias
 
 from eventsim.formulas.real import Acceleration
 from eventsim.formulas.rest import STRUCK
-from eventsim.formulas.roots import Moment, order_of, quadratic_root, rational
-from eventsim.formulas.walls.face import Face
-from eventsim.formulas.walls.round import Arc, Container
+from eventsim.formulas.roots import Line, Moment, falls_to, less_number, order_of, rational, reaches
+from eventsim.formulas.walls.boundary import Boundary
 from eventsim.scene.stage import Stage
 
 Place: TypeAlias = float | Fraction
@@ -18,9 +17,6 @@ Place: TypeAlias = float | Fraction
 
 Flight: TypeAlias = tuple[float, Place, Place, float, float, Acceleration, Acceleration]
 """A free flight: t, x, y, vx, vy, and its acceleration."""
-
-Line: TypeAlias = tuple[Fraction, Fraction, Fraction]
-"""A coordinate as a polynomial in time: its value at time 0, its rate there, half its acceleration."""
 
 ZERO = Fraction(0)
 
@@ -50,31 +46,24 @@ class ExactTimes:
         return begin if order_of(moment, begin) < 0 else moment  # an overlap is due now
 
     def _of_pair(self, image: tuple[int, int], reach: Fraction, flights: list[Flight]) -> Moment | None:
-        apart = []
+        apart: list[Line] = []
         for one, other, k, length in zip(*map(_lines, flights), image, self._stage.period, strict=True):
             line = _less(one, other)
-            apart.append(_less_number(line, k * length) if k and length is not None else line)
-        return _reaches(apart, reach, -1)
+            apart.append(less_number(line, k * length) if k and length is not None else line)
+        return reaches(apart[0], apart[1], reach, -1)
 
-    def _of_wall(self, place: int, image: tuple[int, int], radius: float, flight: Flight) -> Moment | None:
+    def _of_wall(self, number: int, image: tuple[int, int], radius: float, flight: Flight) -> Moment | None:
         stage, (side, how) = self._stage, image
         if how != STRUCK:
             return None
         lines = _lines(flight)
-        if place < len(stage.boundaries):
-            boundary = stage.boundaries[place]
-            target: Place = boundary.position + boundary.side * radius
-            if stage.low_places:
-                target = Fraction(boundary.position) + side * Fraction(radius)
-            return _falls_to(lines[boundary.axis], target, side)
-        shape = stage.features[place - len(stage.boundaries)].shape
-        x, y = _less_number(lines[0], shape.x), _less_number(lines[1], shape.y)
-        if isinstance(shape, Face):
-            nx, ny = Fraction(shape.nx), Fraction(shape.ny)
-            distance = nx * x[0] + ny * y[0], nx * x[1] + ny * y[1], nx * x[2] + ny * y[2]
-            return _falls_to(distance, side * (radius * shape.norm), side)
-        circle = Fraction(shape.radius) if isinstance(shape, Arc | Container) else ZERO
-        return _reaches([x, y], circle + side * Fraction(radius), -side)
+        surface = stage.surfaces[number]
+        if not isinstance(surface, Boundary):
+            return surface.shape.moment(*lines, side, radius)
+        target: Place = surface.target(radius)
+        if stage.low_places:
+            target = Fraction(surface.position) + side * Fraction(radius)
+        return falls_to(lines[surface.axis], target, side)
 
 
 def exact_place(x: float, y: float, low: tuple[float, float]) -> tuple[Fraction, Fraction]:
@@ -97,21 +86,3 @@ def _line(x: Place, v: float, g: float | None, t: Fraction) -> Line:
 
 def _less(one: Line, other: Line) -> Line:
     return one[0] - other[0], one[1] - other[1], one[2] - other[2]
-
-
-def _less_number(line: Line, number: Place) -> Line:
-    return line[0] - Fraction(number), line[1], line[2]
-
-
-def _reaches(apart: list[Line], reach: Fraction, side: int) -> Moment | None:
-    """When a straight distance is `reach`: the first time (side -1: from outside) or the last one (+1: from inside)."""
-    (x, u, ax), (y, w, ay) = apart
-    if ax or ay:
-        return None
-    return quadratic_root(u * u + w * w, x * u + y * w, x * x + y * y - reach * reach, side)
-
-
-def _falls_to(line: Line, target: Place, side: int) -> Moment | None:
-    """When side * (line - target) sinks to 0: of a parabola the time at which it falls."""
-    at, rate, half = _less_number(line, target)
-    return quadratic_root(side * half, side * rate / 2, side * at, -1)

@@ -5,19 +5,16 @@ A disk that leaves a wall at speed v against the pull a flies for 2 v / a, then 
 end, and the disk is supported: it has the part of gravity that is along the wall, until the next impulse or the wall's end.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from eventsim.formulas.crossing import closing_delay, crossing_delay
 from eventsim.formulas.real import NEVER, Real
-from eventsim.formulas.walls.face import Face, face_side
-from eventsim.formulas.walls.round import Post
+from eventsim.formulas.walls.face import TOUCHING, Face, face_side, slope
+from eventsim.formulas.walls.shape import Shape
 
 AT_ONCE = 2.0**-48
 """Events closer than this part of the clock are at one instant: a few of its last bits."""
-
-TOUCHING = 2.0**-48
-"""A gap is rounding below this part of the coordinates: 16 units in their last place, as for disks that touch at the start."""
 
 LATEST = 1024.0
 """A Zeno time further off than so many instants, of an almost elastic disk, is not waited for: it would fall through the wall."""
@@ -132,16 +129,6 @@ def slide_delay(shape: Face, low: float, high: float, x: Real, y: Real, vx: Real
     return down if down < up else up
 
 
-def slope(shape: Face, u: Real, w: Real) -> tuple[Real, Real]:
-    """The part of a vector that is along a face; exact where the face is along an axis."""
-    if shape.ey == 0.0:
-        return u, 0.0
-    if shape.ex == 0.0:
-        return 0.0, w
-    share = (u * shape.ex + w * shape.ey) / (shape.ex * shape.ex + shape.ey * shape.ey)
-    return share * shape.ex, share * shape.ey
-
-
 def resting_place(shape: Face, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
     """Where a centre at (x, y) rests: exactly on contact where the face is along an axis, else where it is."""
     if shape.ey == 0.0:
@@ -149,13 +136,6 @@ def resting_place(shape: Face, side: int, x: Real, y: Real, radius: Real) -> tup
     if shape.ex == 0.0:
         return shape.x + (side * shape.nx) * radius, y
     return x, y
-
-
-def is_in_line(shape: Face, x: Real, y: Real) -> bool:
-    """Whether a point is on the line of a face: a disk that slides on the face grazes what ends there, and does not meet it."""
-    distance = shape.nx * (x - shape.x) + shape.ny * (y - shape.y)
-    scale = shape.norm * (abs(x) + abs(y) + abs(shape.x) + abs(shape.y))
-    return bool(not distance > TOUCHING * scale and not distance < -(TOUCHING * scale))
 
 
 def border_contact(
@@ -185,11 +165,10 @@ def border_contact(
 
 
 def shape_contact(
-    supports: Sequence[Support | None],
+    supports: Sequence[Support | None] | None,
     held: Held | None,
     place: int,
-    shape: Any,
-    delay_to: Callable[..., tuple[Real, int]],
+    shape: Shape,
     flight: tuple[Real, Real, Real, Real, Real, Real],
     radius: Real,
     met: int,
@@ -198,8 +177,10 @@ def shape_contact(
 ) -> tuple[Real, int, int]:
     """(delay, side, how) of the next event at a shape inside the domain: an impact, coming to rest, or sliding over its end.
 
-    flight: x, y, vx, vy and the acceleration that the disk has.  met: the side last met.
+    flight: x, y, vx, vy and the acceleration that the disk has.  met: the side last met.  supports: None in a scene without rest.
     """
+    if supports is None:
+        return *shape.delay(*flight, radius, met), STRUCK
     if held is not None:
         on = supports[held.place]
         assert on is not None
@@ -213,11 +194,9 @@ def shape_contact(
         delay = rest_on_face_delay(support.face, side, support.low, support.high, *flight, radius, restitution, t)
         if delay < NEVER:
             return delay, side, SUPPORTED
-    return *delay_to(shape, *flight, radius, met), STRUCK
+    return *shape.delay(*flight, radius, met), STRUCK
 
 
-def _is_beside(line: Face, shape: Any, how: int) -> bool:
+def _is_beside(line: Face, shape: Shape, how: int) -> bool:
     """Whether a disk passes a shape because it slides on its line, or left that line at its end."""
-    if isinstance(shape, Face):
-        return is_in_line(line, shape.x, shape.y) and is_in_line(line, shape.x + shape.ex, shape.y + shape.ey)
-    return isinstance(shape, Post) and how == SUPPORTED and is_in_line(line, shape.x, shape.y)
+    return (how == SUPPORTED or shape.line() is not None) and shape.lies_on(line)

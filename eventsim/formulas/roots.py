@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 NEARLY = 1.0 + 2.0**-50
 """Contacts within a factor of this, 4 to 8 units in the last place of their times, may be in the other order: each time is right
 to about two."""
+
+
+Line: TypeAlias = tuple[Fraction, Fraction, Fraction]
+"""A coordinate as a polynomial in time: its value at time 0, its rate there, half its acceleration."""
 
 
 class Moment(NamedTuple):
@@ -31,6 +35,29 @@ def quadratic_root(a: Fraction, b: Fraction, c: Fraction, side: int) -> Moment |
     if discriminant < 0:
         return None
     return Moment(-b / a, side if a > 0 else -side, discriminant / (a * a))
+
+
+def less_number(line: Line, number: float | Fraction) -> Line:
+    """A coordinate counted from a number."""
+    return line[0] - Fraction(number), line[1], line[2]
+
+
+def falls_to(line: Line, target: float | Fraction, side: int) -> Moment | None:
+    """When side * (line - target) sinks to 0: of a parabola the time at which it falls."""
+    at, rate, half = less_number(line, target)
+    return quadratic_root(side * half, side * rate / 2, side * at, -1)
+
+
+def reaches(x: Line, y: Line, reach: Fraction, side: int) -> Moment | None:
+    """When a straight distance (x, y) is `reach`: the first time (side -1: from outside) or the last one (+1: from inside).
+
+    None along a parabola: the time is the root of a quartic.
+    """
+    if x[2] or y[2]:
+        return None
+    return quadratic_root(
+        x[1] * x[1] + y[1] * y[1], x[0] * x[1] + y[0] * y[1], x[0] * x[0] + y[0] * y[0] - reach * reach, side
+    )
 
 
 def order_of(one: Moment, other: Moment) -> int:

@@ -19,9 +19,10 @@ from eventsim.formulas.impulse import (
     wall_impulse,
     wall_update,
 )
-from eventsim.formulas.rest import STRUCK, SUPPORTED, resting_place, slope
+from eventsim.formulas.rest import STRUCK, SUPPORTED, resting_place
 from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import JointContact, resolve_together
+from eventsim.formulas.walls.face import slope
 from eventsim.record.events import Column, Kind, Rows
 from eventsim.record.provenance import Provenance
 from eventsim.replay.contacts import Contact, Contacts

@@ -21,10 +21,10 @@ from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import STRUCK, border_contact, shape_contact
 from eventsim.formulas.roots import Moment, order_of
-from eventsim.formulas.walls.delays import DELAYS, at_origin
+from eventsim.formulas.walls.boundary import Boundary
+from eventsim.formulas.walls.shape import seen
 from eventsim.replay.disk_flight import DiskFlight
 from eventsim.scene.stage import Stage
-from eventsim.scene.surfaces import Surfaces
 
 
 class Contact(NamedTuple):
@@ -47,13 +47,11 @@ class Contacts:
         self._stage = stage
         self._disks = disks
         self._moments = ExactTimes(stage, self._flight)
-        self._boundaries = len(stage.boundaries)
-        self._surfaces = Surfaces(stage, stage.radius.tolist())
         along_x, along_y = ((0,) if length is None else (-1, 0, 1) for length in stage.period)
         self._images = list(product(along_x, along_y))
-        self._places: dict[int, list[int]] = {}
-        for place in range(len(stage.boundaries) + len(stage.features)):
-            self._places.setdefault(self._surfaces.number(place), []).append(place)
+        self._surfaces_of: dict[int, list[int]] = {}
+        for number, surface in enumerate(stage.surfaces):
+            self._surfaces_of.setdefault(surface.wall, []).append(number)
 
     def of_pair(self, a: int, b: int, first: float, latest: float) -> list[Contact]:
         """Return the contacts of two disks in a span of remainders; several where a disk is as wide as the domain."""
@@ -62,7 +60,7 @@ class Contacts:
 
     def of_wall(self, a: int, wall: int, first: float, latest: float) -> list[Contact]:
         """Return the contacts of a disk with the shapes of a wall in a span of remainders."""
-        found = [self._of_shape(a, place) for place in self._places.get(wall, ())]
+        found = [self._of_surface(a, number) for number in self._surfaces_of.get(wall, ())]
         return [contact for contact in found if first <= contact.time <= latest]
 
     def by_exact_time(self, contacts: list[Contact]) -> list[list[Contact]]:
@@ -90,24 +88,26 @@ class Contacts:
 
     def normal(self, contact: Contact, place: tuple[float, float], low: Low = None) -> tuple[float, float]:
         """Return the normal, of any length, of a wall towards a disk at `place`; low: the low parts of that."""
-        return self._surfaces.normal(-1 - contact.b, contact.image[0], *place, low)
+        return self._stage.normal(-1 - contact.b, contact.image[0], *place, low)
 
     def on_boundary(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
         """Return the place of a disk, set exactly onto the boundary of the domain if that is what it meets."""
-        number, disk = -1 - contact.b, self._disks[contact.a]
-        if disk.low_place is not None and (left := self._surfaces.left_on(number, contact.a)) is not None:
-            axis, rest = left
-            disk.low_place = (rest, disk.low_place[1]) if axis == 0 else (disk.low_place[0], rest)
-        return self._surfaces.exactly_on(number, contact.a, *place)
+        boundary, disk = self._stage.boundary(-1 - contact.b), self._disks[contact.a]
+        if boundary is None:
+            return place
+        if disk.low_place is not None:
+            left = boundary.left_over(disk.radius)
+            disk.low_place = (left, disk.low_place[1]) if boundary.axis == 0 else (disk.low_place[0], left)
+        return boundary.touching(*place, disk.radius)
 
     def boundary_axis(self, contact: Contact) -> int | None:
         """Return the axis across which a boundary of the domain is met; None for other walls."""
-        number = -1 - contact.b
-        return self._stage.boundaries[number].axis if number < self._boundaries else None
+        boundary = self._stage.boundary(-1 - contact.b)
+        return None if boundary is None else boundary.axis
 
     def wall_of(self, contact: Contact) -> int:
         """Return the number of the wall that is met."""
-        return self._surfaces.number(-1 - contact.b)
+        return self._stage.surfaces[-1 - contact.b].wall
 
     def met(self, contact: Contact, i: int) -> tuple[int, int, int]:
         """Return what disk i of a contact remembers of it."""
@@ -150,10 +150,10 @@ class Contacts:
                 )
         return float(t + delay)
 
-    def _of_shape(self, a: int, place: int) -> Contact:
-        """Return the next contact of a disk with a shape."""
-        time, side, how = self._wall_time(a, place)
-        return Contact(a, -1 - place, (side, how), time)
+    def _of_surface(self, a: int, number: int) -> Contact:
+        """Return the next contact of a disk with a surface."""
+        time, side, how = self._wall_time(a, number)
+        return Contact(a, -1 - number, (side, how), time)
 
     def _flight(self, i: int) -> Flight:
         disk = self._disks[i]
@@ -162,36 +162,27 @@ class Contacts:
             return disk.t, x, y, disk.vx, disk.vy, None, None
         return disk.t, disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy
 
-    def _wall_time(self, a: int, place: int) -> tuple[float, int, int]:
-        """Return (remainder, side, how) of the next contact of a disk with a shape."""
+    def _wall_time(self, a: int, number: int) -> tuple[float, int, int]:
+        """Return (remainder, side, how) of the next contact of a disk with a surface."""
         disk, stage = self._disks[a], self._stage
-        if place < self._boundaries:
-            axis, where, side, _ = stage.boundaries[place]
+        surface, e = stage.surfaces[number], stage.series_restitution
+        if isinstance(surface, Boundary):
+            axis, side = surface.axis, surface.side
             x, v, g = (disk.x, disk.vx, disk.gx) if axis == 0 else (disk.y, disk.vy, disk.gy)
             if disk.low_place is not None:
-                delay = wide_border_delay(x, disk.low_place[axis], v, where, disk.radius, side)
+                delay = wide_border_delay(x, disk.low_place[axis], v, surface.position, disk.radius, side)
                 return disk.t + delay, int(side), STRUCK
-            target = where + side * disk.radius
+            target = surface.target(disk.radius)
             size = abs(disk.x) + abs(disk.y) + abs(target)
-            delay, how = border_contact(
-                stage.supports, disk.held, place, side, target, x, v, g, size, stage.series_restitution, disk.t
-            )
+            delay, how = border_contact(stage.supports, disk.held, number, side, target, x, v, g, size, e, disk.t)
             return disk.t + delay, int(side), how
-        shape = stage.features[place - self._boundaries].shape
-        met = next((last[1] for last in disk.met if last[0] == -1 - place), 0)
-        flight = (disk.x, disk.y, disk.vx, disk.vy, disk.gx, disk.gy)
-        delay_to = DELAYS[type(shape)]
-        if disk.low_place is not None:
-            low_x, low_y = disk.low_place
-            flight = ((disk.x - shape.x) + low_x, (disk.y - shape.y) + low_y, *flight[2:])
-            shape = at_origin(shape)
-        if stage.supports is None:
-            return disk.t + (found := delay_to(shape, *flight, disk.radius, met))[0], found[1], STRUCK
-        e = stage.series_restitution
-        delay, side, how = shape_contact(
-            stage.supports, disk.held, place, shape, delay_to, flight, disk.radius, met, e, disk.t
+        met = next((last[1] for last in disk.met if last[0] == -1 - number), 0)
+        shape, x, y = seen(surface.shape, disk.x, disk.y, disk.low_place)
+        flight = (x, y, disk.vx, disk.vy, disk.gx, disk.gy)
+        delay, met_side, how = shape_contact(
+            stage.supports, disk.held, number, shape, flight, disk.radius, met, e, disk.t
         )
-        return disk.t + delay, side, how
+        return disk.t + delay, met_side, how
 
 
 def _order(one: tuple[Moment, Contact], other: tuple[Moment, Contact]) -> int:

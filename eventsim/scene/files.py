@@ -15,7 +15,7 @@ from eventsim.scene.disks import Disks
 from eventsim.scene.domain import Domain, Open
 from eventsim.scene.overrides import apply_overrides
 from eventsim.scene.scene import Scene
-from eventsim.scene.walls import Wall
+from eventsim.scene.walls.wall import Wall, keys_of
 
 __all__ = [
     "apply_overrides",
@@ -252,8 +252,8 @@ def _disk_texts(disks: Disks) -> Iterator[str]:
 
 def _wall_table(wall: Wall) -> dict[str, Any]:
     table: dict[str, Any] = {"kind": wall.kind}
-    for key in ("start", "through", "end", "points", "center", "radius", "name"):
-        value = getattr(wall, key, None)
+    for key in keys_of(type(wall)):
+        value = getattr(wall, key)
         if value is not None:
             table[key] = _lists(value)
     return table

@@ -16,10 +16,9 @@ from eventsim.scene.domain import Domain
 from eventsim.scene.gas import Gas, Region, disk_radius, region_of
 from eventsim.scene.insertion import insert_at_random
 from eventsim.scene.lattice import Lattice
-from eventsim.scene.outlines import wall_overlaps
-from eventsim.scene.overlaps import feature_scale, period_of, touching_depth
+from eventsim.scene.overlaps import period_of, touching_depth, wall_overlaps
 from eventsim.scene.velocities import equal_speeds, thermal_velocities
-from eventsim.scene.walls import Wall, features
+from eventsim.scene.walls import Wall, parts_of
 
 # Random insertion jams at a packing fraction of .547; above this, many disks need not try.
 HOPELESS = 0.54
@@ -95,11 +94,11 @@ class _Place:
             raise SceneError(
                 f"{where}: a disk of radius {self.radius:.6g} is wider than the region {self._extent()}"
             )
-        self.features = features(walls)
+        self.parts = parts_of(walls)
         masses = np.where(np.isinf(present.mass), 1.0, present.mass)
         self.others = Cells(present.position - np.array(self.origin), present.radius, masses, self.period)
         lengths = [abs(length) for length in (*region, width, height, self.radius)]
-        lengths += [feature_scale(feature, self.origin) for feature in self.features]
+        lengths += [part.scale(self.origin) for part in self.parts]
         if len(present):
             lengths += [float(np.abs(present.position).max()), float(present.radius.max())]
         self.rounding = float(touching_depth(np.array(max(lengths))))
@@ -165,7 +164,7 @@ class _Place:
         for found in self.others.overlaps(relative, self.radius, self.mass):
             free[found.first[found.depth > self.rounding]] = False
         radius = np.full(len(position), self.radius)
-        for _, near, depth in wall_overlaps(self.features, position, radius, self.origin, self.period):
+        for _, near, depth in wall_overlaps(self.parts, position, radius, self.origin, self.period):
             free[near[depth > self.rounding]] = False
         return free
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -12,19 +13,19 @@ from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.disks import Disks, Floats
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.numbers import Point
-from eventsim.scene.outlines import circle_through, wall_overlaps
-from eventsim.scene.walls import Arc, Circle, Feature
+from eventsim.scene.walls.wall import Part, shifts
 
 # Decimal input and lattices are rounded: an overlap up to so many units in the last place of the largest
 # coordinate or reach counts as touching.
 TOUCHING_ULP = 16
 # More overlaps than this are not counted: somebody put a whole gas in one place.
 ENOUGH = 100_000
+EVERYWHERE = (-math.inf, -math.inf), (math.inf, math.inf)
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """M overlaps, ordered by disk; `other` is a disk, a feature or a side of the domain.
+    """M overlaps, ordered by disk; `other` is a disk, a piece of a wall or a side of the domain.
 
     Attributes:
         disk, other: indices (M,).
@@ -80,14 +81,14 @@ def pair_overlaps(disks: Disks, domain: Domain) -> Found:
     return _gather(chunks)
 
 
-def feature_overlaps(disks: Disks, domain: Domain, features: Sequence[Feature]) -> Found:
-    """Disks that lie across a wall or reach out of a container; `other` counts the features."""
+def feature_overlaps(disks: Disks, domain: Domain, parts: Sequence[Part]) -> Found:
+    """Disks that lie across a wall or reach out of a container; `other` counts the pieces."""
     scale = coordinate_scale(disks, domain)
     chunks: list[Found] = []
     for index, near, deep in wall_overlaps(
-        features, disks.position, disks.radius, domain.origin, period_of(domain)
+        parts, disks.position, disks.radius, domain.origin, period_of(domain)
     ):
-        size = feature_scale(features[index], _corner(disks, domain))
+        size = parts[index].scale(_corner(disks, domain))
         rounding = touching_depth(np.maximum(scale[near], size))
         chunks.append(Found(near, np.full(len(near), index), deep, rounding))
     return _gather(chunks)
@@ -127,17 +128,46 @@ def coordinate_scale(disks: Disks, domain: Domain) -> Floats:
     return scale
 
 
-def feature_scale(feature: Feature, corner: Point = (0.0, 0.0)) -> float:
-    """The largest length that the place of a wall is rounded to."""
-    radius = 0.0
-    if isinstance(feature, Circle):
-        points, radius = [feature.center], feature.radius
-    elif isinstance(feature, Arc):
-        points = [feature.start, feature.through, feature.end]
-        radius = circle_through(feature.start, feature.through, feature.end)[1]
-    else:
-        points = [feature.start, feature.end]
-    return max(radius, *(max(abs(p[k]), abs(p[k] - corner[k])) for p in points for k in (0, 1)))
+def wall_overlaps(
+    parts: Sequence[Part], position: Floats, radius: Floats, origin: Point, period: Point
+) -> Iterator[tuple[int, Indices, Floats]]:
+    """For each piece of a wall, and image of it, that disks reach into: its index, the disks (M,), their depths (M,).
+
+    Walls have images along a direction of finite `period`; those that hold disks have none. Near O(N) where the pieces
+    are small.
+    """
+    if not len(radius):
+        return
+    groups = [_by_x(members, position) for members in _octaves(radius)]
+    largest = float(radius.max())
+    for index, part in enumerate(parts):
+        low, high = box = part.bounds()
+        moves = shifts(box, origin, period, largest)
+        if part.holds:  # a disk anywhere outside of it is across it
+            (low, high), moves = EVERYWHERE, [(0.0, 0.0)]
+        for (members, x), shift in product(groups, moves):
+            reach = radius[members].max()
+            first = np.searchsorted(x, low[0] + shift[0] - reach, side="left")
+            last = np.searchsorted(x, high[0] + shift[0] + reach, side="right")
+            near = members[first:last]
+            y = position[near, 1] - shift[1]
+            near = near[(y >= low[1] - reach) & (y <= high[1] + reach)]
+            depth = part.depth(position[near] - shift, radius[near])
+            deep = depth > 0.0
+            if deep.any():
+                yield index, near[deep], depth[deep]
+
+
+def _octaves(radius: Floats) -> list[Indices]:
+    """Indices of the disks, grouped by the octave of their radius."""
+    octave = np.frexp(radius)[1]
+    return [np.flatnonzero(octave == level) for level in np.unique(octave)]
+
+
+def _by_x(members: Indices, position: Floats) -> tuple[Indices, Floats]:
+    """The members sorted by x, and their x."""
+    order = members[np.argsort(position[members, 0])]
+    return order, position[order, 0]
 
 
 def _corner(disks: Disks, domain: Domain) -> Point:

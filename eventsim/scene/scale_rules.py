@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventsim.scene.numbers import LONGEST
-from eventsim.scene.outlines import bounds
-from eventsim.scene.walls import Circle, features
+from eventsim.scene.walls import parts_of
 
 if TYPE_CHECKING:
     from eventsim.scene.scene import Scene
@@ -94,12 +93,8 @@ def _lengths(scene: Scene) -> tuple[float, float]:
     """The largest length of a scene, coordinates among them, and the shortest one that is none."""
     disks, domain = scene.disks, scene.domain
     places, sizes = [*domain.origin], [*(domain.size or ())]
-    for feature in features(scene.walls):
-        if isinstance(feature, Circle):
-            places += feature.center
-            sizes.append(feature.radius)
-            continue
-        low, high = bounds(feature)
+    for part in parts_of(scene.walls):
+        low, high = part.bounds()
         places += [*low, *high]
         sizes.append(max(high[0] - low[0], high[1] - low[1]))
     lengths = np.concatenate([disks.radius, sizes])

@@ -13,6 +13,8 @@ from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFie
 from eventsim.scene.domain import DOMAINS
 from eventsim.scene.numbers import as_whole
 from eventsim.scene.walls import WALLS
+from eventsim.scene.walls.wall import LENGTH, NAME, POINTS, keys_of
+from eventsim.scene.walls.wall import POINT as PLACE
 
 ARRANGEMENTS = ("random", "square", "hexagonal", "compressed")
 TABLE_LISTS = ("disk", "disks_file", "gas", "wall")
@@ -94,8 +96,6 @@ def one_of(*words: str) -> Callable[[object], str]:
 
 POINT = numbers(2, "two numbers [x, y]")
 KIND: dict[Any, Any] = {Required("kind"): text}
-ENDS: dict[Any, Any] = {Required("start"): POINT, Required("end"): POINT}
-NAME: dict[Any, Any] = {Optional("name"): text}
 SIZED = Schema(
     {**KIND, Required("size"): numbers(2, "two numbers [width, height]"), Optional("origin"): POINT}
 )
@@ -137,18 +137,15 @@ GAS = Schema(
     }
 )
 DISKS_FILE = Schema({Required("path"): text})
+WALL_KEYS: dict[str, Callable[[object], object]] = {PLACE: POINT, POINTS: points, LENGTH: number, NAME: text}
 WALL = {
-    "segment": Schema({**KIND, **ENDS, **NAME}),
-    "polygon": Schema({**KIND, Required("points"): points, **NAME}),
-    "polyline": Schema({**KIND, Required("points"): points, **NAME}),
-    "arc": Schema({**KIND, **ENDS, Required("through"): POINT, **NAME}),
-    "circle": Schema({**KIND, Required("center"): POINT, Required("radius"): number, **NAME}),
+    kind: Schema({**KIND, **{(Required, Optional)[key == "name"](key): WALL_KEYS[of] for key, of in keys_of(wall).items()}})
+    for kind, wall in WALLS.items()
 }
 SCALARS = tuple(str(key) for key in SCENE.schema)
 SCENE_KEYS = (*SCALARS, "domain", *TABLE_LISTS)
 
 assert DOMAIN.keys() == DOMAINS.keys()
-assert WALL.keys() == WALLS.keys()
 
 
 class Read(NamedTuple):

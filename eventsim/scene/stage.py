@@ -13,14 +13,18 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.formulas.low_place import Low
 from eventsim.formulas.motion import periods
+from eventsim.formulas.real import Real
 from eventsim.formulas.rest import Support
-from eventsim.formulas.walls.face import Face
-from eventsim.scene import walls
+from eventsim.formulas.walls.boundary import Boundary
+from eventsim.formulas.walls.shape import seen
 from eventsim.scene.domain import Channel, Open, Periodic
-from eventsim.scene.features import Boundary, Feature, Point, boundaries_of, features_of
+from eventsim.scene.features import Feature, boundaries_of, features_of
+from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.supports import any_lies, supports_of
+from eventsim.scene.walls import feature_names
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -93,6 +97,7 @@ class Stage:
     size: Point | None
     boundaries: tuple[Boundary, ...]
     features: tuple[Feature, ...]
+    surfaces: tuple[Boundary | Feature, ...]
     supports: tuple[Support | None, ...] | None
     wall_names: tuple[str, ...]
     corner: Point
@@ -109,14 +114,25 @@ class Stage:
         """The distance of an image (kx, ky) of the domain, along x and y."""
         return periods(image[0], self.period[0]), periods(image[1], self.period[1])
 
+    def boundary(self, surface: int) -> Boundary | None:
+        """The boundary of the domain with this number among all surfaces; None of a feature's number."""
+        return self.boundaries[surface] if surface < len(self.boundaries) else None
+
+    def normal(self, surface: int, side: int, x: Real, y: Real, low: Low = None) -> tuple[Real, Real]:
+        """The normal of a surface, of any length, towards a disk at (x, y); low: the low parts of that."""
+        found = self.surfaces[surface]
+        if isinstance(found, Boundary):
+            return found.normal()
+        shape, x, y = seen(found.shape, x, y, low)
+        return shape.normal(side, x, y)
+
     @property
     def slopes(self) -> Floats:
         """(walls, 2) the acceleration that a disk has which rests on a wall; 0 for walls on which none does."""
         slopes = np.zeros((len(self.wall_names), 2))
-        walls = [*(one.wall for one in self.boundaries), *(one.wall for one in self.features)]
-        for wall, support in zip(walls, self.supports or (), strict=False):
+        for surface, support in zip(self.surfaces, self.supports or (), strict=False):
             if support is not None:
-                slopes[wall] = support.ax, support.ay
+                slopes[surface.wall] = support.ax, support.ay
         return slopes
 
     @property
@@ -144,8 +160,8 @@ def stage_of(scene: Scene) -> Stage:
     size = None if isinstance(domain, Open) else domain.size
     along_x = size[0] if size is not None and isinstance(domain, Periodic | Channel) else None
     along_y = size[1] if size is not None and isinstance(domain, Periodic) else None
-    boundaries, names = boundaries_of(scene)
-    features = features_of(scene, corner, (along_x, along_y), len(names))
+    boundaries, names = boundaries_of(domain)
+    features = features_of(scene.walls, float(disks.radius.max()), corner, (along_x, along_y), len(names))
     restitution = scene.restitution
     wall_restitution = 1.0 if restitution is None else restitution.wall
     periodic = along_x is not None
@@ -186,8 +202,9 @@ def stage_of(scene: Scene) -> Stage:
         size=size,
         boundaries=boundaries,
         features=features,
+        surfaces=(*boundaries, *features),
         supports=_supports(scene, boundaries, features, wall_restitution == 1.0 or scene.contact_duration is not None, x, y),
-        wall_names=(*names, *walls.feature_names(scene.walls)),
+        wall_names=(*names, *feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,
         epoch_length=epoch_length,
@@ -223,7 +240,7 @@ def _supports(
     gravity, disks = scene.gravity, scene.disks
     if gravity is None:
         return None
-    faces = [item.shape if isinstance(item.shape, Face) and not item.imaged else None for item in features]
+    faces = [None if item.imaged else item.shape.line() for item in features]
     supports = supports_of([(one.axis, one.position) for one in boundaries], faces, gravity)
     if elastic:
         falls = np.isfinite(disks.mass)

@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from eventsim.formulas.rest import TOUCHING, Support, is_in_line, slope
-from eventsim.formulas.walls.face import Face, face
+from eventsim.formulas.rest import Support
+from eventsim.formulas.walls.face import TOUCHING, Face, face, is_in_line, slope
 
 Floats: TypeAlias = NDArray[np.float64]
 

@@ -20,7 +20,6 @@ from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems, region_of
 from eventsim.scene.names import BlockNames
 from eventsim.scene.scene import Scene
 from eventsim.scene.validate import NO_DISKS, domain_problems, number_problems
-from eventsim.scene.wall_rules import key_problems, shape_problems
 from eventsim.scene.walls import WALLS, Wall
 
 DISK_STAND_IN = {"position": (0.0, 0.0), "radius": 0.0}
@@ -135,13 +134,15 @@ def _read_walls(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> 
     for i, wall in enumerate(tables):
         values, broken = schema.read_kind(schema.WALL, wall, f"wall[{i}]", problems)
         if broken:
-            problems += [f"wall[{i}]{problem}" for problem in key_problems(values)]
+            kind = values.get("kind")
+            found = WALLS[kind].number_problems(values) if kind else ()
+            problems += [f"wall[{i}]{problem}" for problem in found]
         else:
             read[i] = WALLS[values.pop("kind")](**values)
     if len(read) == len(tables):
         parts.walls = list(read.values())
     else:
-        problems += [f"wall[{i}]{problem}" for i, wall in read.items() for problem in shape_problems(wall)]
+        problems += [f"wall[{i}]{problem}" for i, wall in read.items() for problem in wall.problems()]
 
 
 def _read_disks(data: Mapping[str, Any], parts: _Parts, problems: list[str]) -> None:

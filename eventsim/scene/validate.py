@@ -31,7 +31,7 @@ from eventsim.scene.overlaps import (
 )
 from eventsim.scene.scale_rules import scale_problems
 from eventsim.scene.wall_rules import wall_problems
-from eventsim.scene.walls import features
+from eventsim.scene.walls import parts_of
 
 if TYPE_CHECKING:
     from eventsim.scene.scene import Scene
@@ -53,7 +53,7 @@ def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
         names: how to call the disks; by index if None.
     """
     names = names or DiskNames()
-    shapes = [*domain_problems(scene.domain), *wall_problems(scene)]
+    shapes = [*domain_problems(scene.domain), *wall_problems(scene.walls, scene.domain)]
     problems = [*_scalar_problems(scene), *shapes]
     if not len(scene.disks):
         return [*problems, NO_DISKS]
@@ -72,7 +72,7 @@ def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
 
 def touching_by_rounding(scene: Scene) -> list[str]:
     """The overlaps of a scene that are so small that they count as touching, one sentence each."""
-    disks, domain, pieces = scene.disks, scene.domain, features(scene.walls)
+    disks, domain, pieces = scene.disks, scene.domain, parts_of(scene.walls)
     pairs = pair_overlaps(disks, domain).touching()
     walls = feature_overlaps(disks, domain, pieces).touching()
     sides = boundary_overlaps(disks, domain).touching()
@@ -166,15 +166,15 @@ def _place_problems(disks: Disks, scene: Scene, names: DiskNames) -> list[str]:
         ),
     )
     problems += _room_problems(disks, domain, names)
-    pieces = features(scene.walls)
+    pieces = parts_of(scene.walls)
     problems += _summary(
         feature_overlaps(disks, domain, pieces).broken(),
         "disks that are across a wall",
         lambda i, wall, depth: (
             f"{names.disk(i)} (center {_at(disks, i)}, radius {disks.radius[i]}) reaches {depth:.6g} "
             + (
-                f"out of circle {pieces[wall].name}: must be inside its container"
-                if pieces[wall].kind == "circle"
+                f"out of {pieces[wall].kind} {pieces[wall].name}: must be inside its container"
+                if pieces[wall].holds
                 else f"across {pieces[wall].kind} {pieces[wall].name}: may touch a wall, not reach into it"
             )
         ),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TypeAlias
 
 import numpy as np
@@ -10,14 +9,10 @@ import numpy as np
 from eventsim.record.events import Floats
 from eventsim.replay.log import EventLog
 from eventsim.scene import Scene
-from eventsim.scene.outlines import circle_through
-from eventsim.scene.walls import Arc, Circle, Segment, features
+from eventsim.scene.walls import parts_of
 
 Rectangle: TypeAlias = tuple[float, float, float, float]
 """x0, y0, x1, y1 on the scene's axes."""
-
-FULL_TURN_POINTS = 240
-"""Points on a whole circle: on a picture 1000 pixels wide the chords are off by less than a tenth of a pixel."""
 
 MARGIN = 0.02
 """Share of the larger side that is left free around hard boundaries and open scenes."""
@@ -28,30 +23,7 @@ FAR = 1.0
 
 def wall_lines(scene: Scene) -> list[Floats]:
     """Return every wall as a line of points (K, 2)."""
-    return [_line(feature) for feature in features(scene.walls)]
-
-
-def _line(feature: Segment | Arc | Circle) -> Floats:
-    if isinstance(feature, Segment):
-        return np.array([feature.start, feature.end])
-    if isinstance(feature, Circle):
-        return _round(feature.center, feature.radius, 0.0, 2.0 * math.pi)
-    center, radius = circle_through(feature.start, feature.through, feature.end)
-    if math.isinf(radius):
-        return np.array([feature.start, feature.end])
-    begin, middle, end = (
-        math.atan2(p[1] - center[1], p[0] - center[0]) for p in (feature.start, feature.through, feature.end)
-    )
-    turn = (end - begin) % (2.0 * math.pi)
-    if (middle - begin) % (2.0 * math.pi) > turn:  # `through` is passed on the way round the other side
-        turn -= 2.0 * math.pi
-    return _round(center, radius, begin, turn)
-
-
-def _round(center: tuple[float, float], radius: float, begin: float, turn: float) -> Floats:
-    count = max(math.ceil(FULL_TURN_POINTS * abs(turn) / (2.0 * math.pi)), 2) + 1
-    angle = begin + np.linspace(0.0, turn, count)
-    return np.column_stack([center[0] + radius * np.cos(angle), center[1] + radius * np.sin(angle)])
+    return [part.outline() for part in parts_of(scene.walls)]
 
 
 def boundary_lines(scene: Scene) -> tuple[list[Floats], list[Floats]]:

@@ -85,7 +85,7 @@ class WatchfulSession(ReferenceSession):
 
     def _is_border(self, event: Event) -> bool:
         """Whether a contact is one with an end of the domain: two of these, at right angles, may come in any order."""
-        return event.b < 0 and -1 - event.b < len(self.stage.boundaries)
+        return event.b < 0 and self.stage.boundary(-1 - event.b) is not None
 
     def _note(self, one: Event, other: Event) -> None:
         time = clock_time(self.state.epoch, one.time, self.stage.epoch_length, self.stage.start_time)

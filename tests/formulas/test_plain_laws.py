@@ -224,8 +224,8 @@ def test_a_face_knows_its_normal(ends, normal, norm2, along2):
     assert (shape.ex, shape.ey) == (ends[2] - ends[0], ends[3] - ends[1])
     assert (shape.nx, shape.ny) == normal
     assert (shape.norm, shape.norm2, shape.along2) == (math.sqrt(norm2), norm2, along2)
-    assert faces.face_normal(shape, 1) == normal
-    assert faces.face_normal(shape, -1) == (-normal[0], -normal[1])
+    assert shape.normal(1, 0.0, 0.0) == normal
+    assert shape.normal(-1, 0.0, 0.0) == (-normal[0], -normal[1])
 
 
 SLOPE = faces.face(1.0, 2.0, 5.0, 5.0)

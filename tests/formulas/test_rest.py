@@ -5,7 +5,7 @@ import pytest
 from eventsim.formulas import rest
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, Held
-from eventsim.formulas.walls.face import face
+from eventsim.formulas.walls.face import face, is_in_line, slope
 
 BIT = 2.0**-48
 """TOUCHING and AT_ONCE, both part of every log."""
@@ -125,11 +125,11 @@ def test_a_support_may_begin_and_end_elsewhere_than_its_face():
 
 
 def test_gravity_along_a_wall_is_its_projection():
-    assert rest.slope(FLOOR, 3.0, -7.0) == (3.0, 0.0)
-    assert rest.slope(WALL, 3.0, -7.0) == (0.0, -7.0)
-    assert rest.slope(SLOPE, 0.0, -25.0) == (-12.0, -9.0)
-    assert rest.slope(SLOPE, 25.0, 0.0) == (16.0, 12.0)
-    assert rest.slope(face(0.0, 0.0, 1.0, 1.0), 3.0, 1.0) == (2.0, 2.0)
+    assert slope(FLOOR, 3.0, -7.0) == (3.0, 0.0)
+    assert slope(WALL, 3.0, -7.0) == (0.0, -7.0)
+    assert slope(SLOPE, 0.0, -25.0) == (-12.0, -9.0)
+    assert slope(SLOPE, 25.0, 0.0) == (16.0, 12.0)
+    assert slope(face(0.0, 0.0, 1.0, 1.0), 3.0, 1.0) == (2.0, 2.0)
 
 
 def test_a_disk_rests_exactly_on_contact_where_that_is_a_coordinate():
@@ -219,4 +219,4 @@ def test_touching_is_measured_by_all_coordinates(offset, touches):
     ],
 )
 def test_a_point_is_in_line_with_a_face_but_for_rounding(shape, place, is_on):
-    assert rest.is_in_line(shape, *place) is is_on
+    assert is_in_line(shape, *place) is is_on

@@ -4,17 +4,9 @@ import pytest
 
 from eventsim.formulas.contact import inner_delay
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.walls.round import (
-    Container,
-    Post,
-    arc,
-    arc_delay,
-    arc_side,
-    container_delay,
-    on_arc,
-    post_delay,
-    round_normal,
-)
+from eventsim.formulas.walls.arc import arc, arc_delay, arc_side, on_arc
+from eventsim.formulas.walls.container import Container, container_delay
+from eventsim.formulas.walls.post import Post, post_delay
 
 BITS = 2.0**-45
 """What bisection may leave of a delay along a parabola, in its own units."""
@@ -42,8 +34,8 @@ def test_an_arc_has_the_circle_through_its_points(points, sign):
 
 
 def test_a_normal_points_to_the_disk():
-    assert round_normal(Container(1.0, 2.0, 9.0), -1, 4.0, 6.0) == (-3.0, -4.0)
-    assert round_normal(Post(1.0, 2.0), 1, 4.0, 6.0) == (3.0, 4.0)
+    assert Container(1.0, 2.0, 9.0).normal(-1, 4.0, 6.0) == (-3.0, -4.0)
+    assert Post(1.0, 2.0).normal(1, 4.0, 6.0) == (3.0, 4.0)
 
 
 @pytest.mark.parametrize("gravity", [(None, None), (0.0, 0.0)])

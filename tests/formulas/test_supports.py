@@ -7,8 +7,8 @@ import pytest
 from eventsim.formulas import rest
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, Held, Support
-from eventsim.formulas.walls.face import face, face_delay
-from eventsim.formulas.walls.round import Post, post_delay
+from eventsim.formulas.walls.face import face
+from eventsim.formulas.walls.post import Post
 
 BIT = 2.0**-48
 """TOUCHING and AT_ONCE."""
@@ -61,8 +61,8 @@ ANOTHER_STEP = face(5.0, 3.0, 7.0, 2.0)
 DOWN = 0.0, -2.0
 
 
-def contact(place, shape, flight, held=None, gravity=DOWN, met=0, delay_to=face_delay, radius=1.0):
-    return rest.shape_contact(SUPPORTS, held, place, shape, delay_to, (*flight, *gravity), radius, met, 0.5, 8.0)
+def contact(place, shape, flight, held=None, gravity=DOWN, met=0, radius=1.0):
+    return rest.shape_contact(SUPPORTS, held, place, shape, (*flight, *gravity), radius, met, 0.5, 8.0)
 
 
 def test_a_free_disk_meets_a_face_or_comes_to_rest_on_it():
@@ -89,17 +89,17 @@ def test_what_is_in_line_with_the_support_is_passed(how, met):
     flight, held = (4.0, 3.0, 1.0, 0.0), Held(1, 1, how)
     assert contact(0, NEXT_FLOOR, flight, held, met=met) == (NEVER, met, STRUCK)
     for beside in (STEP, ANOTHER_STEP):
-        assert contact(0, beside, flight, held, met=met) == (*face_delay(beside, *flight, *DOWN, 1.0, met), STRUCK)
+        assert contact(0, beside, flight, held, met=met) == (*beside.delay(*flight, *DOWN, 1.0, met), STRUCK)
 
 
 def test_the_post_at_the_end_is_passed_by_who_slides_and_met_by_who_falls():
     flight = 4.0, 3.0, 1.0, 0.0
     on_line, above = Post(5.0, 2.0), Post(5.0, 2.5)
-    met = {post: post_delay(post, *flight, *DOWN, 1.0, 0) for post in (on_line, above)}
+    met = {post: post.delay(*flight, *DOWN, 1.0, 0) for post in (on_line, above)}
     assert min(delay for delay, _ in met.values()) < math.inf
 
     def to(post, how):
-        return contact(0, post, flight, Held(1, 1, how), delay_to=post_delay)
+        return contact(0, post, flight, Held(1, 1, how))
 
     assert to(on_line, SUPPORTED) == (NEVER, 0, STRUCK)
     assert to(on_line, LEFT) == (*met[on_line], STRUCK)

@@ -8,17 +8,10 @@ from hypothesis import strategies as st
 
 from eventsim.formulas.motion import position
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.walls.face import face, face_delay, face_normal
-from eventsim.formulas.walls.round import (
-    Container,
-    Post,
-    arc,
-    arc_delay,
-    container_delay,
-    on_arc,
-    post_delay,
-    round_normal,
-)
+from eventsim.formulas.walls.arc import arc, arc_delay, on_arc
+from eventsim.formulas.walls.container import Container
+from eventsim.formulas.walls.face import face, face_delay
+from eventsim.formulas.walls.post import Post
 
 FACE = face(-1.0, -0.3, 1.2, 0.4)
 POST = Post(0.2, -0.1)
@@ -54,10 +47,10 @@ def arc_gap(x, y, r):
 
 
 SHAPES = {
-    "face": (FACE, face_delay, face_gap),
-    "post": (POST, post_delay, post_gap),
-    "container": (CONTAINER, container_delay, container_gap),
-    "arc": (ARC, arc_delay, arc_gap),
+    "face": (FACE, face_gap),
+    "post": (POST, post_gap),
+    "container": (CONTAINER, container_gap),
+    "arc": (ARC, arc_gap),
 }
 
 SAMPLES, HORIZON = 400, 6.0
@@ -71,7 +64,7 @@ def at(t, x, y, vx, vy, gx, gy):
 @settings(max_examples=150, deadline=None)
 @given(data=st.data())
 def test_the_gap_closes_at_the_contact_and_not_before(name, data):
-    shape, delay_to, gap = SHAPES[name]
+    shape, gap = SHAPES[name]
     x, y, vx, vy = (data.draw(s) for s in (coordinate, coordinate, speed, speed))
     r, (gx, gy) = data.draw(radius), data.draw(gravity)
     assume(gap(x, y, r) > 1e-6)
@@ -79,7 +72,7 @@ def test_the_gap_closes_at_the_contact_and_not_before(name, data):
         assume(abs(math.hypot(x - ARC.x, y - ARC.y) - ARC.radius) > r + 1e-6)
     if name == "face":
         assume(abs(FACE.nx * (x - FACE.x) + FACE.ny * (y - FACE.y)) / FACE.norm > r + 1e-6)
-    delay, side = delay_to(shape, x, y, vx, vy, gx, gy, r, 0)
+    delay, side = shape.delay(x, y, vx, vy, gx, gy, r, 0)
     assert delay >= 0.0
     end = min(delay, HORIZON)
     # the gap of a thin wall or of a point is sampled, so only a deep overlap is evidence of a missed contact
@@ -94,10 +87,7 @@ def test_the_gap_closes_at_the_contact_and_not_before(name, data):
     if delay < NEVER and delay < 1e3:
         px, py = at(delay, x, y, vx, vy, gx, gy)
         assert gap(px, py, r) == pytest.approx(0.0, abs=1e-7 * (1.0 + delay))
-        if isinstance(shape, (Post, Container)) or name == "arc":
-            nx, ny = round_normal(shape, side, px, py)
-        else:
-            nx, ny = face_normal(shape, side)
+        nx, ny = shape.normal(side, px, py)
         length = math.hypot(nx, ny)
         if length > 1e-6 and r > 0.0:
             step = 1e-5

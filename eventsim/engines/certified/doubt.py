@@ -7,7 +7,6 @@ from eventsim.engines.collapse import named
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, Event
 from eventsim.formulas.clock import clock_time
 from eventsim.scene.stage import Stage
-from eventsim.scene.surfaces import Surfaces
 
 TIE = "more bits do not help: it is taken for an exact tie of irrational numbers, which a start moved a little does not have"
 CLUSTER = "more bits do not help; what comes before is proven"
@@ -46,5 +45,5 @@ def _named(event: Event, stage: Stage) -> str:
         return f"the passage of disk {event.a} over {what}"
     if event.b >= 0:
         return f"the contact of disks {event.a} and {event.b}"
-    wall = stage.wall_names[Surfaces(stage, stage.radius.tolist()).number(-1 - event.b)]
+    wall = stage.wall_names[stage.surfaces[-1 - event.b].wall]
     return f"the contact of disk {event.a} with {wall}"

@@ -14,7 +14,6 @@ from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.contact import pair_delay
-from eventsim.formulas.walls.face import Face
 from eventsim.scene.stage import Stage
 
 MARGIN, SURE = 2.0**-24, 2.0**-34
@@ -98,7 +97,7 @@ class CertifiedPredictor(Predictor):
         self._add = calendar.push
         self._push: Callable[[Event], None] = self._push_and_note
         self._radius = [number(radius) for radius in stage.radius.tolist()]
-        self._features = tuple((place, _in_balls(shape, number), delay_to) for place, shape, delay_to in self._features)
+        self._features = tuple((place, shape.in_numbers(number)) for place, shape in self._features)
         self._images = images_of(stage)
         self._screen = Screen(stage)
 
@@ -129,12 +128,3 @@ class CertifiedPredictor(Predictor):
         if event.b < 0 or event.rank == 0:
             latest = bounds(event.time)[1] * (1.0 + MARGIN)
             self._screen.held_up[event.a] = min(self._screen.held_up[event.a], latest)
-
-
-def _in_balls(shape: Any, number: Any) -> Any:
-    """A wall shape in balls; the derived numbers of a face from its corners."""
-    exact: Any = type(shape)(*map(number, shape))
-    if not isinstance(shape, Face):
-        return exact
-    norm2 = exact.nx * exact.nx + exact.ny * exact.ny
-    return exact._replace(norm=norm2.sqrt(), norm2=norm2, along2=exact.ex * exact.ex + exact.ey * exact.ey)

@@ -12,7 +12,6 @@ from eventsim.engines.certified.ball import Undecided, ball, traced, working_pre
 from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
 from eventsim.errors import EventsimError
-from eventsim.formulas.walls.face import Face
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.scene.names import plural
 from eventsim.scene.stage import Stage
@@ -204,7 +203,7 @@ def _refuse_parabolas(stage: Stage) -> None:
     """Raise EventsimError where a parabola can meet something round: that is found by bisection, which encloses nothing."""
     if stage.gravity is None:
         return
-    rounded = any(not isinstance(feature.shape, Face) for feature in stage.features)
+    rounded = any(feature.shape.line() is None for feature in stage.features)
     posts = stage.mass is not None and bool(np.isinf(stage.mass).any())
     if rounded or posts:
         what = "walls with ends or round parts" if rounded else "immovable disks"

@@ -33,8 +33,8 @@ from eventsim.formulas import (
     real,
     rest,
 )
-from eventsim.formulas.walls import face, round
 from eventsim.record import events
+from eventsim.scene.walls import SHAPES
 
 SOURCES = Path(__file__).parent, Path(motion.__file__).parent, Path(events.__file__)
 """The folders and the file that a compiled kernel is made from: numba itself would not notice an edit in another file."""
@@ -215,5 +215,6 @@ def _register(module: ModuleType, **options: Any) -> None:
 
 for _module in (motion, contact, impulse):
     _register(_module, forceinline=True, error_model="numpy")
-for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, face, round, rest):
+_shapes = [sys.modules[shape.__module__] for shape in SHAPES]
+for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, rest, *_shapes):
     _register(_module, error_model="numpy")

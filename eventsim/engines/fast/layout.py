@@ -88,8 +88,8 @@ class Rules(NamedTuple):
     """What the scene says; None: it does not have that.
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
-    disks or tracers.  features: number of wall shapes; faces, posts, containers, arcs: whether there are such; first_feature: the
-    place of the first.  instant, at_once_limit: see `instant_of`.  settles: flights can be as good as none.
+    disks or tracers.  features: number of wall shapes; shapes: of each of the kinds of `shapes` whether there is one;
+    first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.  settles: flights can be as good as none.
     """
 
     gx: object
@@ -106,10 +106,7 @@ class Rules(NamedTuple):
     classes: object
     common_mass: float
     features: object
-    faces: object
-    posts: object
-    containers: object
-    arcs: object
+    shapes: tuple[object, ...]
     first_feature: int
     instant: float
     at_once_limit: int

@@ -31,10 +31,10 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.met import side_met
-from eventsim.engines.fast.shapes import FACE, POST, WIDTH, face_at
+from eventsim.engines.fast.shapes import face_at, is_straight, lies_on
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, is_in_line, rest_delay, rest_on_face_delay, slide_delay
+from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, rest_delay, rest_on_face_delay, slide_delay
 from eventsim.formulas.walls.face import face_side
 
 
@@ -71,24 +71,19 @@ def shape_rest(m, rules, i, k):
 
     NEVER with another `how`: a disk on the line of the shape, or at its end, passes it.
     """
-    f, w, s = i * REALS, i * WORDS, WIDTH * k
+    f, w = i * REALS, i * WORDS
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     x, y, vx, vy = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
     ax, ay = pulls(m, rules, i)
     place = rules.first_feature + k
     met = word(m.disks, w + MET)
-    kind = real(m.features, s)
     if SEVERAL < met < NOBODY and word(m.disks, w + MET_KY) != STRUCK:
         how, on = word(m.disks, w + MET_KY), SUPPORT * (-2 - met)
         line = face_at(m.supports, on + SUPPORT_FACE)
         if met == -2 - place and how == SUPPORTED:
             low, high = real(m.supports, on + SUPPORT_LOW), real(m.supports, on + SUPPORT_HIGH)
             return slide_delay(line, low, high, x, y, vx, vy, ax, ay), word(m.disks, w + MET_KX), LEFT
-        a, b = real(m.features, s + 2), real(m.features, s + 3)
-        end_x, end_y = a + real(m.features, s + 4), b + real(m.features, s + 5)
-        if kind == FACE and is_in_line(line, a, b) and is_in_line(line, end_x, end_y):
-            return NEVER, 0, LEFT
-        if kind == POST and how == SUPPORTED and is_in_line(line, a, b):
+        if (how == SUPPORTED or is_straight(m, k)) and lies_on(m, k, line):
             return NEVER, 0, LEFT
     support = SUPPORT * place
     low, high = real(m.supports, support + SUPPORT_LOW), real(m.supports, support + SUPPORT_HIGH)

@@ -10,7 +10,6 @@ from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
 from eventsim.engines.fast.shapes import CENTER, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of
-from eventsim.formulas.walls.delays import at_origin
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -22,7 +21,6 @@ def rules_of(stage: Stage) -> Rules:
     wall_y = next((k for k, boundary in enumerate(stage.boundaries) if boundary.axis == 1), None)
     classes = stage.mass is not None and bool(np.any(np.isinf(stage.mass) | (stage.mass == 0.0)))
     present = {type(feature.shape) for feature in stage.features}
-    faces, posts, containers, arcs = (1 if kind in present else None for kind in KINDS)
     width, height = stage.size or (math.inf, math.inf)
     return Rules(
         gx,
@@ -38,10 +36,7 @@ def rules_of(stage: Stage) -> Rules:
         1 if classes else None,
         stage.common_mass,
         len(stage.features) or None,
-        faces,
-        posts,
-        containers,
-        arcs,
+        tuple(1 if kind in present else None for kind in KINDS),
         len(stage.boundaries),
         *instant_of(stage),
         1 if stage.settles else None,
@@ -52,7 +47,8 @@ def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
     asked = [keep_rows, stage.low_parts, stage.low_places, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
-    needs = [*rules_of(stage), *grids.grid(None), stage.mass, stage.supports, *wanted]
+    rules = rules_of(stage)
+    needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted]
     return "".join("0" if need is None else "1" for need in needs)
 
 
@@ -63,7 +59,8 @@ def features_of(stage: Stage) -> Floats | None:
     table = np.zeros((len(stage.features), WIDTH))
     for row, (shape, wall, _) in zip(table, stage.features, strict=True):
         row[0], row[1] = KINDS.index(type(shape)), wall
-        row[2 : 2 + len(shape)] = at_origin(shape) if stage.low_places else shape
+        numbers = tuple(shape.at_origin() if stage.low_places else shape)  # every shape is a tuple of numbers
+        row[2 : 2 + len(numbers)] = numbers
         row[CENTER:] = shape.x, shape.y
     return table.reshape(-1)
 

@@ -1,22 +1,26 @@
-"""Wall shapes as rows of a table of numbers, and the formulas that each kind asks for."""
+"""Wall shapes as rows of a table of numbers, and the formulas that each kind asks for: the switches of the kernels."""
 
 from __future__ import annotations
+
+import math
 
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.memory import real
 from eventsim.engines.fast.met import side_met
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.walls.face import Face, face_delay, face_normal
-from eventsim.formulas.walls.round import Arc, Container, Post, arc_delay, container_delay, post_delay, round_normal
+from eventsim.formulas.walls.arc import Arc, arc_delay
+from eventsim.formulas.walls.container import Container, container_delay
+from eventsim.formulas.walls.face import Face, face_delay, face_normal, is_in_line
+from eventsim.formulas.walls.post import Post, post_delay, post_normal
 
 KINDS = (Face, Post, Container, Arc)
-"""The kinds of shapes, by the number that stands for them in the table."""
+"""The shapes that the switches know, by the number that stands for them in the table."""
+
+FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
 
 WIDTH, CENTER = 13, 11
 """Numbers in a row: the kind, the number of the wall, then the shape's own; where the point (x, y) that it is told from is, which
 for its own numbers is the origin where places have low parts."""
-
-FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
 
 
 @inline
@@ -35,10 +39,37 @@ def face_at(numbers, k):
     )
 
 
+@inline
+def post_at(numbers, k):
+    """The post whose numbers begin at number k of a table."""
+    return Post(real(numbers, k), real(numbers, k + 1))
+
+
+@inline
+def container_at(numbers, k):
+    """The container whose numbers begin at number k of a table."""
+    return Container(real(numbers, k), real(numbers, k + 1), real(numbers, k + 2))
+
+
+@inline
+def arc_at(numbers, k):
+    """The arc whose numbers begin at number k of a table."""
+    return Arc(
+        real(numbers, k),
+        real(numbers, k + 1),
+        real(numbers, k + 2),
+        real(numbers, k + 3),
+        real(numbers, k + 4),
+        real(numbers, k + 5),
+        real(numbers, k + 6),
+        real(numbers, k + 7),
+    )
+
+
 @part
 def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
-    faces, posts, containers, arcs = rules.faces, rules.posts, rules.containers, rules.arcs
+    faces, posts, containers, arcs = rules.shapes
     return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs)
 
 
@@ -48,18 +79,15 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
     row = m.features
     s = WIDTH * k
     kind = real(row, s)
-    a, b = real(row, s + 2), real(row, s + 3)
     x, y = _seen_from(m, i, s, x, y, m.low_places)
     if faces is not None and kind == FACE:
         return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
     if posts is not None and kind == POST:
-        return post_delay(Post(a, b), x, y, vx, vy, gx, gy, radius, met)
+        return post_delay(post_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
     if containers is not None and kind == CONTAINER:
-        return container_delay(Container(a, b, real(row, s + 4)), x, y, vx, vy, gx, gy, radius, met)
-    if arcs is not None:
-        b4, b5, b6, b7 = real(row, s + 4), real(row, s + 5), real(row, s + 6), real(row, s + 7)
-        arc = Arc(a, b, b4, b5, b6, b7, real(row, s + 8), real(row, s + 9))
-        return arc_delay(arc, x, y, vx, vy, gx, gy, radius, met)
+        return container_delay(container_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
+    if arcs is not None and kind == ARC:
+        return arc_delay(arc_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
     return NEVER, 0
 
 
@@ -77,8 +105,28 @@ def shape_normal(m, i, k, side, x, y):
     """The normal, of any length, of the k-th shape, towards disk i at (x, y), where its flight begins."""
     row = m.features
     s = WIDTH * k
-    if real(row, s) == FACE:
-        face = Face(0.0, 0.0, 0.0, 0.0, real(row, s + 6), real(row, s + 7), 0.0, 0.0, 0.0)
-        return face_normal(face, side)
+    kind = real(row, s)
     x, y = _seen_from(m, i, s, x, y, m.low_places)
-    return round_normal(Post(real(row, s + 2), real(row, s + 3)), side, x, y)
+    if kind == FACE:
+        return face_normal(face_at(row, s + 2), side, x, y)
+    if kind in (POST, CONTAINER, ARC):  # round things are alike
+        return post_normal(post_at(row, s + 2), side, x, y)
+    return math.nan, math.nan
+
+
+@inline
+def lies_on(m, k, line):
+    """Whether the k-th shape is on the line of a face, so that a disk which slides there passes it."""
+    row = m.features
+    s = WIDTH * k
+    kind = real(row, s)
+    x, y = real(row, s + 2), real(row, s + 3)
+    if kind == FACE:
+        return is_in_line(line, x, y) and is_in_line(line, x + real(row, s + 4), y + real(row, s + 5))
+    return kind == POST and is_in_line(line, x, y)
+
+
+@inline
+def is_straight(m, k):
+    """Whether the k-th shape is a face."""
+    return real(m.features, WIDTH * k) == FACE

@@ -15,9 +15,7 @@ from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import circle_delays
 from eventsim.formulas.real import NEVER, Real
 from eventsim.formulas.rest import STRUCK, border_contact, held_by, shape_contact
-from eventsim.formulas.walls.delays import DELAYS
-from eventsim.formulas.walls.face import Face
-from eventsim.formulas.walls.round import Arc, Container, Post
+from eventsim.formulas.walls.shape import Shape
 from eventsim.scene.stage import Stage
 
 Apart: TypeAlias = tuple[float, float, float, float]
@@ -42,9 +40,7 @@ class Predictor:
         self._radius: list[Real] = stage.radius.tolist()
         self._borders = _borders(stage)
         first = len(stage.boundaries)
-        self._features = tuple(
-            (first + k, feature.shape, DELAYS[type(feature.shape)]) for k, feature in enumerate(stage.features)
-        )
+        self._features = tuple((first + k, feature.shape) for k, feature in enumerate(stage.features))
         self._shifts = stage.shifts
         self._falls = stage.gravity is not None
         self._series_restitution = stage.series_restitution
@@ -72,8 +68,8 @@ class Predictor:
                 self._border(i, axis, -1)
             if high is None:
                 self._border(i, axis, 1)
-        for place, shape, delay_to in self._features:
-            self._wall(i, place, shape, delay_to)
+        for place, shape in self._features:
+            self._wall(i, place, shape)
         if self._cells is not None:
             self._crossing(i, now)
 
@@ -182,21 +178,15 @@ class Predictor:
             b, image = (axis, (step, 0)) if rank == WRAP else (-1 - place, (-step, how))
             self._push(Event(state.t[i] + delay, rank, i, b, image, state.count[i], 0))
 
-    def _wall(
-        self, i: int, place: int, shape: Face | Post | Container | Arc, delay_to: Callable[..., tuple[Real, int]]
-    ) -> None:
+    def _wall(self, i: int, place: int, shape: Shape) -> None:
         """Push the contact of disk i with a shape inside the domain."""
         state = self._state
         met = next((last[1] for last in state.met[i] if last[0] == -1 - place), 0)
         flight = state.x[i], state.y[i], state.vx[i], state.vy[i], state.gravity_x[i], state.gravity_y[i]
-        if state.supports is None:
-            delay, side = delay_to(shape, *flight, self._radius[i], met)
-            how = STRUCK
-        else:
-            held, e = held_by(state.met[i]), self._series_restitution
-            delay, side, how = shape_contact(
-                state.supports, held, place, shape, delay_to, flight, self._radius[i], met, e, state.t[i]
-            )
+        held = None if state.supports is None else held_by(state.met[i])
+        delay, side, how = shape_contact(
+            state.supports, held, place, shape, flight, self._radius[i], met, self._series_restitution, state.t[i]
+        )
         if delay < NEVER:
             self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, how), state.count[i], 0))
 

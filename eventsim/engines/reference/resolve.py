@@ -19,7 +19,6 @@ from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
-from eventsim.scene.surfaces import Surfaces
 
 
 class Resolver:
@@ -36,9 +35,8 @@ class Resolver:
         self._radius: list[Real] = [state.number(radius) for radius in stage.radius.tolist()]
         self._masses = Masses(stage)
         self._ledger = self.ledger(stage, state, self._masses, counters, keep_rows)
-        self._surfaces = Surfaces(stage, self._radius)
         self._instants = Instants(stage, state, self.at_once)
-        self._rests = Rests(stage, state, self._radius, self._surfaces, self._instants, self._ledger, counters)
+        self._rests = Rests(stage, state, self._radius, self._instants, self._ledger, counters)
 
     @property
     def at_once_limit(self) -> int:
@@ -136,7 +134,7 @@ class Resolver:
         return ua, wa, ub, wb, q
 
     def _wall(self, event: Event) -> list[int]:
-        state, stage, surfaces = self._state, self._stage, self._surfaces
+        state, stage = self._state, self._stage
         t, i, place, side = event.time, event.a, -1 - event.b, event.image[0]
         state.settle(i, t)
         x, y = state.place(i, t)
@@ -146,13 +144,13 @@ class Resolver:
         still = not self._instants.is_series(i, place) and self._instants.is_still(i, t)
         restitution = self._restitution(stage.wall_restitution, t, i, i)
         if state.low_parts:
-            u, w = self._careful_wall(i, *surfaces.normal(place, side, x, y, state.low_place(i, t)))
-        elif place >= len(stage.boundaries):
-            u, w, _ = wall_update(*surfaces.normal(place, side, x, y, state.low_place(i, t)), u, w, restitution)
-        elif stage.boundaries[place].axis == 0:
-            u, _ = flat_update(u, stage.boundaries[place].side, restitution)
+            u, w = self._careful_wall(i, *stage.normal(place, side, x, y, state.low_place(i, t)))
+        elif (boundary := stage.boundary(place)) is None:
+            u, w, _ = wall_update(*stage.normal(place, side, x, y, state.low_place(i, t)), u, w, restitution)
+        elif boundary.axis == 0:
+            u, _ = flat_update(u, boundary.side, restitution)
         else:
-            w, _ = flat_update(w, stage.boundaries[place].side, restitution)
+            w, _ = flat_update(w, boundary.side, restitution)
         x, y = self._place_on(place, i, x, y)
         self._rests.free(i, t)
         state.anchor(i, t, x, y, u, w)
@@ -160,7 +158,7 @@ class Resolver:
         self._instants.note(i, t, (u, w) == before, still)
         impulse = self._ledger.book_wall(i, u - before[0], w - before[1])
         self._counters.wall_contacts += 1
-        self._ledger.log(t, Kind.WALL, i, -1, surfaces.number(place), impulse, -1)
+        self._ledger.log(t, Kind.WALL, i, -1, stage.surfaces[place].wall, impulse, -1)
         return [i]
 
     def _careful_wall(self, i: int, nx: Real, ny: Real) -> tuple[Real, Real]:
@@ -192,7 +190,7 @@ class Resolver:
                 e = self._restitution(stage.pair_restitution, t, event.a, event.b)
                 contacts.append(JointContact(a, b, dx, dy, e))
             else:
-                nx, ny = self._surfaces.normal(-1 - event.b, event.image[0], *at[a], low[a])
+                nx, ny = stage.normal(-1 - event.b, event.image[0], *at[a], low[a])
                 e = self._restitution(stage.wall_restitution, t, event.a, event.a)
                 contacts.append(JointContact(a, None, nx, ny, e))
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
@@ -236,7 +234,7 @@ class Resolver:
             if not self._masses.is_immovable(a):  # such a disk has no momentum to speak of
                 self._ledger.book(jx, jy)
             self._counters.wall_contacts += 1
-            self._ledger.log(t, Kind.WALL, a, -1, self._surfaces.number(-1 - b), impulse, first)
+            self._ledger.log(t, Kind.WALL, a, -1, self._stage.surfaces[-1 - b].wall, impulse, first)
 
     def _met(self, event: Event, i: int) -> tuple[int, int, int]:
         """What disk i remembers of a contact."""
@@ -255,11 +253,12 @@ class Resolver:
 
     def _place_on(self, place: int, i: int, x: Real, y: Real) -> tuple[Real, Real]:
         """The place of disk i, exactly on a boundary of the domain that it meets; its low part, if it has one, is set."""
-        state = self._state
-        if state.low_places and (left := self._surfaces.left_on(place, i)) is not None:
-            axis, rest = left
-            (state.low_x, state.low_y)[axis][i] = rest
-        return self._surfaces.exactly_on(place, i, x, y)
+        state, boundary = self._state, self._stage.boundary(place)
+        if boundary is None:
+            return x, y
+        if state.low_places:
+            (state.low_x, state.low_y)[boundary.axis][i] = boundary.left_over(self._radius[i])
+        return boundary.touching(x, y, self._radius[i])
 
     def _restitution(self, restitution: float, t: Real, a: int, b: int) -> Real:
         duration = self._stage.contact_duration

@@ -9,10 +9,10 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.real import Real
-from eventsim.formulas.rest import LEFT, SUPPORTED, held_by, resting_place, slope
+from eventsim.formulas.rest import LEFT, SUPPORTED, held_by, resting_place
+from eventsim.formulas.walls.face import slope
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
-from eventsim.scene.surfaces import Surfaces
 
 
 class TwoSupportsError(Exception):
@@ -37,7 +37,6 @@ class Rests:
         stage: Stage,
         state: EngineState,
         radius: list[Real],
-        surfaces: Surfaces,
         instants: Instants,
         ledger: Ledger,
         counters: Counters,
@@ -45,7 +44,6 @@ class Rests:
         self._stage = stage
         self._state = state
         self._radius = radius
-        self._surfaces = surfaces
         self._instants = instants
         self._ledger = ledger
         self._counters = counters
@@ -82,7 +80,7 @@ class Rests:
         self._instants.note(i, t, False, still)
         impulse = self._ledger.book_wall(i, u - before[0], w - before[1])
         self._counters.rests += 1
-        self._ledger.log(t, Kind.REST, i, -1, self._surfaces.number(place), impulse, -1)
+        self._ledger.log(t, Kind.REST, i, -1, self._stage.surfaces[place].wall, impulse, -1)
 
     def _check_single(self, i: int, place: int) -> None:
         """Raise TwoSupportsError where disk i, which comes to rest on one wall, stays pressed onto the one that it rests on."""
@@ -94,7 +92,7 @@ class Rests:
         assert old is not None
         assert new is not None
         if held.side * (old.face.nx * new.ax + old.face.ny * new.ay) < 0.0:
-            walls = [self._stage.wall_names[self._surfaces.number(k)] for k in (held.place, place)]
+            walls = [self._stage.wall_names[self._stage.surfaces[k].wall] for k in (held.place, place)]
             raise TwoSupportsError(i, walls, self._stage)
 
     def _leave(self, event: Event) -> None:
@@ -108,4 +106,4 @@ class Rests:
         state.meet(i, ((event.b, event.image[0], LEFT),))
         self._instants.note(i, t, False, False)
         self._counters.wall_contacts += 1
-        self._ledger.log(t, Kind.WALL, i, -1, self._surfaces.number(-1 - event.b), 0.0, -1)
+        self._ledger.log(t, Kind.WALL, i, -1, self._stage.surfaces[-1 - event.b].wall, 0.0, -1)

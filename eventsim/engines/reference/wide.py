@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 from eventsim.engines.reference.calendar import CONTACT, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Group
@@ -11,9 +11,7 @@ from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.low_place import wide_border_delay, wide_pair_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import STRUCK
-from eventsim.formulas.walls.delays import at_origin
-from eventsim.formulas.walls.face import Face
-from eventsim.formulas.walls.round import Arc, Container, Post
+from eventsim.formulas.walls.shape import Shape, seen
 from eventsim.scene.stage import Stage
 
 
@@ -52,12 +50,10 @@ class WidePredictor(Predictor):
         if delay < NEVER:
             self._push(Event(state.t[i] + delay, CONTACT, i, -1 - border[1], (-step, STRUCK), state.count[i], 0))
 
-    def _wall(
-        self, i: int, place: int, shape: Face | Post | Container | Arc, delay_to: Callable[..., tuple[float, int]]
-    ) -> None:
+    def _wall(self, i: int, place: int, shape: Shape) -> None:
         state = self._state
         met = next((last[1] for last in state.met[i] if last[0] == -1 - place), 0)
-        x, y = (state.x[i] - shape.x) + state.low_x[i], (state.y[i] - shape.y) + state.low_y[i]
-        delay, side = delay_to(at_origin(shape), x, y, state.vx[i], state.vy[i], None, None, self._radius[i], met)
+        near, x, y = seen(shape, state.x[i], state.y[i], (state.low_x[i], state.low_y[i]))
+        delay, side = near.delay(x, y, state.vx[i], state.vy[i], None, None, self._radius[i], met)
         if delay < NEVER:
             self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, STRUCK), state.count[i], 0))

@@ -19,9 +19,8 @@ import numpy as np
 from eventsim.engines.stepped.found import DEEPEST, EVENTS, OUTER_X, OUTER_Y, note_pair, note_wall
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
-from eventsim.formulas.walls.face import Face
-from eventsim.formulas.walls.round import Post
-from eventsim.scene.features import Boundary
+from eventsim.formulas.walls.boundary import Boundary
+from eventsim.formulas.walls.post import Post
 from eventsim.scene.stage import Stage
 
 MISSING = "the engine pymunk needs the Chipmunk engine, which is not installed: pip install 'eventsim-disks[pymunk]'"
@@ -83,9 +82,9 @@ class ChipmunkSession(SteppedSession):
         thick = THICK * float(stage.radius.max())
         found = [(_behind(pymunk, static, boundary, stage, thick), boundary.wall) for boundary in stage.boundaries]
         for feature in stage.features:
-            shape = feature.shape
-            if isinstance(shape, Face):
-                ends = (shape.x, shape.y), (shape.x + shape.ex, shape.y + shape.ey)
+            line = feature.shape.line()
+            if line is not None:
+                ends = (line.x, line.y), (line.x + line.ex, line.y + line.ey)
                 found.append((pymunk.Segment(static, *ends, 0.0), feature.wall))
         return found
 
@@ -164,7 +163,9 @@ def _behind(pymunk: Any, static: Any, boundary: Boundary, stage: Stage, thick: f
 
 def _demand_known(stage: Stage) -> None:
     """Raise EventsimError for what Chipmunk does not know."""
-    round_walls = any(not isinstance(feature.shape, Face | Post) for feature in stage.features)
+    round_walls = any(
+        feature.shape.line() is None and not isinstance(feature.shape, Post) for feature in stage.features
+    )
     reasons = {
         "it knows no periodic boundaries": stage.periodic,
         "it knows no round walls": round_walls,

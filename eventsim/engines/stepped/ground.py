@@ -9,19 +9,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.stepped.compiled import part
-from eventsim.formulas.walls.face import Face
-from eventsim.formulas.walls.round import Arc, Container, Post
+from eventsim.formulas.walls.arc import Arc, arc_nearest
+from eventsim.formulas.walls.container import Container, container_nearest
+from eventsim.formulas.walls.face import Face, face_nearest
+from eventsim.formulas.walls.post import Post, post_nearest
 from eventsim.record.events import Floats
-from eventsim.scene.features import Feature
 from eventsim.scene.stage import Stage
 
-BOUNDARY, FACE, POST, CONTAINER, ARC = range(5)
+KINDS = (Face, Post, Container, Arc)
+"""The shapes that `nearest` knows."""
+
+FACE, POST, CONTAINER, ARC, BOUNDARY = range(5)
+"""Kinds of walls: the shapes by their places in KINDS, and a side of the domain."""
+
+WIDTH = 9
+"""Numbers of the shape that has most."""
 
 
 class Ground(NamedTuple):
     """Walls and periods.
 
-    kind: (W,) which shape.  numbers: (W, 8) its numbers.  wall: (W,) its number in the log.  length_x, length_y: periods,
+    kind: (W,) which shape.  numbers: (W, WIDTH) its numbers.  wall: (W,) its number in the log.  length_x, length_y: periods,
     inf where there is none.  gx, gy: gravity.
     """
 
@@ -36,36 +44,18 @@ class Ground(NamedTuple):
 
 def ground_of(stage: Stage) -> Ground:
     """The walls and periods of a stage."""
-    kinds: list[int] = []
-    numbers: list[tuple[float, ...]] = []
-    names: list[int] = []
-    for axis, position, side, wall in stage.boundaries:
-        kinds.append(BOUNDARY)
-        numbers.append((float(axis), position, side))
-        names.append(wall)
-    for feature in stage.features:
-        kind, values = _numbers(feature)
-        kinds.append(kind)
-        numbers.append(values)
-        names.append(feature.wall)
-    table = np.zeros((len(kinds), 8))
-    for k, values in enumerate(numbers):
-        table[k, : len(values)] = values
+    walls: list[tuple[int, tuple[float, ...]]] = [
+        (BOUNDARY, (float(axis), position, side)) for axis, position, side, _ in stage.boundaries
+    ]
+    walls += [(KINDS.index(type(feature.shape)), tuple(feature.shape)) for feature in stage.features]
+    table = np.zeros((len(walls), WIDTH))
+    for row, (_, numbers) in zip(table, walls, strict=True):
+        row[: len(numbers)] = numbers
+    kinds = np.array([kind for kind, _ in walls], np.int64)
+    names = np.array([surface.wall for surface in stage.surfaces], np.int64)
     gravity = stage.gravity or (0.0, 0.0)
     length_x, length_y = (math.inf if length is None else length for length in stage.period)
-    return Ground(np.array(kinds, np.int64), table, np.array(names, np.int64), length_x, length_y, *gravity)
-
-
-def _numbers(feature: Feature) -> tuple[int, tuple[float, ...]]:
-    shape = feature.shape
-    if isinstance(shape, Face):
-        return FACE, (shape.x, shape.y, shape.ex, shape.ey, shape.nx / shape.norm, shape.ny / shape.norm, shape.along2)
-    if isinstance(shape, Post):
-        return POST, tuple(shape)
-    if isinstance(shape, Container):
-        return CONTAINER, tuple(shape)
-    assert isinstance(shape, Arc)
-    return ARC, tuple(shape)
+    return Ground(kinds, table, names, length_x, length_y, *gravity)
 
 
 @part
@@ -75,25 +65,10 @@ def nearest(kind: int, w: Any, x: float, y: float) -> tuple[float, float, float]
         if w[0] == 0.0:
             return w[2], 0.0, w[2] * (x - w[1])
         return 0.0, w[2], w[2] * (y - w[1])
-    dx, dy = x - w[0], y - w[1]
     if kind == FACE:
-        along = w[2] * dx + w[3] * dy
-        if along < 0.0 or along > w[6]:
-            return 0.0, 0.0, math.inf
-        distance = w[4] * dx + w[5] * dy
-        side = 1.0 if distance >= 0.0 else -1.0
-        return side * w[4], side * w[5], side * distance
-    distance = math.sqrt(dx * dx + dy * dy)
-    if not distance > 0.0:
-        return 0.0, 0.0, math.inf
-    ux, uy = dx / distance, dy / distance
+        return face_nearest(Face(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8]), x, y)
     if kind == POST:
-        return ux, uy, distance
+        return post_nearest(Post(w[0], w[1]), x, y)
     if kind == CONTAINER:
-        return -ux, -uy, w[2] - distance
-    fx, fy = w[0] + ux * w[2] - w[3], w[1] + uy * w[2] - w[4]
-    if w[7] * (w[5] * fy - w[6] * fx) < 0.0:
-        return 0.0, 0.0, math.inf
-    if distance >= w[2]:
-        return ux, uy, distance - w[2]
-    return -ux, -uy, w[2] - distance
+        return container_nearest(Container(w[0], w[1], w[2]), x, y)
+    return arc_nearest(Arc(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7]), x, y)

@@ -1,30 +1,21 @@
-"""Round walls: a post (a point), a container (a circle from inside), an arc (hard on both sides; its ends are posts)."""
+"""A circular arc, hard on both sides; its ends are posts."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
 from typing import NamedTuple
 
 from eventsim.formulas.contact import circle_delay, leaving_delay
 from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
-
-
-class Post(NamedTuple):
-    """A hard point at (x, y)."""
-
-    x: float
-    y: float
-
-
-class Container(NamedTuple):
-    """A circle around (x, y); disks live inside."""
-
-    x: float
-    y: float
-    radius: float
+from eventsim.formulas.roots import Line, Moment, less_number, reaches
+from eventsim.formulas.walls.face import Face
 
 
 class Arc(NamedTuple):
     """The part of a circle that lies beyond its chord: from (x0, y0) along (ex, ey), on the side where the cross product has
-    the given sign."""
+    the given sign.  Outside of the circle is the side +1, inside -1."""
 
     x: float
     y: float
@@ -34,6 +25,78 @@ class Arc(NamedTuple):
     ex: float
     ey: float
     sign: float
+
+    @staticmethod
+    def word() -> str:
+        """What messages call one such shape."""
+        return "arc"
+
+    def delay(
+        self, x: Real, y: Real, vx: Real, vy: Real, gx: Acceleration, gy: Acceleration, radius: Real, met: int
+    ) -> tuple[Real, int]:
+        """(delay, side) of the next contact with the arc: with its outside at radius R + r, with its inside at R - r.
+
+        A disk that is outside may pass through the open part and meet the inside, and the other way round.
+        """
+        if gx is None:
+            return _straight_to_arc(self, x, y, vx, vy, radius, met)
+        if gx == 0.0 and gy == 0.0:  # an immovable disk, on which gravity does not act
+            return _straight_to_arc(self, x, y, vx, vy, radius, met)
+        dx, dy = x - self.x, y - self.y
+        side = met if met != 0 else arc_side(self, x, y, vx, vy)
+        outer, inner = self.radius + radius, self.radius - radius
+        best, best_side = NEVER, side
+        for face_side in (1, -1):
+            reach = outer if face_side > 0 else inner
+            if not reach > 0.0 and not (reach == 0.0 and face_side > 0):
+                continue
+            overlap = PRESENT_OVERLAP if face_side == side else NO_OVERLAP
+            first, second = circle_delays(dx, dy, vx, vy, gx, gy, reach, float(face_side), overlap)
+            for delay in (first, second):
+                if delay < best and on_arc(
+                    self, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
+                ):
+                    best, best_side = delay, face_side
+        return best, best_side
+
+    def normal(self, side: int, x: Real, y: Real) -> tuple[Real, Real]:
+        """The normal, of any length, that points to a disk at (x, y): away from the centre outside, to it inside."""
+        return side * (x - self.x), side * (y - self.y)
+
+    def nearest(self, x: Real, y: Real) -> tuple[Real, Real, Real]:
+        """(nx, ny, distance): the unit normal that points to a centre, and its distance; NEVER beside the arc."""
+        dx, dy = x - self.x, y - self.y
+        distance = sqrt(dx * dx + dy * dy)
+        if not distance > 0.0:
+            return 0.0, 0.0, NEVER
+        ux, uy = dx / distance, dy / distance
+        fx, fy = self.x + ux * self.radius - self.x0, self.y + uy * self.radius - self.y0
+        if self.sign * (self.ex * fy - self.ey * fx) < 0.0:
+            return 0.0, 0.0, NEVER
+        if distance >= self.radius:
+            return ux, uy, distance - self.radius
+        return -ux, -uy, self.radius - distance
+
+    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
+        """The exact time of a contact; None along a parabola."""
+        reach = Fraction(self.radius) + side * Fraction(radius)
+        return reaches(less_number(x, self.x), less_number(y, self.y), reach, -side)
+
+    def line(self) -> Face | None:
+        """None: no disk rests on a round wall."""
+        return None
+
+    def lies_on(self, line: Face) -> bool:
+        """False: an arc is on no line."""
+        return False
+
+    def at_origin(self) -> Arc:
+        """The same arc with its centre in the origin."""
+        return self._replace(x=0.0, y=0.0, x0=self.x0 - self.x, y0=self.y0 - self.y)
+
+    def in_numbers(self, number: Callable[[float], Real]) -> Arc:
+        """The same arc in other numbers than floats."""
+        return Arc(*map(number, self))
 
 
 def arc(x0: float, y0: float, xm: float, ym: float, x1: float, y1: float) -> Arc:
@@ -45,55 +108,6 @@ def arc(x0: float, y0: float, xm: float, ym: float, x1: float, y1: float) -> Arc
     ux, uy = (by * a2 - ay * b2) / (2.0 * cross), (ax * b2 - bx * a2) / (2.0 * cross)
     sign = 1.0 if bx * ay - by * ax > 0.0 else -1.0
     return Arc(x0 + ux, y0 + uy, float(sqrt(ux * ux + uy * uy)), x0, y0, bx, by, sign)
-
-
-def round_normal(shape: Post | Container | Arc, side: int, x: Real, y: Real) -> tuple[Real, Real]:
-    """The normal, of any length, that points to a disk at (x, y): away from the centre outside (+1), to it inside (-1)."""
-    return side * (x - shape.x), side * (y - shape.y)
-
-
-def post_delay(
-    shape: Post,
-    x: Real,
-    y: Real,
-    vx: Real,
-    vy: Real,
-    gx: Acceleration,
-    gy: Acceleration,
-    radius: Real,
-    met: int,
-) -> tuple[Real, int]:
-    """(delay, 1) of the next contact with a post."""
-    if gx is None:
-        return _straight_to_post(shape, x, y, vx, vy, radius, met)
-    if gx == 0.0 and gy == 0.0:  # an immovable disk, on which gravity does not act
-        return _straight_to_post(shape, x, y, vx, vy, radius, met)
-    return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, radius, 1.0)[0], 1
-
-
-def _straight_to_post(shape: Post, x: Real, y: Real, vx: Real, vy: Real, radius: Real, met: int) -> tuple[Real, int]:
-    if met != 0:
-        return NEVER, 1
-    return circle_delay(x, y, vx, vy, radius, shape.x, shape.y, 0.0), 1
-
-
-def container_delay(
-    shape: Container,
-    x: Real,
-    y: Real,
-    vx: Real,
-    vy: Real,
-    gx: Acceleration,
-    gy: Acceleration,
-    radius: Real,
-    met: int,
-) -> tuple[Real, int]:
-    """(delay, -1) of the next contact with the container from inside."""
-    if gx is None:
-        return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius), -1
-    if gx == 0.0 and gy == 0.0:
-        return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius), -1
-    return circle_delays(x - shape.x, y - shape.y, vx, vy, gx, gy, shape.radius - radius, -1.0)[0], -1
 
 
 def on_arc(shape: Arc, x: Real, y: Real) -> bool:
@@ -118,43 +132,6 @@ def arc_side(shape: Arc, x: Real, y: Real, vx: Real, vy: Real) -> int:
     return 1 if dx * vx + dy * vy > 0.0 else -1
 
 
-def arc_delay(
-    shape: Arc,
-    x: Real,
-    y: Real,
-    vx: Real,
-    vy: Real,
-    gx: Acceleration,
-    gy: Acceleration,
-    radius: Real,
-    met: int,
-) -> tuple[Real, int]:
-    """(delay, side) of the next contact with the arc: with its outside at radius R + r, with its inside at R - r.
-
-    A disk that is outside may pass through the open part and meet the inside, and the other way round.
-    """
-    if gx is None:
-        return _straight_to_arc(shape, x, y, vx, vy, radius, met)
-    if gx == 0.0 and gy == 0.0:
-        return _straight_to_arc(shape, x, y, vx, vy, radius, met)
-    dx, dy = x - shape.x, y - shape.y
-    side = met if met != 0 else arc_side(shape, x, y, vx, vy)
-    outer, inner = shape.radius + radius, shape.radius - radius
-    best, best_side = NEVER, side
-    for face_side in (1, -1):
-        reach = outer if face_side > 0 else inner
-        if not reach > 0.0 and not (reach == 0.0 and face_side > 0):
-            continue
-        overlap = PRESENT_OVERLAP if face_side == side else NO_OVERLAP
-        first, second = circle_delays(dx, dy, vx, vy, gx, gy, reach, float(face_side), overlap)
-        for delay in (first, second):
-            if delay < best and on_arc(
-                shape, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
-            ):
-                best, best_side = delay, face_side
-    return best, best_side
-
-
 def _straight_to_arc(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, met: int) -> tuple[Real, int]:
     side = met if met != 0 else arc_side(shape, x, y, vx, vy)
     best, best_side = NEVER, side
@@ -176,3 +153,7 @@ def _inner_from(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, 
         if not entered < NEVER:
             return NEVER
     return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius)
+
+
+arc_delay, arc_nearest = Arc.delay, Arc.nearest
+"""The same for kernels; the normal is that of a post."""

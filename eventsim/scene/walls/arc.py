@@ -1,17 +1,91 @@
-"""How deep disks reach into walls: vectorised distances, to place and check disks (not for contacts)."""
+"""An arc of a circle through three points."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from itertools import product
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
-from eventsim.scene.cells import Indices
+from eventsim.formulas.walls import arc as numbers
+from eventsim.formulas.walls.post import Post
+from eventsim.formulas.walls.shape import Shape
 from eventsim.scene.disks import Floats
-from eventsim.scene.numbers import Point
-from eventsim.scene.walls import Arc, Circle, Feature
+from eventsim.scene.numbers import SHORTEST, Point, is_length, is_place
+from eventsim.scene.walls.wall import Bounds, Part, distances
+
+FULL_TURN_POINTS = 240
+"""Points on a whole circle: on a picture 1000 pixels wide the chords are off by less than a tenth of a pixel."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arc(Part):
+    """A circular arc from `start` through a point to `end`, hard on both sides; ends like a segment's."""
+
+    start: Point
+    through: Point
+    end: Point
+    name: str | None = None
+    kind: ClassVar[str] = "arc"
+    made_of: ClassVar[tuple[type[Shape], ...]] = (numbers.Arc, Post)
+
+    def parts(self, name: str) -> tuple[Arc, ...]:
+        """The arc."""
+        return (replace(self, name=name),)
+
+    def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
+        """An arc, and posts at its ends."""
+        start, through, end = moved(self.start), moved(self.through), moved(self.end)
+        return [(numbers.arc(*start, *through, *end), 0), (Post(*start), 0), (Post(*end), 0)]
+
+    def shape_problems(self) -> Iterator[str]:
+        """Its points determine a circle that floats can hold."""
+        center, radius = circle_through(self.start, self.through, self.end)
+        chords = math.dist(self.start, self.through), math.dist(self.through, self.end)
+        if not (is_place(center) and is_length(radius) and min(chords) >= SHORTEST):
+            yield (
+                f": start {self.start}, through {self.through} and end {self.end} do not determine a circle:"
+                " they must be three points that are not on a line (use a segment)"
+            )
+
+    def curvature_radius(self) -> float:
+        """The radius of its circle."""
+        return circle_through(self.start, self.through, self.end)[1]
+
+    def bounds(self) -> Bounds:
+        """The rectangle of its whole circle."""
+        (x, y), r = circle_through(self.start, self.through, self.end)
+        return (x - r, y - r), (x + r, y + r)
+
+    def depth(self, position: Floats, radius: Floats | float) -> Floats:
+        """How deep disks at `position` (M, 2) reach into it, (M,)."""
+        center, size = circle_through(self.start, self.through, self.end)
+        from_center = distances(position, center)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            scale = np.where(from_center > 0.0, size / from_center, 0.0)
+        # The nearest point of the whole circle is on the arc if it is on the same side of the chord as `through`.
+        foot_x = center[0] + (position[:, 0] - center[0]) * scale - self.start[0]
+        foot_y = center[1] + (position[:, 1] - center[1]) * scale - self.start[1]
+        chord_x, chord_y = self.end[0] - self.start[0], self.end[1] - self.start[1]
+        through_x, through_y = self.through[0] - self.start[0], self.through[1] - self.start[1]
+        turn = chord_x * through_y - chord_y * through_x
+        # only the sign of turn, whose product with another area may be no float
+        on_arc = (chord_x * foot_y - chord_y * foot_x) * np.sign(turn) >= 0.0
+        ends = np.minimum(distances(position, self.start), distances(position, self.end))
+        return radius - np.where((from_center == 0.0) | on_arc, np.abs(from_center - size), ends)
+
+    def outline(self) -> Floats:
+        """A line of points along it."""
+        center, radius = circle_through(self.start, self.through, self.end)
+        begin, middle, end = (
+            math.atan2(p[1] - center[1], p[0] - center[0]) for p in (self.start, self.through, self.end)
+        )
+        turn = (end - begin) % (2.0 * math.pi)
+        if (middle - begin) % (2.0 * math.pi) > turn:  # `through` is passed on the way round the other side
+            turn -= 2.0 * math.pi
+        return circle_points(center, radius, begin, turn)
 
 
 def circle_through(start: Point, through: Point, end: Point) -> tuple[Point, float]:
@@ -29,114 +103,8 @@ def circle_through(start: Point, through: Point, end: Point) -> tuple[Point, flo
     return (start[0] + cx, start[1] + cy), math.hypot(cx, cy)
 
 
-def wall_depth(feature: Feature, position: Floats, radius: Floats | float) -> Floats:
-    """How deep disks at `position` (M, 2) reach into a wall, (M,): radius minus distance.
-
-    For a container it is how far they reach out of it.
-    """
-    if isinstance(feature, Circle):
-        return _distance(position, feature.center) + radius - feature.radius
-    if isinstance(feature, Arc):
-        return radius - _arc_distance(feature, position)
-    return radius - _segment_distance(feature.start, feature.end, position)
-
-
-def wall_overlaps(
-    features: Sequence[Feature], position: Floats, radius: Floats, origin: Point, period: Point
-) -> Iterator[tuple[int, Indices, Floats]]:
-    """For each feature, and image of it, that disks reach into: its index, the disks (M,), their depths (M,).
-
-    Walls have images along a direction of finite `period`; containers have none. Near O(N) where the features
-    are small.
-    """
-    if not len(radius):
-        return
-    groups = [_by_x(members, position) for members in _octaves(radius)]
-    largest = float(radius.max())
-    for index, feature in enumerate(features):
-        low, high = bounds(feature)
-        if isinstance(feature, Circle):
-            shifts = [(0.0, 0.0)]
-        else:
-            along_x, along_y = (_images(low[k], high[k], origin[k], period[k], largest) for k in (0, 1))
-            shifts = list(product(along_x, along_y))
-        for (members, x), shift in product(groups, shifts):
-            reach = radius[members].max()
-            first = np.searchsorted(x, low[0] + shift[0] - reach, side="left")
-            last = np.searchsorted(x, high[0] + shift[0] + reach, side="right")
-            near = members[first:last]
-            y = position[near, 1] - shift[1]
-            near = near[(y >= low[1] - reach) & (y <= high[1] + reach)]
-            depth = wall_depth(feature, position[near] - shift, radius[near])
-            deep = depth > 0.0
-            if deep.any():
-                yield index, near[deep], depth[deep]
-
-
-def _images(low: float, high: float, origin: float, period: float, reach: float) -> list[float]:
-    """The translations that bring a wall from `low` to `high` within reach of the domain, along one axis."""
-    if math.isinf(period):
-        return [0.0]
-    first = math.ceil((origin - reach - high) / period)
-    last = math.floor((origin + period + reach - low) / period)
-    return [k * period for k in range(first, last + 1)]
-
-
-def _octaves(radius: Floats) -> list[Indices]:
-    """Indices of the disks, grouped by the octave of their radius."""
-    octave = np.frexp(radius)[1]
-    return [np.flatnonzero(octave == level) for level in np.unique(octave)]
-
-
-def _by_x(members: Indices, position: Floats) -> tuple[Indices, Floats]:
-    """The members sorted by x, and their x."""
-    order = members[np.argsort(position[members, 0])]
-    return order, position[order, 0]
-
-
-def bounds(feature: Feature) -> tuple[Point, Point]:
-    """A rectangle (lower-left, upper-right) outside of which no disk centre can touch, but for its radius."""
-    if isinstance(feature, Circle):
-        # A disk anywhere outside the container is across it.
-        return (-math.inf, -math.inf), (math.inf, math.inf)
-    if isinstance(feature, Arc):
-        (x, y), r = circle_through(feature.start, feature.through, feature.end)
-        return (x - r, y - r), (x + r, y + r)
-    (x0, y0), (x1, y1) = feature.start, feature.end
-    return (min(x0, x1), min(y0, y1)), (max(x0, x1), max(y0, y1))
-
-
-def _distance(position: Floats, center: Point) -> Floats:
-    """Distances (M,) of positions (M, 2) from a point."""
-    distance: Floats = np.hypot(position[:, 0] - center[0], position[:, 1] - center[1])
-    return distance
-
-
-def _segment_distance(start: Point, end: Point, position: Floats) -> Floats:
-    """Distances (M,) of positions (M, 2) from a segment of positive length."""
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    length = math.hypot(dx, dy)
-    tx, ty = dx / length, dy / length
-    px, py = position[:, 0] - start[0], position[:, 1] - start[1]
-    along = tx * px + ty * py
-    beside = np.abs(tx * py - ty * px)
-    ends = np.minimum(_distance(position, start), _distance(position, end))
-    return np.where((along >= 0.0) & (along <= length), beside, ends)
-
-
-def _arc_distance(arc: Arc, position: Floats) -> Floats:
-    """Distances (M,) of positions (M, 2) from an arc that is not a straight line."""
-    center, radius = circle_through(arc.start, arc.through, arc.end)
-    from_center = _distance(position, center)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        scale = np.where(from_center > 0.0, radius / from_center, 0.0)
-    # The nearest point of the whole circle is on the arc if it is on the same side of the chord as `through`.
-    foot_x = center[0] + (position[:, 0] - center[0]) * scale - arc.start[0]
-    foot_y = center[1] + (position[:, 1] - center[1]) * scale - arc.start[1]
-    chord_x, chord_y = arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]
-    through_x, through_y = arc.through[0] - arc.start[0], arc.through[1] - arc.start[1]
-    turn = chord_x * through_y - chord_y * through_x
-    # only the sign of turn, whose product with another area may be no float
-    on_arc = (chord_x * foot_y - chord_y * foot_x) * np.sign(turn) >= 0.0
-    ends = np.minimum(_distance(position, arc.start), _distance(position, arc.end))
-    return np.where((from_center == 0.0) | on_arc, np.abs(from_center - radius), ends)
+def circle_points(center: Point, radius: float, begin: float, turn: float) -> Floats:
+    """Points (K, 2) on a circle, from an angle on through a turn."""
+    count = max(math.ceil(FULL_TURN_POINTS * abs(turn) / (2.0 * math.pi)), 2) + 1
+    angle = begin + np.linspace(0.0, turn, count)
+    return np.column_stack([center[0] + radius * np.cos(angle), center[1] + radius * np.sin(angle)])
