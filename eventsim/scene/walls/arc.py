@@ -32,11 +32,11 @@ class Arc(Part):
     made_of: ClassVar[tuple[type[Shape], ...]] = (numbers.Arc, Post)
 
     def parts(self, name: str) -> tuple[Arc, ...]:
-        """The arc."""
+        """The arc itself, with its name."""
         return (replace(self, name=name),)
 
     def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
-        """An arc, and posts at its ends."""
+        """An arc, and posts at its ends, all of part 0, where `moved` brings its points."""
         start, through, end = moved(self.start), moved(self.through), moved(self.end)
         return [(numbers.arc(*start, *through, *end), 0), (Post(*start), 0), (Post(*end), 0)]
 
@@ -60,7 +60,7 @@ class Arc(Part):
         return (x - r, y - r), (x + r, y + r)
 
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
-        """How deep disks at `position` (M, 2) reach into it, (M,)."""
+        """How deep disks at `position` (M, 2) of a `radius` reach into it, (M,)."""
         center, size = circle_through(self.start, self.through, self.end)
         from_center = distances(position, center)
         with np.errstate(invalid="ignore", divide="ignore"):

@@ -27,11 +27,11 @@ class Circle(Part):
     holds: ClassVar[bool] = True
 
     def parts(self, name: str) -> tuple[Circle, ...]:
-        """The circle."""
+        """The circle itself, with its name."""
         return (replace(self, name=name),)
 
     def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
-        """One container."""
+        """One container, of part 0, where `moved` brings its centre."""
         return [(Container(*moved(self.center), self.radius), 0)]
 
     def shape_problems(self) -> Iterator[str]:
@@ -39,13 +39,13 @@ class Circle(Part):
         return iter(())
 
     def period_problems(self, axis: int, origin: float, length: float) -> Iterator[str]:
-        """Disks cannot be inside a container and inside its image, so it must not stick out of a period."""
+        """Disks cannot be inside a container and its image: along an `axis` it keeps within a period, its `length` from `origin` on."""
         low = self.center[axis] - self.radius - origin
         if low < 0.0 or low + 2.0 * self.radius > length:
             yield f".radius = {self.radius}: the circle must not reach beyond the period in {'xy'[axis]}"
 
     def curvature_radius(self) -> float:
-        """Its radius."""
+        """The radius of the circle."""
         return self.radius
 
     def bounds(self) -> Bounds:
@@ -54,7 +54,7 @@ class Circle(Part):
         return (x - r, y - r), (x + r, y + r)
 
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
-        """How far disks at `position` (M, 2) reach out of it, (M,)."""
+        """How far disks at `position` (M, 2) of a `radius` reach out of it, (M,)."""
         return distances(position, self.center) + radius - self.radius
 
     def outline(self) -> Floats:

@@ -29,11 +29,11 @@ class Segment(Part):
     made_of: ClassVar[tuple[type[Shape], ...]] = (Face, Post)
 
     def parts(self, name: str) -> tuple[Segment, ...]:
-        """The segment."""
+        """The segment itself, with its name."""
         return (replace(self, name=name),)
 
     def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
-        """A face, and posts at its ends."""
+        """A face, and posts at its ends, all of part 0, where `moved` brings its points."""
         start, end = moved(self.start), moved(self.end)
         return [(face(*start, *end), 0), (Post(*start), 0), (Post(*end), 0)]
 
@@ -50,7 +50,7 @@ class Segment(Part):
         return (min(x0, x1), min(y0, y1)), (max(x0, x1), max(y0, y1))
 
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
-        """How deep disks at `position` (M, 2) reach into it, (M,)."""
+        """How deep disks at `position` (M, 2) of a `radius` reach into it, (M,)."""
         dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
         length = math.hypot(dx, dy)
         tx, ty = dx / length, dy / length
@@ -84,7 +84,7 @@ class _Chain(Wall):
         return tuple(Segment(start, end, f"{name}.{i}") for i, (start, end) in enumerate(self.edges()))
 
     def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
-        """The faces, then a post at each point."""
+        """The faces, then a post at each point, where `moved` brings the points."""
         edges = self.edges()
         shapes: list[tuple[Shape, int]] = [(face(*moved(a), *moved(b)), k) for k, (a, b) in enumerate(edges)]
         shapes += [(Post(*moved(p)), min(k, len(edges) - 1)) for k, p in enumerate(self.points)]
