@@ -39,7 +39,7 @@ class Circle(Part):
         return iter(())
 
     def period_problems(self, axis: int, origin: float, length: float) -> Iterator[str]:
-        """Disks cannot be inside a container and its image: along an `axis` it keeps within a period, its `length` from `origin` on."""
+        """Disks cannot be in a container and its image: along an `axis` it keeps within a period, a `length` from `origin` on."""
         low = self.center[axis] - self.radius - origin
         if low < 0.0 or low + 2.0 * self.radius > length:
             yield f".radius = {self.radius}: the circle must not reach beyond the period in {'xy'[axis]}"
