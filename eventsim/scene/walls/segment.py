@@ -80,7 +80,7 @@ class _Chain(Wall):
         """The segments (start, end)."""
 
     def parts(self, name: str) -> tuple[Segment, ...]:
-        """The edges, NAME.0, NAME.1, ..."""
+        """The edges, which a chain called `name` numbers: NAME.0, NAME.1, ..."""
         return tuple(Segment(start, end, f"{name}.{i}") for i, (start, end) in enumerate(self.edges()))
 
     def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
