@@ -8,6 +8,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 from eventsim.cli.source import stop_options
 from eventsim.cli.target import writable
 
@@ -122,8 +123,8 @@ def command(
     elapsed = perf_counter() - began
     if as_json:
         data = {"scene": scene, "out": str(target), "format": target.suffix[1:].lower(), "events": len(log)}
-        click.echo(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
+        say(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
     elif not quiet:
         if len(log) == 0:
-            click.echo("this log is empty: no event happens, the disks only fly on", err=True)
-        click.echo(f"{plural(len(log), 'event')} drawn to {target} ({file_size(target)}) in {elapsed:.2g} s")
+            say("this log is empty: no event happens, the disks only fly on", err=True)
+        say(f"{plural(len(log), 'event')} drawn to {target} ({file_size(target)}) in {elapsed:.2g} s")

@@ -10,6 +10,7 @@ import click
 from eventsim import suffixes
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
@@ -104,14 +105,14 @@ def command(
     with ProgressBar(quiet=quiet) as progress:
         proof = prove(chosen, stop, False if path is None else path, bits, most_bits, progress, typed)
     if as_json:
-        click.echo(as_json_text(_data(scene, proof, path)))
+        say(as_json_text(_data(scene, proof, path)))
     elif not quiet:
-        click.echo(_text(scene, proof, path))
+        say(_text(scene, proof, path))
     if proof.run.stopped == "interrupted":
         click.get_current_context().exit(INTERRUPTED)
     if proof.run.stopped in ("undecided tie", "collapse", "digits"):
         if as_json or quiet:
-            click.echo(f"stopped early: {proof.run.reason or proof.run.stopped}", err=True)
+            say(f"stopped early: {proof.run.reason or proof.run.stopped}", err=True)
         click.get_current_context().exit(STOPPED_EARLY)
 
 

@@ -8,6 +8,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.output import say
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
@@ -92,10 +93,10 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
             "left_out": chart.left_out,
             "conclusions": [answer._asdict() for answer in conclusions(chart)],
         }
-        click.echo(as_json_text(data))
+        say(as_json_text(data))
     elif not quiet:
-        click.echo(_text(chart))
-        click.echo(f"\ncharted in {figure}, numbers in {table}")
+        say(_text(chart))
+        say(f"\ncharted in {figure}, numbers in {table}")
 
 
 def _text(chart: Chart) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 
 
 @click.command()
@@ -76,10 +77,10 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
         told = None if estimate is None else asdict(estimate)
         words = dict(explanation(needs))
         data = {"scene": scene, "name": chosen.name, **asdict(needs), "horizon": told, "explanation": words}
-        click.echo(as_json_text(data))
+        say(as_json_text(data))
     elif not quiet:
-        click.echo(page(scene, chosen.name, needs))
+        say(page(scene, chosen.name, needs))
         if estimate is not None:
             from eventsim.cli.summary import horizon_words
 
-            click.echo(f"  horizon: {horizon_words(estimate)}")
+            say(f"  horizon: {horizon_words(estimate)}")

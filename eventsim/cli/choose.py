@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from eventsim import suffixes
+from eventsim.cli.output import say
 from eventsim.cli.suggest import did_you_mean
 from eventsim.errors import SceneError
 
@@ -25,7 +24,7 @@ def chosen_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene
     """
     made = seeded_scene(scene, settings, seed)
     if seed is not None and not _draws_at_random(scene, settings):
-        click.echo(f"note: --seed {seed} changes nothing: {scene} draws no random numbers", err=True)
+        say(f"note: --seed {seed} changes nothing: {scene} draws no random numbers", err=True)
     return made
 
 

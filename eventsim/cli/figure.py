@@ -6,6 +6,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 from eventsim.cli.source import stop_options
 from eventsim.cli.target import writable
 from eventsim.show.figures import TITLES
@@ -66,6 +67,6 @@ def command(
     elapsed = perf_counter() - began
     if as_json:
         data = {"scene": scene, "kind": kind, "out": str(target), "events": len(log)}
-        click.echo(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
+        say(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
     elif not quiet:
-        click.echo(f"{kind} drawn to {target} ({file_size(target)}) in {elapsed:.2g} s")
+        say(f"{kind} drawn to {target} ({file_size(target)}) in {elapsed:.2g} s")

@@ -10,6 +10,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import SEED_HELP, SET_HELP, json_option, quiet_option
+from eventsim.cli.output import say
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
@@ -67,10 +68,10 @@ def _list(as_json: bool, quiet: bool) -> None:
 
     titles = [(each, describe(each).title) for each in names()]
     if as_json:
-        click.echo(as_json_text({"scenes": [{"name": each, "title": title} for each, title in titles]}))
+        say(as_json_text({"scenes": [{"name": each, "title": title} for each, title in titles]}))
     elif not quiet:
-        click.echo(aligned(titles))
-        click.echo("\neventsim gallery NAME tells the story of one, eventsim run NAME runs it")
+        say(aligned(titles))
+        say("\neventsim gallery NAME tells the story of one, eventsim run NAME runs it")
 
 
 def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool) -> None:
@@ -93,15 +94,15 @@ def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | No
             "about": entry.about,
             "parameters": entry.parameters,
         }
-        click.echo(as_json_text({**data, "copied": None if target is None else str(target)}))
+        say(as_json_text({**data, "copied": None if target is None else str(target)}))
     elif not quiet and target is not None:
-        click.echo(f"{name} copied to {target}; eventsim run {target} runs it")
+        say(f"{name} copied to {target}; eventsim run {target} runs it")
     elif not quiet:
-        click.echo(f"{name}: {entry.title}\n\n{entry.text}")
+        say(f"{name}: {entry.title}\n\n{entry.text}")
         if entry.parameters:
             rows = [(key, repr(value)) for key, value in entry.parameters.items()]
-            click.echo(f"\nParameters and their defaults (--set NAME=VALUE):\n{aligned(rows)}")
-            click.echo(fill(entry.about, 100, initial_indent="  ", subsequent_indent="  "))
+            say(f"\nParameters and their defaults (--set NAME=VALUE):\n{aligned(rows)}")
+            say(fill(entry.about, 100, initial_indent="  ", subsequent_indent="  "))
 
 
 def _write_scene(target: Path, scene: Scene) -> None:

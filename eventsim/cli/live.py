@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 from eventsim.errors import EventsimError
 
 PORT = 8642
@@ -68,13 +69,13 @@ def command(
 
     def tell(address: str) -> None:
         if as_json:
-            click.echo(as_json_text({"scene": scene, "address": address}))
+            say(as_json_text({"scene": scene, "address": address}))
         elif not quiet:
-            click.echo(f"the live view is at {address} (Ctrl-C ends it)")
+            say(f"the live view is at {address} (Ctrl-C ends it)")
         if not no_browser:
             webbrowser.open(address)
 
     try:
         asyncio.run(serve(chosen, port, tell))
     except KeyboardInterrupt:
-        click.echo("", err=True)  # after the ^C that the terminal shows
+        say("", err=True)  # after the ^C that the terminal shows

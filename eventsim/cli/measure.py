@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 from eventsim.cli.source import stop_options
 
 
@@ -67,6 +68,6 @@ def command(
     measures, order = measured(scene, settings, seed, until, events, discard, structure, quiet)
     if as_json:
         found = None if order is None else order.to_dict()
-        click.echo(as_json_text({"scene": scene, **measures.to_dict(), "structure": found}))
+        say(as_json_text({"scene": scene, **measures.to_dict(), "structure": found}))
     elif not quiet:
-        click.echo(measures_text(scene, measures, order))
+        say(measures_text(scene, measures, order))

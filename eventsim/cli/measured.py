@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eventsim.cli.output import say
 from eventsim.cli.source import is_log, log_of
 from eventsim.cli.words import aligned, short
 from eventsim.scene.names import plural
@@ -51,10 +52,10 @@ def measured(
         keep = True if discard is None else discard
         run = simulate(scene, until=until, events=events, measure=keep, progress=progress)
     if run.stopped == "interrupted":
-        click.echo("interrupted", err=True)
+        say("interrupted", err=True)
         click.get_current_context().exit(INTERRUPTED)
     if run.reason is not None and not quiet:
-        click.echo(f"stopped early: {run.reason}", err=True)
+        say(f"stopped early: {run.reason}", err=True)
     if run.measures is None:
         raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
     return run.measures, structure_of(scene, run.state) if structure else None

@@ -12,6 +12,7 @@ import click
 
 from eventsim import __version__
 from eventsim.cli.exits import BAD_INPUT, DONE, INTERRUPTED
+from eventsim.cli.output import say, visible, write_what_is_known
 from eventsim.cli.suggest import did_you_mean
 from eventsim.errors import EventsimError, LogWarning, SceneError
 
@@ -73,10 +74,11 @@ class Program(click.Group):
 
     def invoke(self, ctx: click.Context) -> object:
         """Call the verb; turn what goes wrong into a sentence on stderr and an exit code."""
+        write_what_is_known()
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("always", LogWarning)
-                warnings.showwarning = lambda message, *place: click.echo(f"warning: {message}", err=True)
+                warnings.showwarning = lambda message, *place: say(f"warning: {message}", err=True)
                 result: object = super().invoke(ctx)
             sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
             return result
@@ -87,7 +89,7 @@ class Program(click.Group):
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             ctx.exit(DONE)
         except KeyboardInterrupt:
-            click.echo("interrupted", err=True)
+            say("interrupted", err=True)
             ctx.exit(INTERRUPTED)
         except OSError as error:
             place = "" if error.filename is None else f"{error.filename}: "
@@ -108,6 +110,10 @@ class Failure(click.ClickException):
 
     exit_code = BAD_INPUT
 
+    def format_message(self) -> str:
+        """Say it without what would control a terminal."""
+        return visible(super().format_message())
+
 
 @click.group(cls=Program, invoke_without_command=True, context_settings=DISPLAY)
 @click.version_option(__version__, "-V", "--version", message="eventsim %(version)s")
@@ -122,4 +128,4 @@ def main(context: click.Context) -> None:
     3 stopped early for a reason of physics or digits; 130 interrupted. What happened before an early stop is kept.
     """
     if context.invoked_subcommand is None:
-        click.echo(BEGIN)
+        say(BEGIN)

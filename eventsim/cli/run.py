@@ -11,6 +11,7 @@ from eventsim import suffixes
 from eventsim.cli.engine_options import DT_HELP, KNOWN, OPTION_HELP, engine_options
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 from eventsim.cli.target import Files, writable
 
 FIRST_SCENE = "break"
@@ -172,10 +173,10 @@ def command(
 
         write_states(files.state, run.scene, [run.state])
     if as_json:
-        click.echo(as_json_text(summary_data(asked, run, files, estimate)))
+        say(as_json_text(summary_data(asked, run, files, estimate)))
     elif not quiet:
-        click.echo(summary_text(asked, run, files, estimate))
+        say(summary_text(asked, run, files, estimate))
     if run.stopped in EXITS:
         if as_json or quiet:
-            click.echo(f"stopped early: {run.reason or run.stopped}", err=True)
+            say(f"stopped early: {run.reason or run.stopped}", err=True)
         click.get_current_context().exit(EXITS[run.stopped])

@@ -10,6 +10,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import Verb, Whole
+from eventsim.cli.output import say
 from eventsim.errors import SceneError
 
 if TYPE_CHECKING:
@@ -73,10 +74,10 @@ def log_of(
     with ProgressBar(quiet=quiet) as progress:
         run = simulate(chosen, until=until, events=events, log=True, progress=progress)
     if run.stopped == "interrupted":
-        click.echo("interrupted", err=True)
+        say("interrupted", err=True)
         click.get_current_context().exit(INTERRUPTED)
     if run.reason is not None and not quiet:
-        click.echo(f"stopped early: {run.reason}", err=True)
+        say(f"stopped early: {run.reason}", err=True)
     log = run.log
     assert log is not None
     return log

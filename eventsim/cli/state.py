@@ -8,6 +8,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.output import say
 from eventsim.cli.target import writable
 
 
@@ -91,9 +92,9 @@ def command(
             data["states"] = [
                 {"time": s.time, "position": s.position.tolist(), "velocity": s.velocity.tolist()} for s in states
             ]
-        click.echo(as_json_text({**data, "out": None if target is None else str(target)}))
+        say(as_json_text({**data, "out": None if target is None else str(target)}))
     elif target is None:
         write_csv(sys.stdout.buffer, state_columns(events.scene, states))
     elif not quiet:
         disks = plural(len(events.scene.disks), "disk")
-        click.echo(f"{disks} at {plural(len(times), 'time')} written to {target}")
+        say(f"{disks} at {plural(len(times), 'time')} written to {target}")

@@ -9,6 +9,7 @@ import click
 from eventsim import suffixes
 from eventsim.cli.exits import FAILED, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
+from eventsim.cli.output import say
 from eventsim.cli.signals import terminable
 from eventsim.cli.target import writable
 
@@ -114,7 +115,7 @@ def command(
 
     cases = chosen(names)
     if listing:
-        click.echo(as_listing(cases))
+        say(as_listing(cases))
         return
     wanted = [engine_named(name).name for name in dict.fromkeys(engines)] or list(ENGINES)
     total, done = len(cases) * len(wanted), 0
@@ -133,9 +134,9 @@ def command(
 
         write_atlas(verdicts, figure_path)
     if as_json:
-        click.echo(as_json_text(as_data(verdicts, figure_path, table_path)))
+        say(as_json_text(as_data(verdicts, figure_path, table_path)))
     elif not quiet:
-        click.echo(as_text(verdicts))
+        say(as_text(verdicts))
     if any(verdict.fault for verdict in verdicts):
         click.get_current_context().exit(FAILED)
 
@@ -159,9 +160,9 @@ def _soak(seeds: range, engines: tuple[str, ...], workers: int, as_json: bool, q
         interrupted = True
     seeds = seeds[:done]
     if as_json:
-        click.echo(as_json_text(soak_data(seeds, engines, findings)))
+        say(as_json_text(soak_data(seeds, engines, findings)))
     elif not quiet:
-        click.echo(soak_text(seeds, engines, findings))
+        say(soak_text(seeds, engines, findings))
     if interrupted:
         click.get_current_context().exit(INTERRUPTED)
     if findings:

@@ -10,6 +10,7 @@ import click
 from eventsim import suffixes
 from eventsim.cli.exits import BAD_INPUT, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
+from eventsim.cli.output import say
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ def command(
                 name=scene,
             )
     except KeyboardInterrupt:
-        click.echo(f"interrupted; the same command again goes on from here ({target}.journal)", err=True)
+        say(f"interrupted; the same command again goes on from here ({target}.journal)", err=True)
         click.get_current_context().exit(INTERRUPTED)
     if drawn is not None:
         from eventsim.show.figures.equation_of_state import write_equation_of_state
@@ -118,10 +119,10 @@ def command(
     if as_json:
         data = {"scene": scene, "out": str(target), "figure": None if drawn is None else str(drawn)}
         counts = {"runs": len(rows), "failed": failed, "equilibrated": settled}
-        click.echo(as_json_text({**data, **counts, "elapsed_s": perf_counter() - began}))
+        say(as_json_text({**data, **counts, "elapsed_s": perf_counter() - began}))
     elif not quiet:
         why = next((f" (the first: {row['failed']})" for row in rows if row["failed"] is not None), "")
-        click.echo(
+        say(
             f"{plural(len(rows), 'run')} of {scene} in {target}: {settled} equilibrated, {failed} failed{why};"
             f" {perf_counter() - began:.3g} s"
         )

@@ -6,6 +6,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from eventsim.cli.output import visible
+
 CLEAR = "\r\x1b[K"
 
 
@@ -16,7 +18,7 @@ def telling(quiet: bool) -> Iterator[Callable[[str], None]]:
 
     def tell(text: str) -> None:
         if wanted:
-            sys.stderr.write(f"{CLEAR}{text[:100]}")
+            sys.stderr.write(f"{CLEAR}{visible(text)[:100]}")
             sys.stderr.flush()
 
     try:

@@ -10,6 +10,7 @@ import click
 from eventsim import suffixes
 from eventsim.cli.exits import FAILED
 from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.output import say
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
@@ -122,11 +123,11 @@ def command(
             "left_out": comparison.left_out,
             "verdict": verdict(comparison),
         }
-        click.echo(as_json_text(data))
+        say(as_json_text(data))
     elif not quiet:
-        click.echo(_text(scene, comparison, verdict(comparison)))
+        say(_text(scene, comparison, verdict(comparison)))
     if not comparison.agrees:
-        click.echo("the event-driven engines do not write the same log", err=True)
+        say("the event-driven engines do not write the same log", err=True)
         click.get_current_context().exit(FAILED)
 
 

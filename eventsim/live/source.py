@@ -55,7 +55,7 @@ class Text:
         """Return the scene; other files it names are not read."""
         try:
             data = tomllib.loads(self.text)
-        except tomllib.TOMLDecodeError as error:
+        except ValueError as error:
             raise SceneError(f"this is not valid TOML: {error}") from None
         except RecursionError:
             raise SceneError("this is nested too deeply for a scene file") from None

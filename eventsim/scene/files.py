@@ -13,7 +13,7 @@ from typing import Any
 from eventsim.errors import SceneError
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import Domain, Open
-from eventsim.scene.overrides import apply_overrides
+from eventsim.scene.overrides import apply_overrides, is_shallow
 from eventsim.scene.scene import Scene
 from eventsim.scene.walls.wall import Wall, keys_of
 
@@ -84,6 +84,8 @@ def scene_from_dict(
     from eventsim.scene.tables import read_scene
 
     try:
+        if not is_shallow(data):
+            raise SceneError("is nested too deeply for a scene")
         return read_scene(data, Path(base_dir or "."), seed)
     except SceneError as error:
         if source is None:
@@ -201,6 +203,8 @@ def _read(path: Path) -> dict[str, Any]:
         raise SceneError(f"{path}: holds a number with too many digits") from None
     if not isinstance(data, dict):
         raise SceneError(f"{path}: must be a JSON object with the keys of a scene")
+    if not is_shallow(data):
+        raise SceneError(f"{path}: is nested too deeply for a scene file")
     return data
 
 

@@ -10,6 +10,9 @@ from typing import Any
 
 from eventsim.errors import SceneError
 
+DEEPEST = 30
+"""Tables and lists within each other; the points of a polygon, the deepest that a scene has, are the fourth."""
+
 
 def apply_overrides(data: Mapping[str, Any], overrides: Iterable[str] | None) -> dict[str, Any]:
     """A copy of a scene's tables with keys set as in ["restitution=0.9", "gas.0.count=500"].
@@ -20,6 +23,8 @@ def apply_overrides(data: Mapping[str, Any], overrides: Iterable[str] | None) ->
     Raises:
         SceneError: with every setting that has no `=` or whose path does not lead anywhere.
     """
+    if not is_shallow(data):
+        raise SceneError("the tables are nested too deeply for a scene")
     changed = deepcopy(dict(data))
     problems: list[str] = []
     for override in overrides or ():
@@ -37,6 +42,20 @@ def apply_overrides(data: Mapping[str, Any], overrides: Iterable[str] | None) ->
     if problems:
         raise SceneError(problems)
     return changed
+
+
+def is_shallow(data: object) -> bool:
+    """Whether tables are not nested so deeply that whatever calls itself would give up."""
+    level = [data]
+    for _ in range(DEEPEST):
+        inner: list[object] = []
+        for here in level:
+            if isinstance(here, Mapping):
+                inner += here.values()
+            elif isinstance(here, list | tuple):
+                inner += here
+        level = inner
+    return not level
 
 
 def _value(written: str) -> Any:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.letters import is_name
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.names import DiskNames, SelectedNames
@@ -89,7 +90,9 @@ def touching_by_rounding(scene: Scene) -> list[str]:
 
 
 def _scalar_problems(scene: Scene) -> Iterator[str]:
-    """Rules for the single numbers of a scene."""
+    """Rules for the single numbers of a scene, and its name."""
+    if scene.name is not None and not is_name(scene.name):
+        yield f"name = {scene.name!r}: must be one line without control characters"
     if scene.gravity is not None and not is_place(scene.gravity):
         yield f"gravity = {list(scene.gravity)}: must be two finite numbers, at most {LONGEST}"
     elif scene.gravity is not None and 0.0 < max(map(abs, scene.gravity)) < SHORTEST:

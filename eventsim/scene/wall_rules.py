@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from eventsim.letters import is_name
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.numbers import is_length, is_place
 from eventsim.scene.walls import Wall, wall_names
@@ -22,8 +23,8 @@ def _name_problems(walls: Sequence[Wall]) -> Iterator[str]:
     """Names are unique in the log, edges included, and fit into a line of it."""
     owner: dict[str, int] = {}
     for i, (wall, name) in enumerate(zip(walls, wall_names(walls), strict=True)):
-        if not name.strip() or any(mark in name for mark in ',"\n\r'):
-            rule = "must not be empty nor hold a comma, a quotation mark or a line end"
+        if not name.strip() or not is_name(name) or any(mark in name for mark in ',"'):
+            rule = "must not be empty nor hold a comma, a quotation mark, a line end or a control character"
             yield f"wall[{i}].name = {name!r}: {rule}"
         elif name in BOUNDARY_NAMES:
             yield f"wall[{i}].name = {name!r}: left, right, bottom and top are the sides of the domain"

@@ -1,4 +1,4 @@
-"""Output: which formats a file's name may ask for."""
+"""Output: which formats a file's name may ask for, and how names are drawn."""
 
 from __future__ import annotations
 
@@ -16,3 +16,8 @@ def suffix_of(path: Path, suffixes: Sequence[str], what: str) -> str:
             f"{path}: {what} is written as {', '.join(suffixes)}; the file's name must end in one of them"
         )
     return suffix
+
+
+def as_written(text: str) -> str:
+    """Return a name as matplotlib draws it letter by letter: without it, what stands between two dollars is a formula."""
+    return text.replace("$", r"\$")

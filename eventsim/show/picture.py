@@ -24,6 +24,7 @@ from eventsim.show.colouring import colouring_of
 from eventsim.show.frames import Frame, pace_of_log
 from eventsim.show.images import disks_with_images, lines_with_images
 from eventsim.show.layout import DPI, Bars, layout
+from eventsim.show.output import as_written
 from eventsim.show.palette import DARK, LIGHT
 from eventsim.show.strokes import Trails, arrows
 
@@ -84,7 +85,7 @@ class Picture:
         self._trails = Trails(replay, trail_frames) if look.trails else None
         self._trail = self._path_artist(self._palette.trail)
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
-        self._bars = Bars(self._figure, self.layout, self._palette, replay.log.scene.name or "")
+        self._bars = Bars(self._figure, self.layout, self._palette, as_written(replay.log.scene.name or ""))
         self._bars.draw_key(self._colouring.key)
         self._clock_format = _clock_format(times)
         pace = pace_of_log(replay.log)

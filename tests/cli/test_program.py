@@ -7,10 +7,10 @@ import sys
 import click
 import pytest
 
+import eventsim as es
+from eventsim import suffixes
 from eventsim.cli import program
-from eventsim.cli.target import LOG_SUFFIXES, STATE_SUFFIXES
-from eventsim.record import files
-from eventsim.replay import states
+from eventsim.replay.states import write_states
 
 
 def test_alone_it_prints_three_commands_to_begin_with(eventsim):
@@ -88,6 +88,11 @@ def test_a_reader_who_has_had_enough_is_no_error():
     assert done.stderr == ""
 
 
-def test_the_suffixes_that_are_offered_are_those_that_can_be_written():
-    assert LOG_SUFFIXES == files.SUFFIXES
-    assert STATE_SUFFIXES == states.SUFFIXES
+def test_the_suffixes_that_are_offered_are_those_that_can_be_written(tmp_path):
+    run = es.simulate(es.gallery("two-disks"), events=5, log=True)
+    for suffix in suffixes.LOGS:
+        run.log.save(tmp_path / f"log{suffix}")
+        assert len(es.load_log(tmp_path / f"log{suffix}")) == 5
+    for suffix in suffixes.STATES:
+        write_states(tmp_path / f"state{suffix}", run.scene, [run.state])
+    assert {path.suffix for path in tmp_path.iterdir()} == {*suffixes.LOGS, *suffixes.STATES}

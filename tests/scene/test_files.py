@@ -68,7 +68,7 @@ def scenes(draw):
         until=draw(st.none() | st.floats(2, 1e6)),
         events=draw(st.none() | st.integers(0, 10**12)),
         start_time=draw(st.floats(-1e6, 1)),
-        name=draw(st.none() | st.text(st.characters(exclude_categories=["Cs"]))),
+        name=draw(st.none() | st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"]))),
     )
 
 

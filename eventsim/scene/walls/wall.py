@@ -86,7 +86,7 @@ class Wall(ABC):
                         yield f".{name} = {list(place)}: must be two finite numbers, at most {LONGEST}"
 
     def period_problems(self, axis: int, origin: float, length: float) -> Iterator[str]:
-        """Rules along an `axis` of a domain that repeats there, a `length` from `origin` on; each begins with the key that breaks it."""
+        """Rules along an `axis` that repeats, a `length` from `origin` on; each begins with the key that breaks it."""
         extents = [part.bounds() for part in self.parts("")]
         if max(high[axis] - low[axis] for low, high in extents) > MOST_PERIODS * length:
             letter = "xy"[axis]

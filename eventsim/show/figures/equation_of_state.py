@@ -18,6 +18,7 @@ from eventsim.measure.theory import KOLAFA_ROTTNER_UP_TO, compressibility_factor
 from eventsim.record.events import Floats
 from eventsim.show.figures.style import BLUE, GREEN, ORANGE, PINK, RED, label
 from eventsim.show.figures.write import save_figure
+from eventsim.show.output import as_written
 from eventsim.show.palette import LIGHT
 from eventsim.sweep.task import Row
 
@@ -60,7 +61,7 @@ def _draw_z(axes: Axes, rows: Sequence[Row]) -> None:
     for (words, members), style in zip(series_of(rows), _styles(), strict=False):
         eta, z, error, _, _, settled = averages(members)
         axes.errorbar(eta, z, error, fmt="none", color=style["color"])
-        axes.plot(eta[settled], z[settled], label=words or "measured", **style)
+        axes.plot(eta[settled], z[settled], label=as_written(words) or "measured", **style)
         axes.plot(eta[~settled], z[~settled], mfc="white", **style)
         doubtful |= bool((~settled).any())
     if doubtful:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from eventsim.record.events import Floats
 from eventsim.replay.log import EventLog
 from eventsim.show.colouring import amounts
+from eventsim.show.output import as_written
 from eventsim.show.palette import KINDS, LIGHT
 
 SIZE, DPI = (7.2, 4.4), 150
@@ -48,6 +49,6 @@ def shades_of(n: int) -> Floats:
 
 
 def name_of(log: EventLog) -> str:
-    """Return how a title calls the run that a log tells: by its scene, or else by its file."""
+    """Return how a title calls the run that a log tells, as it is drawn: by its scene, or else by its file."""
     file = None if log.path is None else log.path.name
-    return log.scene.name or file or "this scene"
+    return as_written(log.scene.name or file or "this scene")

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from eventsim.show.figures.style import label
+from eventsim.show.output import as_written
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import NAMES, look
 from eventsim.show.versus.losses import STEP, draw_energy, draw_missed, scale_steps
@@ -26,7 +27,7 @@ def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> None:
     """Draw a comparison to `path`: .png, .svg or .pdf.  Raises EventsimError where it cannot be written."""
     figure = Figure(figsize=(15.0, 9.6), dpi=110, facecolor="white", layout="constrained")
     first = verdict(comparison)[0]
-    figure.suptitle(fill(f"{comparison.name}: {first}", 150), fontsize=12, x=0.01, ha="left", color=LIGHT.ink)
+    figure.suptitle(as_written(fill(f"{comparison.name}: {first}", 150)), fontsize=12, x=0.01, ha="left", color=LIGHT.ink)
     grid = figure.subplots(2, 3)
     draw_missed(grid[0, 0], comparison)
     draw_energy(grid[0, 1], comparison)

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from eventsim.show.figures.style import label
+from eventsim.show.output import as_written
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import look
 from eventsim.show.versus.notes import ACROSS, note
@@ -56,7 +57,7 @@ def draw_work(axes: Axes, curves: Curves) -> None:
     else:
         _draw_advantages(axes, curves)
     title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
-    label(axes, "CPU seconds per time unit of the scene", ERRORS[curves.task.measure], title)
+    label(axes, "CPU seconds per time unit of the scene", ERRORS[curves.task.measure], as_written(title))
     axes.title.set_fontsize(10.5)
 
 
