@@ -39,20 +39,20 @@ if TYPE_CHECKING:
     from eventsim.replay.log import load_log as load_log
     from eventsim.run import ENGINES as ENGINES
     from eventsim.run import Run as Run
-    from eventsim.scene import Arc as Arc
     from eventsim.scene import Box as Box
     from eventsim.scene import Channel as Channel
-    from eventsim.scene import Circle as Circle
     from eventsim.scene import Disks as Disks
     from eventsim.scene import Open as Open
     from eventsim.scene import Periodic as Periodic
-    from eventsim.scene import Polygon as Polygon
-    from eventsim.scene import Polyline as Polyline
     from eventsim.scene import Restitution as Restitution
     from eventsim.scene import Scene as Scene
-    from eventsim.scene import Segment as Segment
     from eventsim.scene.files import load_scene as load_scene
     from eventsim.scene.gallery import gallery as gallery
+    from eventsim.scene.walls import Arc as Arc
+    from eventsim.scene.walls import Circle as Circle
+    from eventsim.scene.walls import Polygon as Polygon
+    from eventsim.scene.walls import Polyline as Polyline
+    from eventsim.scene.walls import Segment as Segment
     from eventsim.simulation import Simulation as Simulation
     from eventsim.simulation import resume as resume
     from eventsim.simulation import simulate as simulate
@@ -64,11 +64,11 @@ _HOMES = {
     "Periodic": "scene",
     "Channel": "scene",
     "Open": "scene",
-    "Segment": "scene",
-    "Polygon": "scene",
-    "Polyline": "scene",
-    "Arc": "scene",
-    "Circle": "scene",
+    "Segment": "scene.walls",
+    "Polygon": "scene.walls",
+    "Polyline": "scene.walls",
+    "Arc": "scene.walls",
+    "Circle": "scene.walls",
     "Restitution": "scene",
     "load_scene": "scene.files",
     "gallery": "scene.gallery",
