@@ -14,8 +14,8 @@ from eventsim.engines.reference.cells import images_of, plan
 from eventsim.scene.disks import Disks
 from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
+from eventsim.scene.scene import touching_by_rounding
 from eventsim.scene.stage import stage_of
-from eventsim.scene.validate import touching_by_rounding
 from eventsim.scene.walls import wall_names
 from eventsim.validate.near_ties import NearTie, near_ties
 

@@ -4,8 +4,7 @@ from eventsim.scene.disks import Disks
 from eventsim.scene.domain import Box, Channel, Domain, Open, Periodic
 from eventsim.scene.files import apply_overrides, load_scene, scene_from_dict, scene_to_dict, scene_to_toml
 from eventsim.scene.restitution import Restitution
-from eventsim.scene.scene import Scene
-from eventsim.scene.validate import touching_by_rounding
+from eventsim.scene.scene import Scene, touching_by_rounding
 from eventsim.scene.walls import Arc, Circle, Polygon, Polyline, Segment, Wall, feature_names, wall_names
 
 __all__ = [

@@ -10,14 +10,11 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 from decimal import Decimal
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eventsim.scene.disks import Floats
-
-if TYPE_CHECKING:
-    from eventsim.scene.scene import Scene
+from eventsim.scene.scene import Scene
 
 SLOWEST, FASTEST = 2.0**-128, 2.0**128
 """Between these, fourth powers of the largest speed, squares of energies, are floats, and those of much smaller ones too."""

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from eventsim.scene.numbers import LONGEST
-from eventsim.scene.walls import parts_of
-
-if TYPE_CHECKING:
-    from eventsim.scene.scene import Scene
+from eventsim.scene.disks import Disks
+from eventsim.scene.domain import Domain
+from eventsim.scene.numbers import LONGEST, Point
+from eventsim.scene.walls import Wall, parts_of
 
 MOST, LARGEST = 1e300, 1e305
 """A number of which many can be added; one of which a few can, and whose inverse has all its digits."""
@@ -25,22 +23,22 @@ USUAL_LENGTHS = 1e-9, 1e9
 """Between these, a speed times a length or over it has as many digits as the speed."""
 
 
-def scale_problems(scene: Scene) -> Iterator[str]:
-    """Rules for numbers together, of a scene whose numbers each keep their own.
+def scale_problems(disks: Disks, domain: Domain, walls: Sequence[Wall], gravity: Point | None) -> Iterator[str]:
+    """Rules for numbers together, of parts of a scene whose numbers each keep their own.
 
     Straight flights take no squares of speeds, parabolas do.
     """
-    extent, shortest = _lengths(scene)
-    speed = np.abs(scene.disks.velocity).max(axis=1)
+    extent, shortest = _lengths(disks, domain, walls)
+    speed = np.abs(disks.velocity).max(axis=1)
     fastest = float(speed.max())
     yield from _slow_problems(float(speed[speed > 0.0].min(initial=math.inf)), extent, shortest)
-    mass = scene.disks.mass[(scene.disks.mass > 0.0) & np.isfinite(scene.disks.mass)]
+    mass = disks.mass[(disks.mass > 0.0) & np.isfinite(disks.mass)]
     lightest, heaviest = (float(mass.min()), float(mass.max())) if len(mass) else (1.0, 0.0)
-    if scene.gravity is not None:
-        yield from _falling_problems(max(map(abs, scene.gravity)), fastest, extent, heaviest)
+    if gravity is not None:
+        yield from _falling_problems(max(map(abs, gravity)), fastest, extent, heaviest)
         return
     # if all energy came to the lightest disk
-    driven = fastest * math.sqrt(len(scene.disks)) * max(math.sqrt(heaviest) / math.sqrt(lightest), 1.0)
+    driven = fastest * math.sqrt(len(disks)) * max(math.sqrt(heaviest) / math.sqrt(lightest), 1.0)
     if not driven * max(extent, 1.0) <= LARGEST:
         yield (
             f"velocity: {driven:g}, the most that a disk can come to, times the largest length, {extent:g}, must be at"
@@ -89,11 +87,10 @@ def _falling_problems(pull: float, fastest: float, extent: float, heaviest: floa
         yield f"mass: {heaviest:g}, and the energy of such a disk, must be at most {MOST}"
 
 
-def _lengths(scene: Scene) -> tuple[float, float]:
+def _lengths(disks: Disks, domain: Domain, walls: Sequence[Wall]) -> tuple[float, float]:
     """The largest length of a scene, coordinates among them, and the shortest one that is none."""
-    disks, domain = scene.disks, scene.domain
     places, sizes = [*domain.origin], [*(domain.size or ())]
-    for part in parts_of(scene.walls):
+    for part in parts_of(walls):
         low, high = part.bounds()
         places += [*low, *high]
         sizes.append(max(high[0] - low[0], high[1] - low[1]))

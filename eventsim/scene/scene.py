@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from eventsim.errors import SceneError
 from eventsim.scene.disks import Disks
@@ -11,8 +12,11 @@ from eventsim.scene.domain import DOMAINS, Domain
 from eventsim.scene.names import DiskNames
 from eventsim.scene.numbers import Point, number, optional_number, optional_whole, point
 from eventsim.scene.restitution import Restitution, as_restitution
-from eventsim.scene.validate import find_problems
+from eventsim.scene.validate import find_problems, scalar_problems, touching_notes
 from eventsim.scene.walls import WALLS, Wall
+
+SCALARS = "name", "gravity", "restitution", "contact_duration", "equilibration", "until", "events", "start_time"
+"""What has rules of its own."""
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -70,7 +74,7 @@ class Scene:
         """
         _demand_types(disks, domain, walls, name)
         pull = None if gravity is None else point(gravity, "gravity")
-        fields = {
+        fields: dict[str, Any] = {
             "disks": disks,
             "domain": domain,
             "walls": tuple(walls),
@@ -85,7 +89,8 @@ class Scene:
         }
         for key, value in fields.items():
             object.__setattr__(self, key, value)
-        problems = find_problems(self, names)
+        told = list(scalar_problems(**{key: fields[key] for key in SCALARS}))
+        problems = find_problems(disks, domain, self.walls, self.gravity, names or DiskNames(), told)
         if problems:
             raise SceneError(problems)
 
@@ -113,3 +118,8 @@ def _demand_types(disks: object, domain: object, walls: Sequence[object], name: 
         problems.append(f"name = {name!r}: must be a text")
     if problems:
         raise SceneError(problems)
+
+
+def touching_by_rounding(scene: Scene) -> list[str]:
+    """The overlaps of a scene that are so small that they count as touching, one sentence each."""
+    return touching_notes(scene.disks, scene.domain, scene.walls)

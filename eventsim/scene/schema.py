@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
-from numbers import Real
 from typing import Any, NamedTuple
 
 from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFieldInvalid, Schema
 
 from eventsim.scene.domain import DOMAINS
-from eventsim.scene.numbers import as_whole
+from eventsim.scene.numbers import as_number, as_whole
 from eventsim.scene.walls import WALLS
 from eventsim.scene.walls.wall import LENGTH, NAME, POINTS, keys_of
 from eventsim.scene.walls.wall import POINT as PLACE
@@ -22,15 +21,10 @@ TABLE_LISTS = ("disk", "disks_file", "gas", "wall")
 
 def number(value: object) -> float:
     """A real number as a float."""
-    if type(value) is float:
-        # Nearly always; long lists of disks are read much faster.
-        return value
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise Invalid("must be a number")
     try:
-        return float(value)
-    except OverflowError:
-        raise Invalid("is too large for a number") from None
+        return as_number(value)
+    except (TypeError, OverflowError) as error:
+        raise Invalid(str(error)) from None
 
 
 def mass(value: object) -> float:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from eventsim.scene.numbers import (
     LONGEST,
     RADII,
     SHORTEST,
+    Point,
     is_length,
     is_place,
 )
@@ -30,12 +30,10 @@ from eventsim.scene.overlaps import (
     feature_overlaps,
     pair_overlaps,
 )
+from eventsim.scene.restitution import Restitution
 from eventsim.scene.scale_rules import scale_problems
 from eventsim.scene.wall_rules import wall_problems
-from eventsim.scene.walls import parts_of
-
-if TYPE_CHECKING:
-    from eventsim.scene.scene import Scene
+from eventsim.scene.walls import Wall, parts_of
 
 # Of many problems of one kind so many are written out; the rest are counted.
 WRITTEN_OUT = 3
@@ -46,41 +44,43 @@ LIGHTEST = 1e-320
 NO_DISKS = "disk: a scene needs at least one disk"
 
 
-def find_problems(scene: Scene, names: DiskNames | None = None) -> list[str]:
-    """Every rule that the scene breaks, one sentence each; many of one kind are counted.
+def find_problems(
+    disks: Disks, domain: Domain, walls: Sequence[Wall], gravity: Point | None, names: DiskNames, others: Sequence[str]
+) -> list[str]:
+    """Every rule that the parts of a scene break, one sentence each; many of one kind are counted.
 
     Args:
-        scene: the scene; only types have been checked so far.
-        names: how to call the disks; by index if None.
+        disks, domain, walls, gravity: the parts; only types have been checked so far.
+        names: how to call the disks.
+        others: rules that its single numbers break (`scalar_problems`).
     """
-    names = names or DiskNames()
-    shapes = [*domain_problems(scene.domain), *wall_problems(scene.walls, scene.domain)]
-    problems = [*_scalar_problems(scene), *shapes]
-    if not len(scene.disks):
+    shapes = [*domain_problems(domain), *wall_problems(walls, domain)]
+    problems = [*others, *shapes]
+    if not len(disks):
         return [*problems, NO_DISKS]
-    sound = np.ones(len(scene.disks), dtype=np.bool_)
-    problems += number_problems(scene.disks, names, sound)
-    problems += [] if problems else list(scale_problems(scene))
+    sound = np.ones(len(disks), dtype=np.bool_)
+    problems += number_problems(disks, names, sound)
+    problems += [] if problems else list(scale_problems(disks, domain, walls, gravity))
     # In a domain that is none, among walls that are none, a place would mean nothing.
     if not shapes:
         if sound.all():
-            problems += _place_problems(scene.disks, scene, names)
+            problems += _place_problems(disks, domain, walls, names)
         else:
             index = np.flatnonzero(sound)
-            problems += _place_problems(scene.disks.select(index), scene, SelectedNames(names, index))
+            problems += _place_problems(disks.select(index), domain, walls, SelectedNames(names, index))
     return problems
 
 
-def touching_by_rounding(scene: Scene) -> list[str]:
-    """The overlaps of a scene that are so small that they count as touching, one sentence each."""
-    disks, domain, pieces = scene.disks, scene.domain, parts_of(scene.walls)
+def touching_notes(disks: Disks, domain: Domain, walls: Sequence[Wall]) -> list[str]:
+    """The overlaps that are so small that they count as touching, one sentence each."""
+    pieces = parts_of(walls)
     pairs = pair_overlaps(disks, domain).touching()
-    walls = feature_overlaps(disks, domain, pieces).touching()
+    across = feature_overlaps(disks, domain, pieces).touching()
     sides = boundary_overlaps(disks, domain).touching()
     touch = "overlap by {:.3g}: touching, but for rounding"
     return [
         *_summary(pairs, "pairs like this", lambda i, j, d: f"disk[{i}] and disk[{j}] " + touch.format(d)),
-        *_summary(walls, "disks at walls", lambda i, w, d: f"disk[{i}] and wall {pieces[w].name} " + touch.format(d)),
+        *_summary(across, "disks at walls", lambda i, w, d: f"disk[{i}] and wall {pieces[w].name} " + touch.format(d)),
         *_summary(
             sides,
             "disks at a side",
@@ -89,30 +89,39 @@ def touching_by_rounding(scene: Scene) -> list[str]:
     ]
 
 
-def _scalar_problems(scene: Scene) -> Iterator[str]:
+def scalar_problems(
+    *,
+    name: str | None,
+    gravity: Point | None,
+    restitution: Restitution | None,
+    contact_duration: float | None,
+    equilibration: float | None,
+    start_time: float,
+    until: float | None,
+    events: int | None,
+) -> Iterator[str]:
     """Rules for the single numbers of a scene, and its name."""
-    if scene.name is not None and not is_name(scene.name):
-        yield f"name = {scene.name!r}: must be one line without control characters"
-    if scene.gravity is not None and not is_place(scene.gravity):
-        yield f"gravity = {list(scene.gravity)}: must be two finite numbers, at most {LONGEST}"
-    elif scene.gravity is not None and 0.0 < max(map(abs, scene.gravity)) < SHORTEST:
-        yield f"gravity = {list(scene.gravity)}: must be 0, or at least {SHORTEST} along an axis"
-    if scene.restitution is not None:
-        pair, wall = scene.restitution.pair, scene.restitution.wall
+    if name is not None and not is_name(name):
+        yield f"name = {name!r}: must be one line without control characters"
+    if gravity is not None and not is_place(gravity):
+        yield f"gravity = {list(gravity)}: must be two finite numbers, at most {LONGEST}"
+    elif gravity is not None and 0.0 < max(map(abs, gravity)) < SHORTEST:
+        yield f"gravity = {list(gravity)}: must be 0, or at least {SHORTEST} along an axis"
+    if restitution is not None:
+        pair, wall = restitution.pair, restitution.wall
         both = {"restitution": pair} if pair == wall else {"restitution.pair": pair, "restitution.wall": wall}
         for key, value in both.items():
             if not 0.0 <= value <= 1.0:
                 yield f"{key} = {value}: must be from 0 to 1"
-    if scene.contact_duration is not None and not 0.0 <= scene.contact_duration < math.inf:
-        yield f"contact_duration = {scene.contact_duration}: must be a finite time, at least 0"
-    if scene.equilibration is not None and not 0.0 <= scene.equilibration < math.inf:
-        yield f"equilibration = {scene.equilibration}: must be a finite time, at least 0"
-    if not math.isfinite(scene.start_time):
-        yield f"start_time = {scene.start_time}: must be finite"
-    elif scene.until is not None and not scene.start_time <= scene.until < math.inf:
-        yield f"until = {scene.until}: must be finite and not before start_time = {scene.start_time}"
-    if scene.events is not None and scene.events < 0:
-        yield f"events = {scene.events}: must be at least 0"
+    for key, span in {"contact_duration": contact_duration, "equilibration": equilibration}.items():
+        if span is not None and not 0.0 <= span < math.inf:
+            yield f"{key} = {span}: must be a finite time, at least 0"
+    if not math.isfinite(start_time):
+        yield f"start_time = {start_time}: must be finite"
+    elif until is not None and not start_time <= until < math.inf:
+        yield f"until = {until}: must be finite and not before start_time = {start_time}"
+    if events is not None and events < 0:
+        yield f"events = {events}: must be at least 0"
 
 
 def domain_problems(domain: Domain) -> Iterator[str]:
@@ -156,9 +165,8 @@ def number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) ->
     return problems
 
 
-def _place_problems(disks: Disks, scene: Scene, names: DiskNames) -> list[str]:
-    """Rules for where disks are, among the walls of a scene."""
-    domain = scene.domain
+def _place_problems(disks: Disks, domain: Domain, walls: Sequence[Wall], names: DiskNames) -> list[str]:
+    """Rules for where disks are, among walls."""
     outside, problems = _periodic_problems(disks, domain, names)
     problems += _summary(
         boundary_overlaps(disks, domain).broken(),
@@ -169,7 +177,7 @@ def _place_problems(disks: Disks, scene: Scene, names: DiskNames) -> list[str]:
         ),
     )
     problems += _room_problems(disks, domain, names)
-    pieces = parts_of(scene.walls)
+    pieces = parts_of(walls)
     problems += _summary(
         feature_overlaps(disks, domain, pieces).broken(),
         "disks that are across a wall",

@@ -24,7 +24,7 @@ from eventsim.scene import (
     feature_names,
     wall_names,
 )
-from eventsim.scene.validate import touching_by_rounding
+from eventsim.scene.scene import touching_by_rounding
 
 ONE = Disks([[1, 1]], radius=0.5)
 
