@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from eventsim.cli.words import paragraphs, point, short, title
 from eventsim.engines.reference.cells import ENOUGH_DISKS
+from eventsim.formulas.laws import law_of
 from eventsim.scene.names import plural
 from eventsim.scene.walls import SHAPES
 
@@ -110,19 +111,14 @@ def _flights(needs: Needs) -> str:
 
 
 def _contacts(needs: Needs) -> str:
-    if needs.restitution is None:
-        text = "elastic: energy is conserved; the run says in the end how far rounding changed it"
-        if needs.obstacles:
-            text = "elastic; but a moving disk of mass inf does work, so energy is not conserved"
-        return f"{text}; masses so uneven that velocities carry what their rounding leaves" if needs.low_parts else text
-    pair, wall = needs.restitution
-    text = f"restitution {short(pair)} between disks, {short(wall)} at walls: energy is lost"
-    if needs.contact_duration is not None:
-        return (
-            f"{text}; a contact within {short(needs.contact_duration)} of a disk's previous one is elastic "
-            "(TC model), so contacts cannot pile up without end"
-        )
-    return f"{text}; contacts may pile up at an instant, then the run stops and says so (contact_duration avoids it)"
+    law = law_of(needs.restitution, needs.contact_duration)
+    if law.loses_energy():
+        return law.words(short)
+    kept = "but a moving disk of mass inf does work, so energy is not conserved"
+    if not needs.obstacles:
+        kept = "energy is conserved; the run says in the end how far rounding changed it"
+    text = f"{law.words(short)}{'; ' if needs.obstacles else ': '}{kept}"
+    return f"{text}; masses so uneven that velocities carry what their rounding leaves" if needs.low_parts else text
 
 
 def _start(needs: Needs) -> str:

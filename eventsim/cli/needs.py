@@ -142,7 +142,7 @@ def needs_of(scene: Scene) -> Needs:
         shapes=dict(shapes),
         gravity=scene.gravity,
         restitution=None if scene.restitution is None else (scene.restitution.pair, scene.restitution.wall),
-        contact_duration=stage.contact_duration,
+        contact_duration=stage.law.duration,
         low_parts=stage.low_parts,
         low_places=stage.low_places,
         start_time=scene.start_time,

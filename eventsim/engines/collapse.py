@@ -38,13 +38,6 @@ LIES_STILL = (
 """What is left to do about a pile without any motion, which no contact duration can keep up."""
 
 
-def remedy(stage: Stage) -> str:
-    """What is left to do about contacts that pile up."""
-    if stage.contact_duration is None:
-        return "contact_duration, a time in the scene, lets such a scene go on"
-    return f"contact_duration = {stage.contact_duration:g}, as in this scene, did not prevent it; a longer one may"
-
-
 class Rounds(NamedTuple):
     """How the contacts of some disks came closer to each other.
 
@@ -71,16 +64,16 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
     if rounds.number < 2:
         return "digits", (
             f"the contacts of {names} at time {time:.9g} follow one another faster than the digits of float64 can tell, "
-            f"without a steady ratio before: they may or may not end; {remedy(stage)}"
+            f"without a steady ratio before: they may or may not end; {stage.law.remedy()}"
         )
     series = (
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
     if rounds.last < SETTLED * rounds.first:
-        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {remedy(stage)}"
+        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {stage.law.remedy()}"
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
-        f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {remedy(stage)}"
+        f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {stage.law.remedy()}"
     )
 
 

@@ -11,7 +11,6 @@ from typing import NamedTuple, TypeAlias
 from eventsim.errors import LogError
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
-    contact_restitution,
     flat_update,
     mass_fractions,
     pair_update,
@@ -132,7 +131,7 @@ class Expansion:
             ua, wa, ub, wb, *low, q = careful_pair_update(dx, dy, *speeds, *one.low, *other.low, *masses)
             one.low, other.low = (low[0], low[1]), (low[2], low[3])
         else:
-            restitution = self._restitution(self.stage.pair_restitution, t, a, b)
+            restitution = self._restitution(self.stage.law.pair, t, a, b)
             ua, wa, ub, wb, q = pair_update(dx, dy, *one.speed(t), *other.speed(t), *shares, restitution)
         self._begin(contact, a, t, place_a, (ua, wa))
         self._begin(contact, b, t, place_b, (ub, wb))
@@ -148,7 +147,7 @@ class Expansion:
         place, before = disk.place(t), disk.speed(t)
         if contact.image[1] != STRUCK:
             return self._rest_or_leave(contact, t, place, before)
-        restitution = self._restitution(self.stage.wall_restitution, t, a, a)
+        restitution = self._restitution(self.stage.law.wall, t, a, a)
         u, w = before
         axis = self._contacts.boundary_axis(contact)
         if self.stage.low_parts:
@@ -245,10 +244,10 @@ class Expansion:
         if b >= 0:
             low = (self.disks[i].low_place_at(t) for i in (a, b))
             dx, dy = self._contacts.apart(contact.image, places[a], places[b], *low)
-            e = self._restitution(self.stage.pair_restitution, t, a, b)
+            e = self._restitution(self.stage.law.pair, t, a, b)
             return JointContact(number[a], number[b], dx, dy, e)
         nx, ny = self._contacts.normal(contact, places[a], self.disks[a].low_place_at(t))
-        return JointContact(number[a], None, nx, ny, self._restitution(self.stage.wall_restitution, t, a, a))
+        return JointContact(number[a], None, nx, ny, self._restitution(self.stage.law.wall, t, a, a))
 
     def _begin(
         self, contact: Contact, i: int, t: float, place: tuple[float, float], speed: tuple[float, float]
@@ -266,7 +265,7 @@ class Expansion:
 
     def _restitution(self, restitution: float, t: float, a: int, b: int) -> float:
         since = t - self.disks[a].contact_time, t - self.disks[b].contact_time
-        return float(contact_restitution(restitution, self.stage.contact_duration, *since))
+        return float(self.stage.law.restitution(restitution, *since))
 
     def _only(self, entry: Entry, found: list[Contact]) -> Contact:
         if not found:

@@ -165,7 +165,7 @@ class Contacts:
     def _wall_time(self, a: int, number: int) -> tuple[float, int, int]:
         """Return (remainder, side, how) of the next contact of a disk with a surface."""
         disk, stage = self._disks[a], self._stage
-        surface, e = stage.surfaces[number], stage.series_restitution
+        surface, e = stage.surfaces[number], stage.law.series()
         if isinstance(surface, Boundary):
             axis, side = surface.axis, surface.side
             x, v, g = (disk.x, disk.vx, disk.gx) if axis == 0 else (disk.y, disk.vy, disk.gy)

@@ -52,7 +52,7 @@ def run_scene(engine: Engine, scene: Scene, stop: Stop, wanted: RunOptions | Non
     stage = stage_of(scene)
     # Where contacts can pile up, the last rows say how.
     with unmissed_interrupts():
-        session = engine.open(stage, keep_rows=wanted.rows or stage.loses_energy, **options)
+        session = engine.open(stage, keep_rows=wanted.rows or stage.law.loses_energy(), **options)
     return run_session(session, engine.name, scene, stop, wanted)
 
 

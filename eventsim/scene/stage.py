@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.formulas.laws import Law, law_of
 from eventsim.formulas.low_place import Low
 from eventsim.formulas.motion import periods
 from eventsim.formulas.real import Real
@@ -64,8 +65,7 @@ class Stage:
         low_places: whether places carry what their rounding leaves (`formulas/low_place`): the domain is very wide and
             nothing falls.
         gravity: (gx, gy), or None.
-        pair_restitution, wall_restitution: 1.0 where elastic.
-        contact_duration: time, or None.
+        law: the law of its contacts.
         period: the period along x and y; None along an axis without one.
         size: (width, height) of the domain, or None.
         boundaries: hard walls of the domain.
@@ -90,9 +90,7 @@ class Stage:
     low_parts: bool
     low_places: bool
     gravity: Point | None
-    pair_restitution: float
-    wall_restitution: float
-    contact_duration: float | None
+    law: Law
     period: tuple[float | None, float | None]
     size: Point | None
     boundaries: tuple[Boundary, ...]
@@ -136,19 +134,9 @@ class Stage:
         return slopes
 
     @property
-    def series_restitution(self) -> float:
-        """The restitution of bounces that follow each other ever faster; in the TC model they are elastic in the end."""
-        return self.wall_restitution if self.contact_duration is None else 1.0
-
-    @property
     def settles(self) -> bool:
-        """Whether disks end up lying on something: gravity, contacts that take energy, and no contact duration."""
-        return self.gravity is not None and self.loses_energy and self.contact_duration is None
-
-    @property
-    def loses_energy(self) -> bool:
-        """Whether contacts are inelastic, so that they can pile up."""
-        return self.pair_restitution < 1.0 or self.wall_restitution < 1.0
+        """Whether disks end up lying on something: gravity, and bounces that become ever lower."""
+        return self.gravity is not None and self.law.comes_to_rest()
 
 
 def stage_of(scene: Scene) -> Stage:
@@ -163,11 +151,10 @@ def stage_of(scene: Scene) -> Stage:
     boundaries, names = boundaries_of(domain)
     features = features_of(scene.walls, float(disks.radius.max()), corner, (along_x, along_y), len(names))
     restitution = scene.restitution
-    wall_restitution = 1.0 if restitution is None else restitution.wall
+    law = law_of(None if restitution is None else (restitution.pair, restitution.wall), scene.contact_duration)
     periodic = along_x is not None
     moves = bool(np.any(disks.velocity != 0.0))
     lightest, heaviest = _extreme_masses(disks.mass)
-    elastic = restitution is None or (restitution.pair == 1.0 and restitution.wall == 1.0)
     epoch_length = _epoch_length(x, y, vx, vy, disks.radius, size, scene.gravity)
     longest_periodic = LONGEST_PERIODIC_WINDOW
     diameter = 2.0 * float(disks.radius.max())
@@ -187,7 +174,7 @@ def stage_of(scene: Scene) -> Stage:
         common_mass=float(disks.mass[0]),
         mass_ratio=heaviest / lightest,
         low_parts=(
-            elastic
+            not law.loses_energy()
             and scene.gravity is None
             and heaviest / lightest > UNEVEN
             and lightest > 1.0 / EXTREME
@@ -195,15 +182,13 @@ def stage_of(scene: Scene) -> Stage:
         ),
         low_places=low_places,
         gravity=scene.gravity,
-        pair_restitution=1.0 if restitution is None else restitution.pair,
-        wall_restitution=wall_restitution,
-        contact_duration=None if restitution is None else scene.contact_duration,
+        law=law,
         period=(along_x, along_y),
         size=size,
         boundaries=boundaries,
         features=features,
         surfaces=(*boundaries, *features),
-        supports=_supports(scene, boundaries, features, wall_restitution == 1.0 or scene.contact_duration is not None, x, y),
+        supports=_supports(scene, boundaries, features, law.series() == 1.0, x, y),
         wall_names=(*names, *feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,

@@ -19,6 +19,7 @@ import numpy as np
 from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Counters, Session
 from eventsim.errors import EventsimError
+from eventsim.formulas.laws import TimeOfContact
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validate.entrants import Entrant, able
@@ -218,7 +219,8 @@ def _step_of(stage: Stage, entrant: Entrant, dt: float, error: ErrorOf) -> _Runn
 
 def _rest(task: Task, duration: float) -> _Runner:
     """An event-driven run of a pile with another contact duration."""
-    stage = replace(stage_of(task.scene), contact_duration=duration)
+    stage = stage_of(task.scene)
+    stage = replace(stage, law=TimeOfContact(stage.law.pair, stage.law.wall, duration))
     name = best_engine(stage.n)
     engine = ENGINES[name]
     return _Runner(name, "contact_duration", duration, lambda: engine.open(stage), _unrest_error(stage))

@@ -26,7 +26,7 @@ contacts, whose number would be the inverse root of AT_ONCE before the clock sta
 
 def instant_of(stage: Stage) -> tuple[float, int]:
     """(share of the clock, number): contacts of a disk closer than this are at one instant, and so many of them too many."""
-    if not (stage.pair_restitution == 1.0 and stage.wall_restitution == 1.0):
+    if stage.law.loses_energy():
         return AT_ONCE, AT_ONCE_INELASTIC
     most = AT_ONCE_ELASTIC
     if stage.mass is not None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
 from eventsim.engines.clock_end import at_the_last_epoch
-from eventsim.engines.collapse import LIES_STILL, named, remedy
+from eventsim.engines.collapse import LIES_STILL, named
 from eventsim.engines.drift import only_wraps
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
@@ -267,7 +267,7 @@ class ReferenceSession:
 
 def endless(state: EngineState, stage: Stage, i: int) -> tuple[str, str]:
     """An instant that does not end: why a run stops there, and a sentence on disk i, those around it and what is known."""
-    inelastic = stage.pair_restitution < 1.0 or stage.wall_restitution < 1.0
+    inelastic = stage.law.loses_energy()
     what = "collapse" if inelastic or stage.gravity is not None else "digits"
     pile = _pile(state, i)
     if what == "digits":
@@ -277,7 +277,7 @@ def endless(state: EngineState, stage: Stage, i: int) -> tuple[str, str]:
     else:
         cause = (
             "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
-            f"on a round one); {remedy(stage)}"
+            f"on a round one); {stage.law.remedy()}"
         )
     x, y = (float(at) for at in state.place(i, state.now))
     x, y = x + stage.corner[0], y + stage.corner[1]

@@ -43,7 +43,7 @@ class Predictor:
         self._features = tuple((first + k, feature.shape) for k, feature in enumerate(stage.features))
         self._shifts = stage.shifts
         self._falls = stage.gravity is not None
-        self._series_restitution = stage.series_restitution
+        self._series_restitution = stage.law.series()
         self._unmoved = _classes(stage)
         everyone = list(range(stage.n))
         self._everyone: list[Group] = [(everyone, image) for image in images_of(stage)]

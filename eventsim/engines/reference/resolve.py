@@ -13,7 +13,7 @@ from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
-from eventsim.formulas.impulse import contact_restitution, flat_update, pair_update, wall_update
+from eventsim.formulas.impulse import flat_update, pair_update, wall_update
 from eventsim.formulas.low_place import Low, apart
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
@@ -100,7 +100,7 @@ class Resolver:
             ua, wa = state.speed(a, t)
             ub, wb = state.speed(b, t)
             share_a, share_b = self._shares(a, b)
-            restitution = self._restitution(self._stage.pair_restitution, t, a, b)
+            restitution = self._restitution(self._stage.law.pair, t, a, b)
             ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
         self._rests.free(a, t)
         self._rests.free(b, t)
@@ -142,7 +142,7 @@ class Resolver:
         before = u, w
         # A series on one straight wall is over when it is, and may well be lower than the last bits before.
         still = not self._instants.is_series(i, place) and self._instants.is_still(i, t)
-        restitution = self._restitution(stage.wall_restitution, t, i, i)
+        restitution = self._restitution(stage.law.wall, t, i, i)
         if state.low_parts:
             u, w = self._careful_wall(i, *stage.normal(place, side, x, y, state.low_place(i, t)))
         elif (boundary := stage.boundary(place)) is None:
@@ -187,11 +187,11 @@ class Resolver:
             a, b = number[event.a], number[event.b] if event.b >= 0 else None
             if b is not None:
                 dx, dy = self._apart(event, *at[a], *at[b], low[a], low[b])
-                e = self._restitution(stage.pair_restitution, t, event.a, event.b)
+                e = self._restitution(stage.law.pair, t, event.a, event.b)
                 contacts.append(JointContact(a, b, dx, dy, e))
             else:
                 nx, ny = stage.normal(-1 - event.b, event.image[0], *at[a], low[a])
-                e = self._restitution(stage.wall_restitution, t, event.a, event.a)
+                e = self._restitution(stage.law.wall, t, event.a, event.a)
                 contacts.append(JointContact(a, None, nx, ny, e))
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
@@ -261,8 +261,7 @@ class Resolver:
         return boundary.touching(x, y, self._radius[i])
 
     def _restitution(self, restitution: float, t: Real, a: int, b: int) -> Real:
-        duration = self._stage.contact_duration
-        if duration is None:
+        law, state = self._stage.law, self._state
+        if law.duration is None:
             return restitution
-        state = self._state
-        return contact_restitution(restitution, duration, t - state.contact_time[a], t - state.contact_time[b])
+        return law.restitution(restitution, t - state.contact_time[a], t - state.contact_time[b])

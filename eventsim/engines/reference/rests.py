@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from eventsim.engines.base import Counters
-from eventsim.engines.collapse import remedy
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger
@@ -20,7 +19,7 @@ class TwoSupportsError(Exception):
 
     def __init__(self, disk: int, walls: list[str], stage: Stage) -> None:
         # with a contact duration there is rest only of disks that lie on a wall at the start, however long it is
-        then = f"; {remedy(stage)}" if stage.contact_duration is None else ", whatever the contact_duration"
+        then = f"; {stage.law.remedy()}" if stage.law.duration is None else ", whatever the contact_duration"
         super().__init__(
             f"disk {disk} comes to rest on two walls, {' and '.join(walls)}: only rest on one straight wall is modelled{then}"
         )

@@ -54,12 +54,12 @@ class ChipmunkSession(SteppedSession):
         space.gravity = stage.gravity or (0.0, 0.0)
         space.iterations = iterations
         space.collision_slop = SLOP * float(stage.radius.min()) if slop is None else slop
-        elasticity = math.sqrt(stage.pair_restitution)
+        elasticity = math.sqrt(stage.law.pair)
         self._bodies = [self._circle(pymunk, i, elasticity) for i in range(stage.n)]
         self._walls: dict[Any, int] = {}
         for shape, wall in self._outlines(pymunk):
             # Chipmunk multiplies the elasticities of the two shapes.
-            shape.elasticity = min(stage.wall_restitution / elasticity, 1.0) if elasticity else 0.0
+            shape.elasticity = min(stage.law.wall / elasticity, 1.0) if elasticity else 0.0
             space.add(shape)
             self._walls[shape] = wall
         self._disk_of = {shape: i for i, body in enumerate(self._bodies) for shape in body.shapes}

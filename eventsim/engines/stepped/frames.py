@@ -86,8 +86,7 @@ def _demand_known(stage: Stage) -> None:
     """Raise EventsimError for what the course project did not know."""
     reasons = {
         "it knows no periodic boundaries": stage.periodic,
-        "its contacts are elastic, this scene has a restitution": stage.pair_restitution < 1.0
-        or stage.wall_restitution < 1.0,
+        "its contacts are elastic, this scene has a restitution": stage.law.loses_energy(),
         "it needs masses that are finite and above 0": stage.mass is not None
         and not bool(np.all(np.isfinite(stage.mass) & (stage.mass > 0.0))),
         "its borders are parallel to the axes": not set(ground_kinds(stage)) <= {"Face", "Post"},

@@ -74,7 +74,7 @@ class PenaltySession(SteppedSession):
         )
         if not 0.0 < self.stiffness < math.inf:
             raise EventsimError(f"penalty: stiffness = {stiffness!r}: must be finite and above 0")
-        self._damping = damping_ratio(stage.pair_restitution), damping_ratio(stage.wall_restitution)
+        self._damping = damping_ratio(stage.law.pair), damping_ratio(stage.law.wall)
         self._neighbours = Neighbours(stage.n)
         touching = np.zeros((stage.n, len(self.ground.kind)))
         self._springs = Springs(np.zeros(stage.n), np.zeros(stage.n), np.zeros(0), touching)
