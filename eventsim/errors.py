@@ -36,3 +36,11 @@ class CollapseError(EventsimError):
 
 class CheckpointError(EventsimError):
     """A checkpoint cannot be read or written, or belongs to another scene or version."""
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return " (did you mean 'break'?)" for a word near to a known one, else an empty text."""
+    from difflib import get_close_matches  # only who errs pays for it
+
+    near = get_close_matches(word, list(known), n=1)
+    return f" (did you mean {near[0]!r}?)" if near else ""

@@ -72,7 +72,7 @@ class RunnableEngine:
         Raises EventsimError for options and wishes that the engine cannot fulfil.
         """
         stop = stop if isinstance(stop, Stop) else Stop(until=float(stop))
-        return Run.of(run_scene(self.engine, scene, stop, wanted, **options))
+        return Run.of(run_scene(self.engine, scene, stop, wanted, self.engine.options_from(options)))
 
 
 ENGINES = {name: RunnableEngine(engine) for name, engine in TABLE.items()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from inspect import signature
 from os import PathLike
 from typing import Any
 
@@ -19,10 +20,11 @@ from eventsim.replay.expand import expand_rows
 from eventsim.replay.log import EventLog
 from eventsim.run import Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
+from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.loop import run_scene
 from eventsim.runner.options import OnEvent, Progress, RunOptions, stop_of
 from eventsim.runner.outcome import diagnosed, provenance_of, state_of
-from eventsim.runner.writer import MemorySink
+from eventsim.runner.recording import MemorySink
 from eventsim.scene import Scene
 from eventsim.scene.difference import difference
 from eventsim.scene.numbers import FASTEST, LONGEST, number, point
@@ -46,6 +48,7 @@ def simulate(
     command: str | None = None,
     checkpoint: str | PathLike[str] | None = None,
     every: int | str = "60s",
+    interrupt: Interrupt | None = None,
     **options: Any,
 ) -> Run:
     """Simulate a scene until a time on its clock or for a number of events, whichever comes first.
@@ -55,30 +58,46 @@ def simulate(
     computes).  digest: compute the digest also where no log is kept.  progress(fraction, events, time): called a few times a
     second.  on_event(rows): called with each block of new rows.  measure: True, or the time at the beginning to leave out, for
     `run.measures`, in constant memory and without a log.  checkpoint: a file that `resume` can go on from, replaced `every` so
-    many events (1000000) or so much time ("90s", "5min", "2h"), and at the end.  options: the engine's own, such as check=True.
+    many events (1000000) or so much time ("90s", "5min", "2h"), and at the end.  interrupt: ends the run between two events once
+    another thread asks it to (`Interrupt().ask()`).  options: the engine's own, such as check=True.
 
     Simultaneous contacts are never cut apart, so a run that stops by `events` may have a few events more.
 
     Returns a Run; its `stopped` tells why it ended.  Raises SceneError where nothing says when to stop, EventsimError for an
-    engine that does not exist and for wishes that do not go together, LogError and CheckpointError for files that cannot be
-    written: a log that has rows then stays as NAME.part, which `load_log` reads.
+    engine or an option that does not exist and for wishes that do not go together, LogError and CheckpointError for files that
+    cannot be written.  Whatever breaks the run off (Ctrl-C raises KeyboardInterrupt), a log that has rows stays as NAME.part,
+    which `load_log` reads.
     """
+    chosen = engine_named(engine)
+    given = chosen.options_from(options, PARAMETERS)
     stop = stop_of(a_scene(scene), until, events)
-    wanted = RunOptions(log=log, compact=compact, digest=digest, progress=progress, on_event=on_event, command=command)
+    wanted = RunOptions(
+        log=log,
+        compact=compact,
+        digest=digest,
+        progress=progress,
+        on_event=on_event,
+        command=command,
+        interrupt=interrupt,
+    )
     if checkpoint is not None:
         wanted.checkpoint, wanted.every = place_for(checkpoint), interval(every)
         if measure is not False:
             raise EventsimError("measures are not in a checkpoint: keep a log, and measure that")
     if measure is False:
-        return Run.of(run_scene(engine_named(engine), scene, stop, wanted, **options))
+        return Run.of(run_scene(chosen, scene, stop, wanted, given))
     from eventsim.measure import Meter  # only who measures pays for it
 
     meter = Meter(scene, None if measure is True else measure)
     wanted.takers.append(meter.write)
-    run = Run.of(run_scene(engine_named(engine), scene, stop, wanted, **options))
+    run = Run.of(run_scene(chosen, scene, stop, wanted, given))
     if run.time > scene.start_time:
         run.measures = meter.finish(run.time - scene.start_time)
     return run
+
+
+PARAMETERS = tuple(signature(simulate).parameters)
+"""What can be given to `simulate` by name, for those who misspell it."""
 
 
 def resume(
@@ -93,13 +112,14 @@ def resume(
     checkpoint: str | PathLike[str] | None = None,
     every: int | str | None = None,
     scene: Scene | None = None,
+    interrupt: Interrupt | None = None,
 ) -> Run:
     """Go on with a run from its checkpoint `path`: the log it joins is that of an uninterrupted run, bit for bit.
 
     until, events: replace both parts of the stop that the run had; events count from its beginning.  engine: another one.
     log: where its log is now, if it was moved; rows behind the checkpoint are written anew.  digest: refused where there is no
-    log.  progress, on_event: as in `simulate`, of what comes now.  checkpoint, every: where and how often the next checkpoints
-    are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of another scene.
+    log.  progress, on_event, interrupt: as in `simulate`, of what comes now.  checkpoint, every: where and how often the next
+    checkpoints are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of another scene.
 
     Returns a Run, whose counters and times include what was before.  Raises CheckpointError for a file that is no checkpoint,
     of another version or of another scene, or that is past the stop, LogError where its log is lost.
@@ -124,6 +144,7 @@ def resume(
         checkpoint=place_for(path if checkpoint is None else checkpoint),
         every=saved.every if every is None else interval(every),
         resumed=saved,
+        interrupt=interrupt,
         expanded=expand_rows,
     )
     chosen = engine_named(provenance.engine if engine is None else engine)
@@ -172,10 +193,11 @@ class Simulation:
         chosen = engine_named(engine)
         self.scene = scene
         self.engine = chosen.name
-        self._session = chosen.open(stage_of(a_scene(scene)), keep_rows=True, **options)
+        self._session = chosen.open(stage_of(a_scene(scene)), options=chosen.options_from(options))
         self._provenance = provenance_of(self._session, self.engine, scene)
         self._blocks: list[Rows] = []
         self._time: float | None = None
+        self._broken_off = False
 
     @property
     def time(self) -> float:
@@ -228,6 +250,7 @@ class Simulation:
 
         Raises EventsimError for a disk that does not exist or a velocity that no disk of a scene may have.
         """
+        self._demand_whole()
         vx, vy = point(velocity, f"velocity of disk {disk}")
         if not 0 <= disk < len(self.scene.disks):
             raise EventsimError(f"disk {disk} does not exist; there are {len(self.scene.disks)}, counted from 0")
@@ -239,6 +262,7 @@ class Simulation:
 
     def snapshot(self) -> SavedSimulation:
         """A point to come back to."""
+        self._demand_whole()
         return SavedSimulation(
             self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count(), self._time
         )
@@ -250,8 +274,10 @@ class Simulation:
         """
         if saved.scene != self.scene:
             raise EventsimError("restore() takes what snapshot() of a simulation of the same scene gave")
+        self._broken_off = False
         self._session.restore(saved.snapshot)
         self._session.counters.copy_from(saved.counters)
+        self._session.take_rows()
         keep = saved.rows
         blocks, self._blocks = self._blocks, []
         for block in blocks:
@@ -263,7 +289,7 @@ class Simulation:
         before, begun = len(self._blocks), self.time
         stopped = None
         while stopped is None:
-            stopped = self._session.advance(stop, STEP_BUDGET)
+            stopped = self._advanced(stop)
             self._keep()
         if stopped in ("collapse", "digits"):
             stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
@@ -276,6 +302,19 @@ class Simulation:
         blocks = self._blocks[before:]
         self._blocks[before:] = [np.concatenate(blocks)]
         return self._blocks[-1]
+
+    def _advanced(self, stop: Stop) -> str | None:
+        """A stint of the engine, which Ctrl-C may break off."""
+        self._demand_whole()
+        self._broken_off = True
+        stopped = self._session.advance(stop, STEP_BUDGET)
+        self._broken_off = False
+        return stopped
+
+    def _demand_whole(self) -> None:
+        """Raise EventsimError after half an event, which is nothing to go on from."""
+        if self._broken_off:
+            raise EventsimError("the simulation was broken off in the middle of an event: restore() a snapshot, or begin anew")
 
     def _keep(self) -> None:
         self._blocks.append(self._session.take_rows())

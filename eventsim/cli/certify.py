@@ -86,14 +86,15 @@ def command(
 
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.signals import interruptible
     from eventsim.cli.words import as_json_text
+    from eventsim.engines import ENGINES
     from eventsim.engines.base import Stop
     from eventsim.errors import EventsimError
 
-    try:
-        from eventsim.validate.proof import prove
-    except ModuleNotFoundError:
-        raise EventsimError("certify needs python-flint: pip install 'eventsim-disks[certify]'") from None
+    if ENGINES["certified"].missing is not None:
+        raise EventsimError(ENGINES["certified"].missing)
+    from eventsim.validate.proof import prove
 
     chosen = chosen_scene(scene, settings, seed)
     stop = Stop(until, events)
@@ -102,8 +103,8 @@ def command(
         if stop.until is None and stop.events is None:
             stop = Stop(None, USUAL_EVENTS)
     typed = click.get_current_context().obj
-    with ProgressBar(quiet=quiet) as progress:
-        proof = prove(chosen, stop, False if path is None else path, bits, most_bits, progress, typed)
+    with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
+        proof = prove(chosen, stop, False if path is None else path, bits, most_bits, progress, typed, interrupt)
     if as_json:
         say(as_json_text(_data(scene, proof, path)))
     elif not quiet:

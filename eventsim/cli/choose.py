@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from eventsim import suffixes
 from eventsim.cli.output import say
-from eventsim.cli.suggest import did_you_mean
-from eventsim.errors import SceneError
+from eventsim.errors import SceneError, did_you_mean
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene

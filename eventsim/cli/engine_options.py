@@ -1,39 +1,25 @@
-"""Options of an engine as the command line gives them: --dt DT, --option KEY=VALUE."""
+"""Options of an engine as the command line gives them: --dt DT, --option KEY=VALUE; the table of engines has them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import click
 
+from eventsim.engines import ENGINES, STEPPED, TABLE, engine_named
+from eventsim.engines.options import read_option, words_of
 
-def _number(text: str) -> float:
-    return float(text)
-
-
-def _whole(text: str) -> int:
-    return int(text)
-
-
-def _truth(text: str) -> bool:
-    return {"true": True, "false": False}[text.lower()]
-
-
-KNOWN: dict[str, dict[str, tuple[Callable[[str], Any], str]]] = {
-    "frames": {"dt": (_number, "a time"), "memory": (str, "apart or frame")},
-    "stepped": {"dt": (_number, "a time"), "locate": (_truth, "true or false")},
-    "penalty": {"dt": (_number, "a time"), "stiffness": (_number, "a number, force / length")},
-    "pymunk": {"dt": (_number, "a time"), "iterations": (_whole, "a whole number"), "slop": (_number, "a length")},
-}
-"""For each stepped engine: its options, how they are read, and what they are."""
-
+EXACT = [name for name, engine in TABLE.items() if not engine.stepped]
+ENGINE_HELP = f"Which engine simulates: {', '.join(EXACT)}; with time steps: {', '.join(STEPPED)}."
 DT_HELP = (
     "Step of a time-stepped engine. Default: 1/60 (frames); else a twentieth of the time in which a typical disk flies, "
     "or falls, its radius."
 )
 OPTION_HELP = (
-    "An option of a time-stepped engine: " + "; ".join(f"{name}: {', '.join(options)}" for name, options in KNOWN.items()) + "."
+    "An option of an engine: "
+    + "; ".join(f"{name}: {', '.join(words)}" for name in ENGINES if (words := words_of(ENGINES[name].options)))
+    + "."
 )
 
 
@@ -45,20 +31,16 @@ def engine_options(engine: str, dt: float | None, given: Sequence[str]) -> dict[
         if not equals:
             raise click.UsageError(f"--option {setting!r}: must be KEY=VALUE, like memory=frame")
         texts[key.strip()] = text.strip()
-    known = KNOWN.get(engine, {})
+    if not texts:
+        return {}
+    row = engine_named(engine)
+    words = words_of(row.options)
     read = {}
     for key, text in texts.items():
-        if key not in known:
-            raise click.UsageError(f"the engine {engine} has no option {key!r}; {_there_are(engine)}")
-        reader, words = known[key]
+        if key not in words:
+            raise click.UsageError(row.without(key))
         try:
-            read[key] = reader(text)
-        except (ValueError, KeyError):
-            raise click.UsageError(f"--option {key}={text}: must be {words}") from None
+            read[key] = read_option(row.options, key, text)
+        except ValueError:
+            raise click.UsageError(f"--option {key}={text}: must be {words[key]}") from None
     return read
-
-
-def _there_are(engine: str) -> str:
-    if engine in KNOWN:
-        return f"it has {', '.join(KNOWN[engine])}"
-    return f"steps belong to the engines {', '.join(KNOWN)}"

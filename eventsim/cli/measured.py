@@ -41,6 +41,7 @@ def measured(
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.exits import INTERRUPTED
     from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.signals import interruptible
     from eventsim.simulation import simulate
 
     scene = chosen_scene(source, settings, seed)
@@ -48,9 +49,9 @@ def measured(
         raise click.UsageError(
             f"nothing says when to stop {source}: give --until T or --events N, or a key until or events in the scene"
         )
-    with ProgressBar(quiet=quiet) as progress:
+    with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
         keep = True if discard is None else discard
-        run = simulate(scene, until=until, events=events, measure=keep, progress=progress)
+        run = simulate(scene, until=until, events=events, measure=keep, progress=progress, interrupt=interrupt)
     if run.stopped == "interrupted":
         say("interrupted", err=True)
         click.get_current_context().exit(INTERRUPTED)

@@ -13,8 +13,8 @@ import click
 from eventsim import __version__
 from eventsim.cli.exits import BAD_INPUT, DONE, INTERRUPTED
 from eventsim.cli.output import say, visible, write_what_is_known
-from eventsim.cli.suggest import did_you_mean
-from eventsim.errors import EventsimError, LogWarning, SceneError
+from eventsim.cli.signals import terminable
+from eventsim.errors import EventsimError, LogWarning, SceneError, did_you_mean
 
 VERBS = {
     "run": "Simulate a scene from event to event; print a summary, keep a log.",
@@ -76,7 +76,7 @@ class Program(click.Group):
         """Call the verb; turn what goes wrong into a sentence on stderr and an exit code."""
         write_what_is_known()
         try:
-            with warnings.catch_warnings():
+            with terminable(), warnings.catch_warnings():
                 warnings.simplefilter("always", LogWarning)
                 warnings.showwarning = lambda message, *place: say(f"warning: {message}", err=True)
                 result: object = super().invoke(ctx)

@@ -8,14 +8,14 @@ from typing import Any
 import click
 
 from eventsim import suffixes
-from eventsim.cli.engine_options import DT_HELP, KNOWN, OPTION_HELP, engine_options
+from eventsim.cli.engine_options import DT_HELP, ENGINE_HELP, OPTION_HELP, engine_options
 from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
 from eventsim.cli.output import say
 from eventsim.cli.target import Files, writable
+from eventsim.engines import STEPPED
 
 FIRST_SCENE = "break"
-ENGINE_HELP = f"Which engine simulates: auto, reference, fast, certified; with time steps: {', '.join(KNOWN)}."
 EARLY = ("collapse", "digits", "undecided tie")
 EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 
@@ -126,7 +126,7 @@ def command(
     if resume is not None and scene is None and (settings or seed is not None):
         raise click.UsageError("--set and --seed shape a scene, and that of a checkpoint is what it is")
 
-    if horizon and engine in KNOWN:
+    if horizon and engine in STEPPED:
         raise click.UsageError(
             f"--horizon is about the last bits of an event-driven trajectory; that of {engine} is off by its time steps: "
             "eventsim validate tells how far"
@@ -135,11 +135,12 @@ def command(
         raise click.UsageError("--horizon: what the certified engine has simulated is proven; eventsim certify compares float64")
     options = engine_options(engine or "auto", dt, engine_settings)
     if resume is not None and options:
-        raise click.UsageError("--dt and --option: engines with time steps have no checkpoints")
+        raise click.UsageError("--dt and --option: what an engine was told is not in a checkpoint")
 
     from eventsim import simulation
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.signals import interruptible
     from eventsim.cli.summary import summary_data, summary_text
     from eventsim.cli.words import as_json_text
 
@@ -152,8 +153,8 @@ def command(
     wanted: dict[str, Any] = {"until": until, "events": events, "log": files.log, "digest": digest}
     wanted |= {"engine": engine, "checkpoint": files.checkpoint, "every": every}
     wanted = {name: value for name, value in wanted.items() if value is not None}
-    with ProgressBar(quiet=quiet) as progress:
-        wanted["progress"] = progress
+    with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
+        wanted |= {"progress": progress, "interrupt": interrupt}
         if chosen is None or resume:
             run = simulation.resume(str(resume), scene=chosen, **wanted)
         else:

@@ -64,6 +64,7 @@ def log_of(
     from eventsim.cli.choose import chosen_scene
     from eventsim.cli.exits import INTERRUPTED
     from eventsim.cli.progress import ProgressBar
+    from eventsim.cli.signals import interruptible
     from eventsim.simulation import simulate
 
     chosen = chosen_scene(source, settings, seed)
@@ -71,8 +72,8 @@ def log_of(
         raise click.UsageError(
             f"nothing says when to stop {source}: give --until T or --events N, or a key until or events in the scene"
         )
-    with ProgressBar(quiet=quiet) as progress:
-        run = simulate(chosen, until=until, events=events, log=True, progress=progress)
+    with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
+        run = simulate(chosen, until=until, events=events, log=True, progress=progress, interrupt=interrupt)
     if run.stopped == "interrupted":
         say("interrupted", err=True)
         click.get_current_context().exit(INTERRUPTED)

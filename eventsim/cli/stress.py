@@ -10,7 +10,6 @@ from eventsim import suffixes
 from eventsim.cli.exits import FAILED, INTERRUPTED
 from eventsim.cli.options import Whole, json_option, quiet_option
 from eventsim.cli.output import say
-from eventsim.cli.signals import terminable
 from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
@@ -119,7 +118,7 @@ def command(
         return
     wanted = [engine_named(name).name for name in dict.fromkeys(engines)] or list(ENGINES)
     total, done = len(cases) * len(wanted), 0
-    with terminable(), ProgressBar(quiet=quiet) as progress:
+    with ProgressBar(quiet=quiet) as progress:
 
         def told(_verdict: Verdict) -> None:
             nonlocal done
@@ -151,7 +150,7 @@ def _soak(seeds: range, engines: tuple[str, ...], workers: int, as_json: bool, q
     findings: list[Finding] = []
     done, interrupted = 0, False
     try:
-        with terminable(), ProgressBar(quiet=quiet) as progress:
+        with ProgressBar(quiet=quiet) as progress:
             for done, finding in enumerate(soak(seeds, engines, workers), 1):
                 progress.show(done / len(seeds), f"{done:,} of {len(seeds):,} scenes, {len(findings)} findings")
                 if finding is not None:

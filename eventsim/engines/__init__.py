@@ -1,89 +1,161 @@
-"""HOW TIME PASSES: engines behind one contract, by name."""
+"""HOW TIME PASSES: engines behind one contract, by name.
+
+To add an engine: a folder with a session (see `base`), its options, and a row here.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
 
-from eventsim.engines.base import Session
-from eventsim.errors import EventsimError
+from eventsim.engines.certified.options import CertifiedOptions
+from eventsim.engines.fast.options import FastOptions
+from eventsim.engines.options import Options, names_of, wrong_value
+from eventsim.engines.reference.options import AutoOptions, ReferenceOptions
+from eventsim.engines.stepped.options import ChipmunkOptions, FixedStepOptions, FramesOptions, PenaltyOptions
+from eventsim.errors import EventsimError, did_you_mean
+
+if TYPE_CHECKING:
+    from eventsim.engines.base import Session
+    from eventsim.scene.stage import Stage
 
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """An engine: its name, and how to open a session of it."""
+    """A row of the table of engines.
+
+    Attributes:
+        name: what users call it.
+        words: what it is.
+        session: "module:class" of its session, loaded by the run that needs it.
+        options: what it can be told.
+        stepped: whether it advances in steps of a length `dt`, so that its log is no truth.
+        replays: whether all follows from the order of its contacts: it has compact logs and checkpoints.
+        needs: (module, what it is called, extra that installs it); None where it needs nothing more.
+    """
 
     name: str
-    open: Callable[..., Session]
+    words: str
+    session: str
+    options: type[Options] = Options
+    stepped: bool = False
+    replays: bool = False
+    needs: tuple[str, str, str] | None = None
+
+    @property
+    def missing(self) -> str | None:
+        """A sentence on what has to be installed first; None where nothing has."""
+        if self.needs is None or find_spec(self.needs[0]) is not None:
+            return None
+        _, called, extra = self.needs
+        return f"the engine {self.name} needs {called}, which is not installed: pip install 'eventsim-disks[{extra}]'"
+
+    def options_from(self, given: Mapping[str, Any], others: tuple[str, ...] = ()) -> Options:
+        """The options that were given by name; others: names that may have been meant instead.
+
+        Raises EventsimError for a name or a type that the engine does not have.
+        """
+        for name, value in given.items():
+            if name not in names_of(self.options):
+                raise EventsimError(self.without(name, others))
+            if (words := wrong_value(self.options, name, value)) is not None:
+                raise EventsimError(f"{self.name}: {name} = {value!r}: must be {words}")
+        return self.options(**given)
+
+    def without(self, name: str, others: tuple[str, ...] = ()) -> str:
+        """A sentence on an option that the engine does not have; others: names that may have been meant instead."""
+        own = names_of(self.options)
+        owners = [engine.name for engine in ENGINES.values() if name in names_of(engine.options)]
+        belongs = f"{name} belongs to {', '.join(owners)}" if owners else f"it has {', '.join(own) or 'none'}"
+        near = "" if owners else did_you_mean(name, [*own, *others])
+        return f"the engine {self.name} has no option {name!r}{near}; {belongs}"
+
+    def open(self, stage: Stage, keep_rows: bool = True, options: Options | None = None) -> Session:
+        """Open a session; EventsimError where the engine is not installed, or cannot simulate the stage or keep the options."""
+        if self.missing is not None:
+            raise EventsimError(self.missing)
+        module, _, name = self.session.partition(":")
+        session: Session = getattr(import_module(module), name)(stage, keep_rows, options or self.options())
+        return session
 
 
-def _reference(*args: Any, **options: Any) -> Session:
-    from eventsim.engines.reference import ReferenceSession  # loaded by the run that needs it
-
-    return ReferenceSession(*args, **options)
-
-
-def _fast(*args: Any, **options: Any) -> Session:
-    from eventsim.engines.auto import MISSING, has_compiler
-
-    if not has_compiler():
-        raise EventsimError(MISSING)
-    from eventsim.engines.fast import FastSession
-
-    return FastSession(*args, **options)
-
-
-def _auto(*args: Any, **options: Any) -> Session:
-    from eventsim.engines.auto import AutoSession
-
-    return AutoSession(*args, **options)
-
-
-def _certified(*args: Any, **options: Any) -> Session:
-    try:
-        from eventsim.engines.certified import CertifiedSession
-    except ModuleNotFoundError:
-        text = "the certified engine needs python-flint, which is not installed: pip install 'eventsim-disks[certify]'"
-        raise EventsimError(text) from None
-    return CertifiedSession(*args, **options)
-
-
-def _stepped(module: str, session: str) -> Callable[..., Session]:
-    """How to open a session of a stepped engine, loaded by the run that needs it."""
-
-    def opened(*args: Any, **options: Any) -> Session:
-        made: Session = getattr(import_module(f"eventsim.engines.stepped.{module}"), session)(*args, **options)
-        return made
-
-    return opened
-
-
-STEPPED: dict[str, Engine] = {
-    "frames": Engine("frames", _stepped("frames", "FramesSession")),
-    "stepped": Engine("stepped", _stepped("stepped", "FixedStepSession")),
-    "penalty": Engine("penalty", _stepped("penalty", "PenaltySession")),
-    "pymunk": Engine("pymunk", _stepped("chipmunk", "ChipmunkSession")),
+TABLE = {
+    row.name: row
+    for row in (
+        Engine(
+            "auto",
+            "the reference engine, and the fast one when the job proves long",
+            "eventsim.engines.auto:AutoSession",
+            AutoOptions,
+            replays=True,
+        ),
+        Engine(
+            "reference",
+            "plain Python that reads like the textbook",
+            "eventsim.engines.reference.loop:ReferenceSession",
+            ReferenceOptions,
+            replays=True,
+        ),
+        Engine(
+            "fast",
+            "the same algorithm, compiled",
+            "eventsim.engines.fast.session:FastSession",
+            FastOptions,
+            replays=True,
+            needs=("numba", "numba", "fast"),
+        ),
+        Engine(
+            "certified",
+            "the reference loop on ball arithmetic: a proof",
+            "eventsim.engines.certified.session:CertifiedSession",
+            CertifiedOptions,
+            needs=("flint", "python-flint", "certify"),
+        ),
+        Engine(
+            "frames",
+            "the per-frame engine of the course project",
+            "eventsim.engines.stepped.frames:FramesSession",
+            FramesOptions,
+            stepped=True,
+        ),
+        Engine(
+            "stepped",
+            "a fair modern fixed-step engine",
+            "eventsim.engines.stepped.stepped:FixedStepSession",
+            FixedStepOptions,
+            stepped=True,
+        ),
+        Engine(
+            "penalty",
+            "soft disks, springs, velocity Verlet",
+            "eventsim.engines.stepped.penalty:PenaltySession",
+            PenaltyOptions,
+            stepped=True,
+        ),
+        Engine(
+            "pymunk",
+            "the Chipmunk engine",
+            "eventsim.engines.stepped.chipmunk:ChipmunkSession",
+            ChipmunkOptions,
+            stepped=True,
+            needs=("pymunk", "the Chipmunk engine", "pymunk"),
+        ),
+    )
 }
+"""name -> engine, `auto` among them."""
+
+ENGINES = {name: engine for name, engine in TABLE.items() if name != "auto"}
+"""name -> engine, each of which is one and no choice among others."""
+
+STEPPED = {name: engine for name, engine in ENGINES.items() if engine.stepped}
 """The engines that advance in steps of a length `dt`; what event-driven runs are validated against."""
-
-AUTO = Engine("auto", _auto)
-"""The reference engine, and the fast one when the job proves long."""
-
-ENGINES: dict[str, Engine] = {
-    "reference": Engine("reference", _reference),
-    "fast": Engine("fast", _fast),
-    "certified": Engine("certified", _certified),
-    **STEPPED,
-}
-"""name -> engine."""
 
 
 def engine_named(name: str) -> Engine:
     """The engine of a name; "auto" is the one that suits.  Raises EventsimError for one that does not exist."""
-    if name == "auto":
-        return AUTO
-    if name not in ENGINES:
-        raise EventsimError(f"engine {name!r} does not exist; there are: auto, {', '.join(ENGINES)}")
-    return ENGINES[name]
+    if name not in TABLE:
+        raise EventsimError(f"engine {name!r} does not exist{did_you_mean(name, TABLE)}; there are: {', '.join(TABLE)}")
+    return TABLE[name]

@@ -8,13 +8,13 @@ from __future__ import annotations
 import sys
 from importlib.util import find_spec
 from time import perf_counter, thread_time
-from typing import Any
 
 import numpy as np
 
-from eventsim.engines.base import BrokenOffError, Counters, Motion, Session, Snapshot, Stop
+from eventsim.engines.base import BrokenOffError, Motion, Session, Snapshot, Stop
 from eventsim.engines.forecast import reference_seconds
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.reference.options import AutoOptions, ReferenceOptions
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
@@ -34,7 +34,7 @@ SURE = 0.8
 With these numbers no guess costs more than a fifth of the better engine's time, a forecast that is twice the truth a third.
 """
 
-MISSING = "the fast engine needs numba, which is not installed: pip install 'eventsim-disks[fast]'"
+MISSING = "the engine fast needs numba, which is not installed: this run goes on with the reference engine"
 
 
 def has_compiler() -> bool:
@@ -51,26 +51,26 @@ def first_engine(stage: Stage, stop: Stop, keep_rows: bool = True) -> str:
     return "fast" if large or (seconds > SURE and _is_warm(stage, _at_start(stage), keep_rows)) else "reference"
 
 
-class AutoSession:
+class AutoSession(Session):
     """A session of the engine that suits, another one after the job has proved long.
 
-    stage: what is simulated.  keep_rows: whether the log is wanted.  at_work: the name of the engine in use; before: of the one
-    that handed over to it, if one did.
+    keep_rows: whether the log is wanted.
     """
 
-    def __init__(self, stage: Stage, keep_rows: bool = True, **options: Any) -> None:
-        self.stage = stage
+    name = "auto"
+
+    def __init__(self, stage: Stage, keep_rows: bool = True, options: AutoOptions | None = None) -> None:
+        super().__init__(stage)
         self._keep_rows = keep_rows
-        self._options = options
+        self._options = options or AutoOptions()
         self._spent = self._sampled = 0.0
         self._begun = 0, 0.0
-        self._may_change = not options
+        self._may_change = self._options == AutoOptions()
         self._opened: Session | None = None
         self._is_cold = False
         self._loading = 0.0
         self._changing = False
         self.at_work = "reference"
-        self.before: str | None = None
         self._rows: list[Rows] = []
 
     @property
@@ -90,46 +90,32 @@ class AutoSession:
         else:
             self._loading += perf_counter() - began
             began = thread_time()
-            self._opened = ReferenceSession(self.stage, self._keep_rows, **self._options)
+            self._opened = ReferenceSession(self.stage, self._keep_rows, ReferenceOptions(self._options.check))
             self._spent = thread_time() - began
+        self._speak_for(self._opened)
         return self._opened
+
+    def _speak_for(self, session: Session) -> None:
+        """Have to say what the engine's session has to say."""
+        self.counters, self.reason, self.refused = session.counters, session.reason, session.refused
+        self.compile_s = self._loading + session.compile_s
 
     @property
     def prepares(self) -> bool:
         """Whether the session only prepares itself, so that an interrupt may break in."""
-        return self._changing or bool(getattr(self._opened, "prepares", False))
+        return self._changing or (self._opened is not None and self._opened.prepares)
 
     def _opened_fast(self, began: float, saved: Snapshot | None = None) -> Session:
         """A session of the fast engine; all since `began` went into loading and compiling it."""
         self._changing = True
         try:
-            from eventsim.engines.fast import FastSession
+            from eventsim.engines.fast.session import FastSession
 
             session = FastSession(self.stage, self._keep_rows, saved=saved)
         finally:
             self._changing = False
         self._loading += perf_counter() - began - session.compile_s
         return session
-
-    @property
-    def compile_s(self) -> float:
-        """Seconds spent on loading the compiler and on compiling."""
-        return self._loading + float(getattr(self._opened, "compile_s", 0.0))
-
-    @property
-    def counters(self) -> Counters:
-        """How often what happened."""
-        return self._session.counters
-
-    @property
-    def reason(self) -> str | None:
-        """A sentence on why it stopped, where there is more to say."""
-        return self._session.reason
-
-    @property
-    def refused(self) -> bool:
-        """Whether it stopped at what it knows that it cannot resolve."""
-        return bool(getattr(self._session, "refused", False))
 
     @property
     def clock(self) -> tuple[int, float]:
@@ -142,12 +128,15 @@ class AutoSession:
         if self._sampled == 0.0:
             self._begun = self.counters.events, self._time
         began = thread_time()
-        stopped = session.advance(stop, budget)
-        taken = thread_time() - began
-        self._spent, self._sampled = self._spent + taken, self._sampled + taken
-        knows = self._spent > PATIENCE and self._sampled > SAMPLE
-        if stopped is None and self._may_change and self.at_work == "reference" and knows:
-            self._reconsider(stop)
+        try:
+            stopped = session.advance(stop, budget)
+            taken = thread_time() - began
+            self._spent, self._sampled = self._spent + taken, self._sampled + taken
+            knows = self._spent > PATIENCE and self._sampled > SAMPLE
+            if stopped is None and self._may_change and self.at_work == "reference" and knows:
+                self._reconsider(stop)
+        finally:
+            self._speak_for(self._session)
         return stopped
 
     @property
@@ -158,7 +147,7 @@ class AutoSession:
         """Hand over if the reference engine would take longer than it takes to begin with the fast one."""
         if not has_compiler():
             self._may_change = False
-            print(f"note: {MISSING} (this run goes on with the reference engine)", file=sys.stderr)
+            print(f"note: {MISSING}", file=sys.stderr)
             return
         left = self._sampled * self._share_left(stop)
         if left < WARM or (self._is_cold and left < COLD):
@@ -185,7 +174,7 @@ class AutoSession:
         fast = self._opened_fast(perf_counter(), saved=before.snapshot())
         fast.counters.copy_from(before.counters)
         self._rows.append(before.take_rows())
-        self.before, self.at_work, self._opened = self.at_work, "fast", fast
+        self.begun_by, self.at_work, self._opened = self.at_work, "fast", fast
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines.trajectory import Trajectory
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import clock_times
 from eventsim.scene.stage import Stage
@@ -97,46 +99,71 @@ class Motion(NamedTuple):
 
 
 class BrokenOffError(Exception):
-    """A session was interrupted while it prepared itself, and has changed nothing.
+    """A session was interrupted while it only prepared itself (see `Session.prepares`), and has changed nothing."""
 
-    Raised into sessions that have a property `prepares`, which says when that may be.
+
+class Session(ABC):
+    """An engine in the middle of a run: what every engine is asked, with the answers of one that has nothing to add.
+
+    Attributes:
+        name: of the engine.
+        stage: what is simulated.
+        counters: how often what happened.
+        reason: a sentence on why it stopped, where there is more to say.
+        refused: whether it stopped at what it knows that it cannot resolve.
+        compile_s: seconds spent on loading a compiler and on compiling.
+        at_work, begun_by: the engine that simulates; the one that handed over to it, if one did.
+        trajectory: samples of a motion that does not follow from the log; None where it does.
     """
 
+    name: str
+    reason: str | None = None
+    refused = False
+    compile_s = 0.0
+    begun_by: str | None = None
+    trajectory: Trajectory | None = None
 
-class Session(Protocol):
-    """An engine in the middle of a run."""
-
-    stage: Stage
-
-    @property
-    def counters(self) -> Counters:
-        """How often what happened."""
-
-    @property
-    def reason(self) -> str | None:
-        """A sentence on why it stopped, where there is more to say."""
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.counters = Counters()
+        self.at_work = self.name
 
     @property
+    @abstractmethod
     def clock(self) -> tuple[int, float]:
         """Where the clock stands: (epoch, remainder)."""
 
+    @property
+    def prepares(self) -> bool:
+        """Whether it only prepares itself (loads a compiler, compiles), so that BrokenOffError may be raised into it."""
+        return False
+
+    @abstractmethod
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
 
+    @abstractmethod
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW; empty where no rows are kept."""
 
+    @abstractmethod
     def motion(self) -> Motion:
         """Where all disks are now; nothing is changed by it."""
 
+    @abstractmethod
     def kick(self, i: int, vx: float, vy: float) -> None:
-        """Set the velocity of a disk from outside, now; a row of the log."""
+        """Set the velocity of disk i from outside, now; a row of the log."""
 
+    @abstractmethod
     def snapshot(self) -> Snapshot:
         """All that the future depends on."""
 
+    @abstractmethod
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot, this engine's or another's."""
+
+    def break_off(self) -> None:  # noqa: B027 - most hold no rows back
+        """End here: rows that were held back, because it might have begun again, can be taken."""
 
 
 def rows_from(tuples: list[tuple[Any, ...]], epoch_length: float, start_time: float) -> Rows:

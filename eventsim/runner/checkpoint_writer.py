@@ -1,4 +1,4 @@
-"""Keeps checkpoints of a run that goes on: when one is due, and what is written then."""
+"""Writes the checkpoints of a run: when one is due, and what is written then."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class CheckpointWriter:
             return True
         return self._every.seconds is not None and perf_counter() - self._time >= self._every.seconds
 
-    def keep(self, session: Session, last_rows: Rows, elapsed: float, written: float) -> None:
+    def save(self, session: Session, last_rows: Rows, elapsed: float, written: float) -> None:
         """Write a checkpoint; all rows so far have been written.  elapsed, written: seconds so far.
 
         Raises CheckpointError where the first one cannot be written.  Later a full disk is no reason to give up a long run: that

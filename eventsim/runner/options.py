@@ -15,6 +15,7 @@ from eventsim.record.events import Rows
 from eventsim.record.provenance import Provenance
 from eventsim.runner.checkpoint import Checkpoint, Every
 from eventsim.runner.checkpoint_writer import USUALLY
+from eventsim.runner.interrupt import Interrupt
 from eventsim.scene import Scene
 from eventsim.scene.numbers import optional_number, optional_whole
 
@@ -39,6 +40,7 @@ class RunOptions:
         command: the command line that asked for the run; it is told in the log.
         checkpoint: the file that is replaced again and again, `every` so often.
         resumed: the checkpoint that the run goes on from.
+        interrupt: asks the run to end early.
         expanded: makes the rows of a compact log full, for the digest of one that is gone on with.
     """
 
@@ -52,6 +54,7 @@ class RunOptions:
     checkpoint: Path | None = None
     every: Every = USUALLY
     resumed: Checkpoint | None = None
+    interrupt: Interrupt | None = None
     expanded: Callable[[Provenance, Rows], Rows] | None = None
 
     @property

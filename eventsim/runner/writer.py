@@ -1,4 +1,4 @@
-"""The writer: rows go to those who keep them, beside the engine once they come thick and fast; those who keep them."""
+"""The writer: rows go to those who keep them, beside the engine once they come thick and fast."""
 
 from __future__ import annotations
 
@@ -6,12 +6,8 @@ from collections.abc import Callable, Sequence
 from queue import Queue
 from threading import Thread
 from time import perf_counter
-from typing import Protocol
 
-import numpy as np
-
-from eventsim.record.events import Rows, blank_rows
-from eventsim.record.provenance import Ending, Provenance, Recorded, kicks_of
+from eventsim.record.events import Rows
 
 MANY_ROWS = 1 << 12
 """A block of so many comes from compiled kernels only: while those work, Python is free for a thread of its own."""
@@ -92,50 +88,3 @@ class Writer:
                 except BaseException as failure:  # told to the caller, in the caller's thread
                     self._failure = failure
             self._queue.task_done()
-
-
-class Sink(Protocol):
-    """Where rows go."""
-
-    def write(self, rows: Rows) -> None:
-        """Take a block of rows."""
-
-    def close(self, ending: Ending | None = None) -> None:
-        """All rows have come; the run ended like this."""
-
-    def leave(self) -> None:
-        """The run broke off: what has been written stays, as far as it can be read."""
-
-    def abandon(self) -> None:
-        """Leave nothing behind."""
-
-
-class MemorySink:
-    """Keeps the rows of a run in memory; `recorded()` is what has been written so far."""
-
-    def __init__(self, provenance: Provenance) -> None:
-        self._provenance = provenance
-        self._blocks: list[Rows] = []
-        self._ending: Ending | None = None
-
-    def write(self, rows: Rows) -> None:
-        """Append a block of rows; it is copied, so the caller may reuse it."""
-        self._blocks.append(rows.copy())
-
-    def close(self, ending: Ending | None = None) -> None:
-        """Say where the run ended."""
-        self._ending = ending
-
-    def leave(self) -> None:
-        """Memory holds what it holds."""
-
-    def abandon(self) -> None:
-        """Forget all rows."""
-        self._blocks.clear()
-
-    def recorded(self) -> Recorded:
-        """Return the rows so far as a log."""
-        rows = np.concatenate(self._blocks) if self._blocks else blank_rows(0)
-        self._blocks = [rows]
-        finished = self._provenance.finished(self._ending, tuple(kicks_of(rows)), len(rows))
-        return Recorded(finished, rows)

@@ -116,7 +116,7 @@ def chaos(n: int = 100) -> Chaos:
     entrant = ENTRANTS["stepped-located"]
     for step in CHAOS_STEPS:
         dt = step * truth.radius / truth.speed
-        run = follow(STEPPED[entrant.engine].open(truth.stage, keep_rows=True, **entrant.at(dt)), truth.times.tolist())
+        run = follow(STEPPED[entrant.engine].open(truth.stage, options=entrant.at(dt)), truth.times.tolist())
         errors[f"{entrant.label}, {step:g} radii a step"] = position_errors(truth.stage, run, truth.run)
     growing = (truth.uncertainty > 1e-13) & (truth.uncertainty < 1e-3)
     slope = float(np.polyfit(contacts[growing], np.log2(truth.uncertainty[growing]), 1)[0]) if growing.sum() > 2 else math.nan
@@ -159,7 +159,7 @@ def _contestants(dt: float) -> list[tuple[str, Callable[[Stage], Session]]]:
         return lambda stage: ENGINES[name].open(stage, keep_rows=True)
 
     def stepped(entrant: Entrant) -> Callable[[Stage], Session]:
-        return lambda stage: STEPPED[entrant.engine].open(stage, keep_rows=True, **entrant.at(dt))
+        return lambda stage: STEPPED[entrant.engine].open(stage, options=entrant.at(dt))
 
     named = [(name, event_driven(name)) for name in ("reference", "fast")]
     return named + [(label, stepped(ENTRANTS[label])) for label in ("stepped", "frames", "pymunk")]

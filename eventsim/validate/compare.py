@@ -119,7 +119,7 @@ def compare(
                 left_out.append(f"{entrant.label} with steps below {sizes[place - 1]:.3g} would take more than {patience_s:g} s")
                 break
             tell(f"{entrant.label}, dt = {dt:.3g}")
-            session = STEPPED[entrant.engine].open(truth.stage, keep_rows=True, **entrant.at(dt))
+            session = STEPPED[entrant.engine].open(truth.stage, options=entrant.at(dt))
             run = follow(session, truth.times.tolist(), patience_s)
             taken = run.elapsed_s
             if run.stopped is not None:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventsim.engines import Engine
+from eventsim.engines.options import Options
 from eventsim.record.events import Kind, Rows
 from eventsim.validate.follow import follow
 from eventsim.validate.truth import Truth, contacts_of, restarted
@@ -58,7 +59,7 @@ class Census:
         return float(np.degrees(np.mean(self.angles))) if self.angles else float("nan")
 
 
-def census(truth: Truth, engine: Engine, options: dict[str, object], dt: float, late_steps: float = LATE) -> Census:
+def census(truth: Truth, engine: Engine, options: Options, dt: float, late_steps: float = LATE) -> Census:
     """Set an engine on exact states of the run and compare what it finds ahead; rows of the truth are the exact contacts."""
     total = Census()
     stretch = max(STRETCH * truth.mean_free_time, FEW_STEPS * dt)
@@ -71,7 +72,7 @@ def census(truth: Truth, engine: Engine, options: dict[str, object], dt: float, 
         if end + late > last:
             break
         state = truth.run.position[place], truth.run.velocity[place]
-        session = engine.open(restarted(truth.stage, *state, time), keep_rows=True, **options)
+        session = engine.open(restarted(truth.stage, *state, time), options=options)
         rows = contacts_of(follow(session, [end, end + late]).rows)
         ahead = exact[(exact["time"] > time) & (exact["time"] <= end)]
         behind = exact[(exact["time"] > end) & (exact["time"] <= end + late)]

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 from eventsim.engines import STEPPED
+from eventsim.engines.stepped.options import (
+    ChipmunkOptions,
+    FixedStepOptions,
+    FramesOptions,
+    PenaltyOptions,
+    StepOptions,
+)
 from eventsim.errors import EventsimError
 from eventsim.scene.stage import Stage
 
@@ -23,23 +30,23 @@ class Entrant:
     label: str
     engine: str
     words: str
-    options: dict[str, object] = field(default_factory=dict)
+    options: StepOptions
     late: float = 2.0
 
-    def at(self, dt: float) -> dict[str, object]:
+    def at(self, dt: float) -> StepOptions:
         """The options of a run with step dt."""
-        return {**self.options, "dt": dt}
+        return replace(self.options, dt=dt)
 
 
 ENTRANTS = {
     entrant.label: entrant
     for entrant in (
-        Entrant("frames", "frames", "per frame; pairs leave its memory when apart", {"memory": "apart"}),
-        Entrant("frames-forget", "frames", "per frame; memory emptied each frame", {"memory": "frame"}),
-        Entrant("stepped", "stepped", "fixed step, overlaps resolved after it"),
-        Entrant("stepped-located", "stepped", "fixed step, impact located within it", {"locate": True}),
-        Entrant("penalty", "penalty", "springs, 20 steps a contact", late=PENALTY_LATE),
-        Entrant("pymunk", "pymunk", "the Chipmunk engine"),
+        Entrant("frames", "frames", "per frame; pairs leave its memory when apart", FramesOptions(memory="apart")),
+        Entrant("frames-forget", "frames", "per frame; memory emptied each frame", FramesOptions(memory="frame")),
+        Entrant("stepped", "stepped", "fixed step, overlaps resolved after it", FixedStepOptions()),
+        Entrant("stepped-located", "stepped", "fixed step, impact located within it", FixedStepOptions(locate=True)),
+        Entrant("penalty", "penalty", "springs, 20 steps a contact", PenaltyOptions(), late=PENALTY_LATE),
+        Entrant("pymunk", "pymunk", "the Chipmunk engine", ChipmunkOptions()),
     )
 }
 
@@ -58,7 +65,7 @@ def able(entrants: Sequence[Entrant], stage: Stage) -> tuple[list[Entrant], list
     sentences: list[str] = []
     for entrant in entrants:
         try:
-            STEPPED[entrant.engine].open(stage, keep_rows=False, **entrant.options)
+            STEPPED[entrant.engine].open(stage, keep_rows=False, options=entrant.options)
         except EventsimError as error:
             sentence = f"{entrant.label} is left out: {error}"
             if not any(str(error) in other for other in sentences):

@@ -41,7 +41,7 @@ def follow(session: Session, times: Sequence[float], patience_s: float = float("
     """Let a session run through increasing times; it is given up when it takes longer than `patience_s` CPU seconds."""
     blocks = [blank_rows(0)]
     states = []
-    elapsed, wall, stopped, before = 0.0, 0.0, None, _compiled(session)
+    elapsed, wall, stopped, before = 0.0, 0.0, None, session.compile_s
     for time in times:
         reason = None
         while reason is None and elapsed < patience_s:
@@ -53,7 +53,7 @@ def follow(session: Session, times: Sequence[float], patience_s: float = float("
             stopped = reason or "patience"
             break
         states.append(state_of(session, Stop(until=time), reason))
-    compiled = _compiled(session) - before  # by a stopwatch
+    compiled = session.compile_s - before  # by a stopwatch
     if compiled > 0.0:
         elapsed = max(wall - compiled, 0.0)
     n = session.stage.n
@@ -74,17 +74,12 @@ def advanced(session: Session, stop: Stop, patience_s: float) -> str | None:
     """Let a session run to a stop, its rows dropped; why it stopped, None after about `patience_s` CPU seconds of simulating."""
     spent = 0.0
     while True:
-        began, compiled = thread_time(), _compiled(session)
+        began, compiled = thread_time(), session.compile_s
         reason = session.advance(stop, STINT)
-        spent += max(thread_time() - began - (_compiled(session) - compiled), 0.0)
+        spent += max(thread_time() - began - (session.compile_s - compiled), 0.0)
         session.take_rows()
         if reason is not None or spent >= patience_s:
             return reason
-
-
-def _compiled(session: Session) -> float:
-    """Seconds that went into compiling so far; engines without a compiler have none."""
-    return float(getattr(session, "compile_s", 0.0))
 
 
 def distances(stage: Stage, one: Floats, other: Floats) -> Floats:

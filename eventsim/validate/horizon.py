@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eventsim.engines.base import Session, Stop
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.compare import Comparison
 from eventsim.record.events import Floats
 from eventsim.scene import Scene

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from itertools import takewhile
 
 from eventsim.engines.base import Stop
-from eventsim.engines.reference import ReferenceSession
 from eventsim.engines.reference.calendar import CONTACT, Event
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.formulas.clock import clock_time
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of

@@ -18,6 +18,7 @@ import numpy as np
 
 from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Counters, Session
+from eventsim.engines.certified.options import CertifiedOptions
 from eventsim.errors import EventsimError
 from eventsim.formulas.laws import TimeOfContact
 from eventsim.scene import Scene
@@ -214,7 +215,7 @@ def _plain(stage: Stage, error: ErrorOf) -> _Runner:
 
 def _step_of(stage: Stage, entrant: Entrant, dt: float, error: ErrorOf) -> _Runner:
     engine = STEPPED[entrant.engine]
-    return _Runner(entrant.label, "dt", dt, lambda: engine.open(stage, keep_rows=True, **entrant.at(dt)), error)
+    return _Runner(entrant.label, "dt", dt, lambda: engine.open(stage, options=entrant.at(dt)), error)
 
 
 def _rest(task: Task, duration: float) -> _Runner:
@@ -235,7 +236,7 @@ def _balls(stage: Stage, bits: int) -> _Runner:
         return float(np.sqrt(np.mean(np.sum(radii**2, axis=1)))) / diameter
 
     engine = ENGINES["certified"]
-    return _Runner("certified", "bits", float(bits), lambda: engine.open(stage, bits=bits, most_bits=bits), error)
+    return _Runner("certified", "bits", float(bits), lambda: engine.open(stage, options=CertifiedOptions(bits, bits)), error)
 
 
 def _proven(stage: Stage, until: float, patience_s: float, result: Curves) -> Followed | None:

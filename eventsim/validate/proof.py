@@ -7,12 +7,15 @@ from os import PathLike
 
 import numpy as np
 
+from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
-from eventsim.engines.certified.session import FIRST_BITS, MOST_BITS, Attempt, CertifiedSession
+from eventsim.engines.certified.options import FIRST_BITS, MOST_BITS, CertifiedOptions
+from eventsim.engines.certified.session import Attempt, CertifiedSession
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.times import two_sum
 from eventsim.replay.past import PastRun
+from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.loop import run_session
 from eventsim.runner.options import Progress, RunOptions
 from eventsim.scene import Scene
@@ -51,16 +54,17 @@ def prove(
     most_bits: int = MOST_BITS,
     progress: Progress | None = None,
     command: str | None = None,
+    interrupt: Interrupt | None = None,
 ) -> Proof:
     """Prove the order of the events of a scene up to its stop, and compare float64 with it.
 
-    log: True (in memory) or a path, as of `simulate`.  Raises EventsimError for a scene that cannot be proven.
+    log: True (in memory) or a path; interrupt: as of `simulate`.  Raises EventsimError for a scene that cannot be proven.
     """
     stage = stage_of(scene)
-    session = CertifiedSession(stage, bits=bits, most_bits=most_bits)
+    session = CertifiedSession(stage, options=CertifiedOptions(bits, most_bits))
     blocks: list[Rows] = [np.zeros(0, ROW)]
-    wanted = RunOptions(log=log, progress=progress, on_event=blocks.append, command=command)
-    run = PastRun.of(run_session(session, "certified", scene, stop, wanted))
+    wanted = RunOptions(log=log, progress=progress, on_event=blocks.append, command=command, interrupt=interrupt)
+    run = PastRun.of(run_session(session, ENGINES["certified"], scene, stop, wanted))
     certified = np.concatenate(blocks)
     float64 = rounded(stage, scene.domain.size, certified, stop.until)
     time = None

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventsim.engines.base import Stop
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.compare import VELOCITIES, agreement, deviations
 from eventsim.record.events import Floats, Rows
 from eventsim.runner.outcome import diagnosed

@@ -17,7 +17,7 @@ import numpy as np
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.fast import FastSession
+from eventsim.engines.fast.session import FastSession
 from eventsim.scene.stage import stage_of
 from tests.benchmarks.rates import lattice_gas
 from tests.benchmarks.table import Table, arguments, whole

@@ -83,7 +83,7 @@ def timed(advance: Advance, contacts: int) -> float:
 
 def bytes_per_disk(scene: es.Scene) -> int:
     """The memory of the fast engine's arrays."""
-    from eventsim.engines.fast import FastSession
+    from eventsim.engines.fast.session import FastSession
 
     return FastSession(stage_of(scene), keep_rows=False).memory // len(scene.disks)
 

@@ -105,8 +105,9 @@ def serve(without: str, n: int, eta: float, contacts: int) -> None:
     """Simulate so many contacts for each line of the input; say at which rate."""
     if without in CUTS:
         CUTS[without]()
+    from eventsim.engines import ENGINES
     from eventsim.engines.base import Stop
-    from eventsim.engines.fast import FastSession
+    from eventsim.engines.fast.session import FastSession
     from eventsim.runner.loop import run_session
     from eventsim.runner.options import RunOptions
     from eventsim.scene.stage import stage_of
@@ -118,7 +119,7 @@ def serve(without: str, n: int, eta: float, contacts: int) -> None:
     def advance() -> None:
         stop = Stop(events=session.counters.events + contacts)
         if without == WHOLE:
-            run_session(session, "fast", scene, stop, RunOptions())
+            run_session(session, ENGINES["fast"], scene, stop, RunOptions())
         else:
             session.advance(stop, 1 << 40)
 

@@ -244,8 +244,8 @@ def load_log_of(eventsim, *words):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--dt", "0.1"), "the engine auto has no option 'dt'; steps belong to the engines frames, stepped"),
-        (("--engine", "stepped", "--option", "memory=frame"), "has no option 'memory'; it has dt, locate"),
+        (("--dt", "0.1"), "the engine auto has no option 'dt'; dt belongs to frames, stepped"),
+        (("--engine", "stepped", "--option", "memory=frame"), "has no option 'memory'; memory belongs to frames"),
         (("--engine", "stepped", "--option", "locate"), "must be KEY=VALUE"),
         (("--engine", "stepped", "--option", "locate=maybe"), "--option locate=maybe: must be true or false"),
         (("--engine", "stepped", "--dt", "0"), "a step must be a finite time above 0"),

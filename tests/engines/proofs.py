@@ -4,13 +4,14 @@ import numpy as np
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.certified import CertifiedSession
+from eventsim.engines.certified.options import CertifiedOptions
+from eventsim.engines.certified.session import CertifiedSession
 from eventsim.scene.stage import stage_of
 
 
 def certified(scene, events=None, until=None, **options):
     """(session, reason to stop) of a certified run."""
-    session = CertifiedSession(stage_of(scene), **options)
+    session = CertifiedSession(stage_of(scene), options=CertifiedOptions(**options))
     stopped = None
     while stopped is None:
         stopped = session.advance(Stop(until, events), 1 << 62)

@@ -7,7 +7,8 @@ import numpy as np
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.record.events import Rows
 from eventsim.scene.stage import stage_of
 
@@ -46,7 +47,7 @@ def in_far_corner(scene, size, corner=(1, 1)):
 
 
 def session_of(scene, **options):
-    return ReferenceSession(stage_of(scene), **options)
+    return ReferenceSession(stage_of(scene), options=ReferenceOptions(**options))
 
 
 def rows_of(scene, events=None, until=None, **options) -> Rows:

@@ -9,6 +9,7 @@ from eventsim.engines import auto
 from eventsim.engines.auto import COLD, LARGE, SURE, AutoSession, first_engine
 from eventsim.engines.base import Stop
 from eventsim.engines.forecast import contact_rate, reference_seconds
+from eventsim.engines.reference.options import AutoOptions
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
 
@@ -74,7 +75,7 @@ def test_many_disks_are_for_the_fast_engine_where_there_is_one(warm, monkeypatch
 
 def test_options_are_those_of_the_reference_engine_and_keep_it(warm):
     warm.append(True)
-    session = AutoSession(GAS, keep_rows=False, check=True)
+    session = AutoSession(GAS, options=AutoOptions(check=True))
     session.advance(Stop(events=10**9), 5)
     assert session.at_work == "reference"
 

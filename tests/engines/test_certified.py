@@ -1,7 +1,6 @@
 """Proofs: how many events a bit buys, what is done while they go on, and how long float64 has the order right."""
 
 import math
-import signal
 from dataclasses import replace
 from time import process_time
 
@@ -9,10 +8,13 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
-from eventsim.engines.certified import CertifiedSession
+from eventsim.engines.certified.options import CertifiedOptions
+from eventsim.engines.certified.session import CertifiedSession
 from eventsim.errors import EventsimError
 from eventsim.record.compare import agreement, deviations
+from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.loop import run_session
 from eventsim.runner.options import RunOptions
 from eventsim.scene.gallery import gallery
@@ -64,7 +66,7 @@ def test_precision_rises_until_the_digits_are_there():
 
 
 def test_a_proof_that_is_broken_off_is_that_of_the_attempt_that_came_farthest():
-    session = CertifiedSession(stage_of(lattice_gas(8, 0.3, seed=2)), bits=128)
+    session = CertifiedSession(stage_of(lattice_gas(8, 0.3, seed=2)), options=CertifiedOptions(bits=128))
     rows = []
     while len(session.attempts) < 2 or session.counters.events > 100:
         assert session.advance(Stop(None, 10_000), 200) is None
@@ -82,15 +84,16 @@ def test_a_proof_that_is_broken_off_is_that_of_the_attempt_that_came_farthest():
 
 def test_an_interrupted_run_takes_the_rows_that_were_held_back():
     scene = lattice_gas(8, 0.3, seed=2)
-    session = CertifiedSession(stage_of(scene), bits=128)
+    session = CertifiedSession(stage_of(scene), options=CertifiedOptions(bits=128))
 
-    def interrupt(share, events, time):
+    def ask(share, events, time):
         if session.attempts and not interrupted:
             interrupted.append(session.attempts[0].events)
-            signal.raise_signal(signal.SIGINT)
+            interrupt.ask()
 
-    interrupted = []
-    run = run_session(session, "certified", scene, Stop(None, 10_000), RunOptions(log=True, progress=interrupt))
+    interrupted, interrupt = [], Interrupt()
+    wanted = RunOptions(log=True, progress=ask, interrupt=interrupt)
+    run = run_session(session, ENGINES["certified"], scene, Stop(None, 10_000), wanted)
     assert run.stopped == "interrupted"
     assert len(run.recorded.rows) == run.counters.events >= interrupted[0]
 

@@ -8,7 +8,8 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.scene.stage import stage_of
 from eventsim.validate.stress.catalogue.long_runs import crystal
 from eventsim.validate.stress.catalogue.scenes import on_plane
@@ -89,7 +90,7 @@ def test_f30_ties_with_cell_crossings_leave_the_log_of_all_pairs(domain):
     sites = np.array([(i, j) for i in range(6) for j in range(6)], float)
     signs = np.random.default_rng(30).choice([-1.0, 1.0], size=(36, 2))
     scene = es.Scene(es.Disks(2.0 * sites + 0.5, signs, 0.5), domain((12.0, 12.0)))
-    session = ReferenceSession(stage_of(scene), grid=None)
+    session = ReferenceSession(stage_of(scene), options=ReferenceOptions(grid=None))
     session.advance(Stop(None, 2000), 10**9)
     rows = session.take_rows()
     for engine in BOTH:

@@ -149,7 +149,7 @@ QUICK = ("corner",)
 )
 def test_both_engines_have_one_log_and_kernels_expand_it(name, monkeypatch):
     pytest.importorskip("numba")
-    from eventsim.engines.fast import FastSession
+    from eventsim.engines.fast.session import FastSession
     from tests.engines.fast.test_same_log import assert_same
 
     scene = SCENES[name]()

@@ -1,23 +1,32 @@
-"""Ctrl-C: at once while a session prepares itself, else between two of its stints; what has happened is kept."""
+"""Interrupts: a run that is asked to end keeps what has happened; the signals of the caller's process are left alone."""
 
+import os
 import signal
+import subprocess
+import sys
 import threading
 from contextlib import suppress
 
+import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.engines import auto
+from eventsim.cli.signals import interruptible, terminable
+from eventsim.engines import auto, engine_named
 from eventsim.engines.auto import AutoSession
 from eventsim.engines.base import BrokenOffError, Stop
-from eventsim.engines.reference import ReferenceSession
-from eventsim.runner.interrupts import unmissed_interrupts
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.loop import run_session
 from eventsim.runner.options import RunOptions
 from eventsim.scene.stage import stage_of
+from eventsim.suffixes import LOGS
 from tests.engines.scenes import lattice_gas
 
 SCENE = lattice_gas(30, 0.3, es.Periodic)
+IN_MAIN = pytest.mark.skipif(
+    threading.current_thread() is not threading.main_thread(), reason="signals come to the main thread"
+)
 
 
 class Preparing(ReferenceSession):
@@ -45,24 +54,30 @@ class Busy(ReferenceSession):
         return stopped
 
 
-def driven(session):
-    return run_session(session, "reference", SCENE, Stop(events=10**6), RunOptions(log=True))
+def run_of(session, engine="reference", events=10**6, **wanted):
+    """A run as the command line has it."""
+    with interruptible() as interrupt:
+        wanted = RunOptions(interrupt=interrupt, **wanted)
+        return run_session(session, engine_named(engine), SCENE, Stop(events=events), wanted)
 
 
+@IN_MAIN
 def test_an_interrupt_breaks_into_preparations_and_what_happened_is_kept():
-    run = driven(Preparing(stage_of(SCENE)))
+    run = run_of(Preparing(stage_of(SCENE)), log=True)
     assert run.stopped == "interrupted"
     assert len(run.recorded.rows) == run.counters.events >= 20
 
 
+@IN_MAIN
 def test_an_interrupt_waits_for_the_end_of_a_stint():
     session = Busy(stage_of(SCENE))
-    run = driven(session)
+    run = run_of(session, log=True)
     assert session.came_back
     assert run.stopped == "interrupted"
     assert len(run.recorded.rows) > 0
 
 
+@IN_MAIN
 def test_a_second_interrupt_breaks_into_a_stint():
     class Stubborn(Busy):
         def advance(self, stop, budget):
@@ -70,11 +85,12 @@ def test_a_second_interrupt_breaks_into_a_stint():
             return super().advance(stop, budget)
 
     with pytest.raises(KeyboardInterrupt):
-        driven(Stubborn(stage_of(SCENE)))
+        run_of(Stubborn(stage_of(SCENE)))
 
 
+@IN_MAIN
 def test_a_hand_over_that_is_broken_off_leaves_the_session_as_it_was(monkeypatch):
-    fast = pytest.importorskip("eventsim.engines.fast")
+    fast = pytest.importorskip("eventsim.engines.fast.session")
     for name in ("PATIENCE", "SAMPLE", "WARM"):
         monkeypatch.setattr(auto, name, 0.0)
     monkeypatch.setattr(auto, "SURE", float("inf"))
@@ -95,8 +111,9 @@ def test_a_hand_over_that_is_broken_off_leaves_the_session_as_it_was(monkeypatch
     assert len(rows) == session.counters.events > 0
 
 
+@IN_MAIN
 def test_nothing_is_kept_of_a_run_that_is_broken_off_before_it_began(monkeypatch):
-    fast = pytest.importorskip("eventsim.engines.fast")
+    fast = pytest.importorskip("eventsim.engines.fast.session")
     monkeypatch.setattr(auto, "LARGE", 1)
 
     def refuse(*args, **options):
@@ -104,7 +121,7 @@ def test_nothing_is_kept_of_a_run_that_is_broken_off_before_it_began(monkeypatch
 
     monkeypatch.setattr(fast, "FastSession", refuse)
     with pytest.raises(KeyboardInterrupt):
-        run_session(AutoSession(stage_of(SCENE)), "auto", SCENE, Stop(events=100), RunOptions())
+        run_of(AutoSession(stage_of(SCENE)), "auto", events=100)
 
 
 def test_the_fast_engine_prepares_itself_while_it_compiles():
@@ -112,8 +129,8 @@ def test_the_fast_engine_prepares_itself_while_it_compiles():
     from numba import njit
     from numba.extending import overload
 
-    from eventsim.engines.fast import FastSession
     from eventsim.engines.fast.compiled import timed_compiling
+    from eventsim.engines.fast.session import FastSession
 
     session = FastSession(stage_of(SCENE))
     seen, seconds = [], []
@@ -133,16 +150,140 @@ def test_the_fast_engine_prepares_itself_while_it_compiles():
     assert len(seconds) == 1
 
 
-@pytest.mark.skipif(threading.current_thread() is not threading.main_thread(), reason="signals come to the main thread")
+@IN_MAIN
 def test_an_interrupt_that_somebody_swallows_is_not_missed():
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    """The destructors and callbacks of compilers do."""
+
+    class Deaf(ReferenceSession):
+        def __init__(self, stage):
+            super().__init__(stage)
+            with suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+
+    with interruptible() as interrupt:
+        session = Deaf(stage_of(SCENE))
+        wanted = RunOptions(interrupt=interrupt)
+        assert run_session(session, engine_named("reference"), SCENE, Stop(events=10**6), wanted).stopped == "interrupted"
+
+
+def test_another_thread_can_ask_a_run_to_end():
+    interrupt = Interrupt()
+    threading.Timer(0.1, interrupt.ask).start()
+    run = es.simulate(SCENE, events=10**9, engine="reference", log=True, interrupt=interrupt)
+    assert run.stopped == "interrupted"
+    assert len(run.log) == run.counters.events > 0
+
+
+def test_ctrl_c_in_a_loop_of_simulations_ends_the_loop(tmp_path):
+    code = f"""
+import threading, signal, time, os
+import eventsim as es
+scene, done = es.gallery("gas", n=30), 0
+threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    while True:
+        es.simulate(scene, events=2000, engine="reference", log=f"{tmp_path}/{{done}}.csv")
+        done += 1
+except KeyboardInterrupt:
+    print(done)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    count = int(done.stdout)
+    for number in range(count):
+        assert len(es.load_log(tmp_path / f"{number}.csv")) >= 2000
+    rest = tmp_path / f"{count}.csv.part"
+    assert not (tmp_path / f"{count}.csv").exists()
+    if rest.exists():
+        es.load_log(rest)
+
+
+@IN_MAIN
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_handlers_of_the_caller_are_honoured(number):
+    class OursError(Exception):
+        pass
+
+    def raised(_number, _frame):
+        raise OursError
+
+    before = signal.signal(number, raised)
     try:
-        with pytest.raises(KeyboardInterrupt), unmissed_interrupts(), suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
-        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-        with pytest.raises(KeyboardInterrupt), unmissed_interrupts():
-            signal.raise_signal(signal.SIGINT)
-        with unmissed_interrupts():
-            pass
+        with pytest.raises(OursError):
+            es.simulate(SCENE, events=10**9, engine="reference", on_event=lambda rows: os.kill(os.getpid(), number))
+        assert signal.getsignal(number) is raised
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(number, before)
+
+
+@IN_MAIN
+@pytest.mark.parametrize(
+    ("suffix", "compact", "turns"),
+    [
+        (".csv", False, 5),
+        (".npz", True, 5),
+        *(pytest.param(suffix, compact, 50, marks=pytest.mark.slow) for suffix in LOGS for compact in (False, True)),
+    ],
+)
+def test_whatever_a_run_is_broken_off_at_its_log_can_be_read(tmp_path, suffix, compact, turns):
+    """Ctrl-C breaks in anywhere: in the middle of an event, of a block, of a column."""
+    if suffix == ".parquet":
+        pytest.importorskip("pyarrow")
+    rng = np.random.default_rng(1)
+    whole = es.simulate(SCENE, events=3000, engine="reference", log=True).log
+    before, found = signal.signal(signal.SIGALRM, signal.default_int_handler), []
+
+    def arm(rows):
+        if rows["event"][0] == 0:
+            signal.setitimer(signal.ITIMER_REAL, rng.uniform(0.001, 0.1))
+
+    try:
+        for turn in range(turns):
+            path = tmp_path / f"{turn}{suffix}"
+            with suppress(KeyboardInterrupt):
+                es.simulate(SCENE, events=3000, engine="reference", log=path, compact=compact, on_event=arm)
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            part = path.with_name(path.name + ".part")
+            if part.exists():
+                rows = es.load_log(part).rows
+                found.append(len(rows))
+                assert rows["remainder"].tobytes() == whole.rows["remainder"][: len(rows)].tobytes()
+            else:
+                assert len(es.load_log(path)) >= 3000
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert found
+
+
+@IN_MAIN
+def test_a_simulation_that_was_broken_off_in_an_event_is_refused_until_it_is_restored(monkeypatch):
+    sim = es.Simulation(SCENE, engine="reference")
+    sim.advance_to(0.5)
+    saved, straight = sim.snapshot(), es.Simulation(SCENE, engine="reference")
+    resolve = ReferenceSession._resolve_instant
+
+    def broken_off(session):
+        resolve(session)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(ReferenceSession, "_resolve_instant", broken_off)
+        with pytest.raises(KeyboardInterrupt):
+            sim.advance_to(2.0)
+    for again in (sim.step, sim.snapshot, lambda: sim.advance_to(2.0), lambda: sim.set_velocity(0, (0.0, 0.0))):
+        with pytest.raises(es.EventsimError, match="broken off in the middle of an event"):
+            again()
+    sim.restore(saved)
+    sim.advance_to(2.0)
+    straight.advance_to(2.0)
+    assert sim.log.digest() == straight.log.digest()
+
+
+@IN_MAIN
+def test_a_verb_that_is_asked_to_terminate_is_interrupted_and_then_the_handler_is_the_old_one():
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(KeyboardInterrupt), terminable():
+        signal.raise_signal(signal.SIGTERM)
+    assert signal.getsignal(signal.SIGTERM) is before

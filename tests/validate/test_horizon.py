@@ -3,7 +3,7 @@
 import pytest
 
 from eventsim.engines.base import Stop
-from eventsim.engines.certified import CertifiedSession
+from eventsim.engines.certified.session import CertifiedSession
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of

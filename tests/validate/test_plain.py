@@ -4,7 +4,7 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.scene.stage import stage_of
 from eventsim.validate.plain import PlainSession
 

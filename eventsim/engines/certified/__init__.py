@@ -1,5 +1,1 @@
 """The certified engine: the reference loop on ball arithmetic, where a comparison is answered or the precision is doubled."""
-
-from eventsim.engines.certified.session import Attempt, CertifiedSession
-
-__all__ = ["Attempt", "CertifiedSession"]

@@ -15,6 +15,7 @@ from eventsim.engines.certified.resolve import CertifiedResolver
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.generation import row_order
 from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -28,7 +29,7 @@ class CertifiedLoop(ReferenceSession):
 
     def __init__(self, stage: Stage, keep_rows: bool, number: Callable[[float], Ball]) -> None:
         self._begun = False
-        super().__init__(stage, keep_rows=keep_rows, grid=None, number=number)
+        super().__init__(stage, keep_rows, ReferenceOptions(grid=None), number)
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps.

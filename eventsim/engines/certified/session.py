@@ -7,17 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.engines.base import Counters, Motion, Snapshot, Stop
+from eventsim.engines.base import Motion, Session, Snapshot, Stop
 from eventsim.engines.certified.ball import Undecided, ball, traced, working_precision
 from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
+from eventsim.engines.certified.options import CertifiedOptions
 from eventsim.errors import EventsimError
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.scene.names import plural
 from eventsim.scene.stage import Stage
-
-FIRST_BITS, MOST_BITS = 1024, 2**17
-"""The precision of the first attempt; one beyond which no attempt is made."""
 
 SETTLED = 2.0**-60
 """Radii of this part of the largest coordinate and speed change no float that is logged, or its last bit now and then."""
@@ -40,10 +38,10 @@ class _Ended(NamedTuple):
     doubt: str
 
 
-class CertifiedSession:
+class CertifiedSession(Session):
     """The certified engine in the middle of a run.
 
-    bits: of the first attempt.  most_bits: of the last one.  What two attempts in a row, the second one with twice the bits,
+    What two attempts in a row, the second one with twice the bits,
     cannot decide is taken for a tie: then numbers are traced, which decides ties of rational numbers and of equal
     expressions; where this does not help either the run stops as `undecided tie`.  A run that stops there, or is broken off,
     is the attempt that came farthest; `attempts` are the other ones.
@@ -51,31 +49,25 @@ class CertifiedSession:
 
     name = "certified"
 
-    def __init__(
-        self, stage: Stage, keep_rows: bool = True, bits: int = FIRST_BITS, most_bits: int = MOST_BITS
-    ) -> None:
+    def __init__(self, stage: Stage, keep_rows: bool = True, options: CertifiedOptions | None = None) -> None:
         _refuse_parabolas(stage)
         # A disk at rest and one that falls would meet at a root of a quartic; without rest, a run ends with the bounces.
-        self.stage = stage if stage.n == 1 else replace(stage, supports=None)
-        self.reason: str | None = None
+        super().__init__(stage if stage.n == 1 else replace(stage, supports=None))
+        options = options or CertifiedOptions()
         self.attempts: list[Attempt] = []
         self._keep_rows = keep_rows
-        self._first_bits, self._most_bits = bits, max(bits, most_bits)
+        self._first_bits, self._most_bits = options.bits, max(options.bits, options.most_bits)
         self._stopped: str | None = None
         self._emitted = 0
         self._farthest: _Ended | None = None
-        self._begin(bits, False)
+        self._begin(options.bits, False)
 
     def _begin(self, bits: int, trace: bool) -> None:
         self.bits, self.traced = bits, trace
         self._held: list[Rows] = []
         with working_precision(bits):
             self._loop = CertifiedLoop(self.stage, self._keep_rows, traced if trace else ball)
-
-    @property
-    def counters(self) -> Counters:
-        """How often what happened, in the present attempt."""
-        return self._loop.counters
+        self.counters = self._loop.counters
 
     @property
     def proven(self) -> int:
@@ -121,6 +113,7 @@ class CertifiedSession:
             self.attempts.remove(farthest.attempt)
             self.bits, self.traced, _ = farthest.attempt
             self._loop, self._held = farthest.loop, farthest.held
+            self.counters = self._loop.counters
             return True
         return False
 

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from eventsim.engines.base import Counters, Motion, Snapshot, Stop
+from eventsim.engines.base import Motion, Session, Snapshot, Stop
 from eventsim.engines.clock_end import at_the_last_epoch
 from eventsim.engines.drift import only_wraps
 from eventsim.engines.fast import layout, tally
 from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
 from eventsim.engines.fast.machine import FOREVER, Machine
-from eventsim.engines.fast.plan import Sizes
+from eventsim.engines.fast.options import FastOptions
 from eventsim.engines.fast.rules import kind_of
 from eventsim.engines.fast.rulings import Rulings
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, remainder_since, window_length
@@ -33,11 +33,10 @@ LOW_PLACES = ("low_x", "low_y")
 LARGEST_BUDGET = 1 << 40
 
 
-class FastSession:
+class FastSession(Session):
     """The fast engine in the middle of a run.
 
-    stage: what is simulated.  keep_rows: whether the log is wanted.  lanes: predict eight pairs at a time; None: where the
-    processor can.  sizes: the cells, None for none; left out, the engine chooses.
+    keep_rows: whether the log is wanted.  saved: the snapshot that it goes on from; None: the beginning.
     """
 
     name = "fast"
@@ -46,17 +45,15 @@ class FastSession:
         self,
         stage: Stage,
         keep_rows: bool = True,
-        lanes: bool | None = None,
-        sizes: Sizes | tuple[Sizes, ...] | str | None = "auto",
+        options: FastOptions | None = None,
         saved: Snapshot | None = None,
     ) -> None:
-        self.stage = stage
-        self.counters = Counters()
-        self.compile_s = 0.0
+        super().__init__(stage)
+        options = options or FastOptions()
         self._marked: object = False
         self._idle = 0.0  # time since the end of the last window that had rows
         self._behind: Snapshot | None = None  # where the last flight began, in an earlier window
-        self._machine = Machine(stage, keep_rows, lanes, sizes)
+        self._machine = Machine(stage, keep_rows, options.lanes, options.sizes)
         self.state = self._machine.state
         self._rulings = Rulings(self._machine, self.counters)
         self._columns = (
@@ -70,16 +67,6 @@ class FastSession:
             self._begin()
         else:
             self.restore(saved)
-
-    @property
-    def reason(self) -> str | None:
-        """A sentence on why the run stopped, where that was no wish."""
-        return self._rulings.reason
-
-    @property
-    def refused(self) -> bool:
-        """Whether it stopped because the rules have no answer."""
-        return self._rulings.refused
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
@@ -96,6 +83,7 @@ class FastSession:
             return stopped
         finally:
             tally.tell(self.counters, self._machine.counts, self._machine.sums)
+            self.reason, self.refused = self._rulings.reason, self._rulings.refused
 
     @property
     def prepares(self) -> bool:

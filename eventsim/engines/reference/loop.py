@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.engines.base import Counters, Motion, Snapshot, Stop, rows_from
+from eventsim.engines.base import Motion, Session, Snapshot, Stop, rows_from
 from eventsim.engines.clock_end import at_the_last_epoch
 from eventsim.engines.collapse import LIES_STILL, named
 from eventsim.engines.drift import only_wraps
@@ -16,6 +16,7 @@ from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calenda
 from eventsim.engines.reference.cells import Cells, Grid, plan
 from eventsim.engines.reference.generation import Ties, components
 from eventsim.engines.reference.invariants import check_invariants
+from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
@@ -28,11 +29,10 @@ from eventsim.record.events import Floats, Rows
 from eventsim.scene.stage import Stage
 
 
-class ReferenceSession:
+class ReferenceSession(Session):
     """The reference engine in the middle of a run.
 
-    stage: what is simulated.  keep_rows: whether the log is wanted.  grid: the cells, None for all pairs; left out, the
-    engine chooses.  check: recompute every invariant by brute force after each event (slow; for tests).
+    keep_rows: whether the log is wanted.  number: what makes the engine's numbers from floats.
     """
 
     name = "reference"
@@ -43,19 +43,16 @@ class ReferenceSession:
         self,
         stage: Stage,
         keep_rows: bool = True,
-        check: bool = False,
-        grid: Grid | str | None = "auto",
+        options: ReferenceOptions | None = None,
         number: Any = float,
     ) -> None:
-        self.stage = stage
-        self.counters = Counters()
+        super().__init__(stage)
+        options = options or ReferenceOptions()
         self.state = EngineState(stage, number)
         self.calendar = self._new_calendar()
-        chosen = plan(stage) if isinstance(grid, str) else grid
+        chosen: Grid | None = plan(stage) if isinstance(options.grid, str) else options.grid
         self.cells = None if chosen is None else Cells(stage, chosen)
-        self.reason: str | None = None
-        self.refused = False
-        self._check = check
+        self._check = options.check
         self._idle = 0.0  # time since the end of the last window that had rows
         self._behind: Snapshot | None = None  # where the last flight began, in an earlier window
         fine = self.state.low_places and self.predictor is Predictor

@@ -15,15 +15,16 @@ import math
 from typing import Any
 
 import numpy as np
+import pymunk
 
 from eventsim.engines.stepped.found import DEEPEST, EVENTS, OUTER_X, OUTER_Y, note_pair, note_wall
+from eventsim.engines.stepped.options import ChipmunkOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.post import Post
 from eventsim.scene.stage import Stage
 
-MISSING = "the engine pymunk needs the Chipmunk engine, which is not installed: pip install 'eventsim-disks[pymunk]'"
 SLOP = 0.01
 """In smallest radii."""
 
@@ -32,32 +33,22 @@ THICK = 4.0
 
 
 class ChipmunkSession(SteppedSession):
-    """The engine `pymunk` in the middle of a run; iterations: of its solver in each step; slop: length."""
+    """The engine `pymunk` in the middle of a run."""
 
     name = "pymunk"
 
-    def __init__(
-        self,
-        stage: Stage,
-        keep_rows: bool = True,
-        dt: float | None = None,
-        iterations: int = 10,
-        slop: float | None = None,
-    ) -> None:
-        try:
-            import pymunk
-        except ImportError:
-            raise EventsimError(MISSING) from None
+    def __init__(self, stage: Stage, keep_rows: bool = True, options: ChipmunkOptions | None = None) -> None:
+        options = options or ChipmunkOptions()
         _demand_known(stage)
-        super().__init__(stage, keep_rows, dt)
+        super().__init__(stage, keep_rows, options.dt)
         space = self._space = pymunk.Space()
         space.gravity = stage.gravity or (0.0, 0.0)
-        space.iterations = iterations
-        space.collision_slop = SLOP * float(stage.radius.min()) if slop is None else slop
+        space.iterations = options.iterations
+        space.collision_slop = SLOP * float(stage.radius.min()) if options.slop is None else options.slop
         elasticity = math.sqrt(stage.law.pair)
-        self._bodies = [self._circle(pymunk, i, elasticity) for i in range(stage.n)]
+        self._bodies = [self._circle(i, elasticity) for i in range(stage.n)]
         self._walls: dict[Any, int] = {}
-        for shape, wall in self._outlines(pymunk):
+        for shape, wall in self._outlines():
             # Chipmunk multiplies the elasticities of the two shapes.
             shape.elasticity = min(stage.law.wall / elasticity, 1.0) if elasticity else 0.0
             space.add(shape)
@@ -66,7 +57,7 @@ class ChipmunkSession(SteppedSession):
         space.on_collision(None, None, post_solve=self._solved)
         self._hits: list[tuple[int, int, bool, float]] = []
 
-    def _circle(self, pymunk: Any, i: int, elasticity: float) -> Any:
+    def _circle(self, i: int, elasticity: float) -> Any:
         m = self.disks
         kind = pymunk.Body.KINEMATIC if math.isinf(m.mass[i]) else pymunk.Body.DYNAMIC
         body = pymunk.Body(float(m.mass[i]), math.inf, body_type=kind)
@@ -76,11 +67,11 @@ class ChipmunkSession(SteppedSession):
         self._space.add(body, circle)
         return body
 
-    def _outlines(self, pymunk: Any) -> list[tuple[Any, int]]:
+    def _outlines(self) -> list[tuple[Any, int]]:
         """The walls as segments, each with its number."""
         stage, static = self.stage, self._space.static_body
         thick = THICK * float(stage.radius.max())
-        found = [(_behind(pymunk, static, boundary, stage, thick), boundary.wall) for boundary in stage.boundaries]
+        found = [(_behind(static, boundary, stage, thick), boundary.wall) for boundary in stage.boundaries]
         for feature in stage.features:
             line = feature.shape.line()
             if line is not None:
@@ -152,13 +143,13 @@ class ChipmunkSession(SteppedSession):
         self._write()
 
 
-def _behind(pymunk: Any, static: Any, boundary: Boundary, stage: Stage, thick: float) -> Any:
+def _behind(static: Any, boundary: Boundary, stage: Stage, thick: float) -> Any:
     """A thick segment whose inner side is a wall of the domain."""
     assert stage.size is not None
     across = boundary.position - boundary.side * thick
     along = -thick, stage.size[1 - boundary.axis] + thick
-    ends = [(across, t) if boundary.axis == 0 else (t, across) for t in along]
-    return pymunk.Segment(static, *ends, thick)
+    begin, end = ((across, t) if boundary.axis == 0 else (t, across) for t in along)
+    return pymunk.Segment(static, begin, end, thick)
 
 
 def _demand_known(stage: Stage) -> None:

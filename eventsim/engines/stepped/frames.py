@@ -38,28 +38,27 @@ from eventsim.engines.stepped.found import (
     note_wall,
 )
 from eventsim.engines.stepped.ground import POST, Ground, nearest
+from eventsim.engines.stepped.options import FramesOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
 from eventsim.formulas.walls.face import Face
 from eventsim.scene.stage import Stage
 
 FRAME = 1.0 / 60.0
-MEMORIES = ("apart", "frame")
 MOST_DISKS = 5000
 """The memory of pairs is a square table, and each frame looks at all pairs."""
 
 
 class FramesSession(SteppedSession):
-    """The engine `frames` in the middle of a run; dt: the frame (default 1/60); memory: "apart" or "frame"."""
+    """The engine `frames` in the middle of a run; without a dt, a frame is 1/60."""
 
     name = "frames"
 
-    def __init__(self, stage: Stage, keep_rows: bool = True, dt: float | None = None, memory: str = "apart") -> None:
-        if memory not in MEMORIES:
-            raise EventsimError(f"frames: memory = {memory!r}: must be one of {', '.join(MEMORIES)}")
+    def __init__(self, stage: Stage, keep_rows: bool = True, options: FramesOptions | None = None) -> None:
         _demand_known(stage)
-        super().__init__(stage, keep_rows, FRAME if dt is None else dt)
-        self._apart = memory == "apart"
+        options = options or FramesOptions()
+        super().__init__(stage, keep_rows, FRAME if options.dt is None else options.dt)
+        self._apart = options.memory == "apart"
         self._met = np.zeros((stage.n, stage.n), np.bool_)
         self._held = np.zeros(stage.n, np.int64)
         self._run(0, 0)  # compiles, so that no stopwatch sees it

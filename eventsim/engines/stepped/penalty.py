@@ -37,6 +37,7 @@ from eventsim.engines.stepped.found import (
 )
 from eventsim.engines.stepped.ground import Ground, nearest
 from eventsim.engines.stepped.neighbours import Neighbours
+from eventsim.engines.stepped.options import PenaltyOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
@@ -56,24 +57,22 @@ class Springs(NamedTuple):
 
 
 class PenaltySession(SteppedSession):
-    """The engine `penalty` in the middle of a run; stiffness: force / length, left out: from the step."""
+    """The engine `penalty` in the middle of a run."""
 
     name = "penalty"
 
-    def __init__(
-        self, stage: Stage, keep_rows: bool = True, dt: float | None = None, stiffness: float | None = None
-    ) -> None:
-        super().__init__(stage, keep_rows, dt)
+    def __init__(self, stage: Stage, keep_rows: bool = True, options: PenaltyOptions | None = None) -> None:
+        options = options or PenaltyOptions()
+        super().__init__(stage, keep_rows, options.dt)
         mass = self.disks.mass
         if not np.all(mass > 0.0):
             raise EventsimError("penalty cannot simulate this scene: a disk of mass 0 has no acceleration")
         finite = mass[np.isfinite(mass)]
         lightest = 0.5 * float(finite.min()) if len(finite) else 1.0
-        self.stiffness = (
-            lightest * (math.pi / (STEPS_PER_CONTACT * self.dt)) ** 2 if stiffness is None else float(stiffness)
-        )
+        usual = lightest * (math.pi / (STEPS_PER_CONTACT * self.dt)) ** 2
+        self.stiffness = usual if options.stiffness is None else float(options.stiffness)
         if not 0.0 < self.stiffness < math.inf:
-            raise EventsimError(f"penalty: stiffness = {stiffness!r}: must be finite and above 0")
+            raise EventsimError(f"penalty: stiffness = {options.stiffness!r}: must be finite and above 0")
         self._damping = damping_ratio(stage.law.pair), damping_ratio(stage.law.wall)
         self._neighbours = Neighbours(stage.n)
         touching = np.zeros((stage.n, len(self.ground.kind)))

@@ -8,12 +8,12 @@ bits: so a run also has a sampled trajectory, and `Run.state_at` reads that.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import Any
 
 import numpy as np
 
-from eventsim.engines.base import Counters, Motion, Snapshot, Stop
+from eventsim.engines.base import Motion, Session, Snapshot, Stop
 from eventsim.engines.stepped.clock import StepClock, usual_step
 from eventsim.engines.stepped.disks import Moving, moving_disks
 from eventsim.engines.stepped.found import BUFFER, MOVED, ROW_COUNT, Found, nothing_found, take_counters, tell_counters
@@ -30,10 +30,10 @@ VAIN_STEPS = 1_000_000
 """Steps without an event after which a run without a stop time is called quiet: a stepped engine cannot know that."""
 
 
-class SteppedSession(ABC):
+class SteppedSession(Session):
     """A stepped engine in the middle of a run; engines add `_run`.
 
-    dt: the step size, time; left out, a twentieth of the time in which a typical disk flies its radius.
+    dt: the step, time; None: the usual one.
     Raises EventsimError for a step that is not a positive number, and for scenes that the engine does not know.
     """
 
@@ -46,9 +46,7 @@ class SteppedSession(ABC):
                 f"{self.name} cannot simulate this scene: it takes squares of speeds, and that of {fastest:.3g} is beyond the"
                 " range of floats"
             )
-        self.stage = stage
-        self.counters = Counters()
-        self.reason: str | None = None
+        super().__init__(stage)
         self.dt = usual_step(stage) if dt is None else float(dt)
         if not 0.0 < self.dt < math.inf:
             raise EventsimError(f"{self.name}: dt = {self.dt!r}: a step must be a finite time above 0")
@@ -56,7 +54,7 @@ class SteppedSession(ABC):
         self.disks: Moving = moving_disks(stage)
         self.found: Found = nothing_found(BUFFER if keep_rows else 0)
         self.clock_of_steps = StepClock(stage, self.dt)
-        self.trajectory = Trajectory(stage.gravity, stage.corner, stage.period)
+        self.trajectory: Trajectory = Trajectory(stage.gravity, stage.corner, stage.period)
         self._keep_rows = keep_rows
         self._blocks: list[Rows] = []
         self._sample()
@@ -152,7 +150,7 @@ class SteppedSession(ABC):
             self._blocks.append(self.clock_of_steps.place(row))
         self._kicked()
 
-    def _kicked(self) -> None:  # noqa: B027 - most engines have nothing to do
+    def _kicked(self) -> None:
         """A disk has got another velocity."""
 
     def snapshot(self) -> Snapshot:
@@ -187,5 +185,5 @@ class SteppedSession(ABC):
         """What an engine remembers of contacts."""
         return ()
 
-    def _remember(self, memory: tuple[Any, ...]) -> None:  # noqa: B027 - nor anything to remember
+    def _remember(self, memory: tuple[Any, ...]) -> None:
         """Take back what `_memory` gave."""

@@ -35,6 +35,7 @@ from eventsim.engines.stepped.found import (
 )
 from eventsim.engines.stepped.ground import Ground, nearest
 from eventsim.engines.stepped.neighbours import Neighbours
+from eventsim.engines.stepped.options import FixedStepOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.formulas.impulse import mass_fractions, pair_update, wall_update
 from eventsim.record.events import Floats
@@ -46,9 +47,10 @@ class FixedStepSession(SteppedSession):
 
     name = "stepped"
 
-    def __init__(self, stage: Stage, keep_rows: bool = True, dt: float | None = None, locate: bool = False) -> None:
-        super().__init__(stage, keep_rows, dt)
-        self._locate = locate
+    def __init__(self, stage: Stage, keep_rows: bool = True, options: FixedStepOptions | None = None) -> None:
+        options = options or FixedStepOptions()
+        super().__init__(stage, keep_rows, options.dt)
+        self._locate = options.locate
         self._neighbours = Neighbours(stage.n)
         self._scratch = np.empty(0), np.empty(0, np.int64)
         self._run(0, 0)  # compiles, so that no stopwatch sees it

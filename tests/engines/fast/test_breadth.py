@@ -9,10 +9,11 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.fast import FastSession
 from eventsim.engines.fast.lanes import lanes_work
+from eventsim.engines.fast.options import FastOptions
 from eventsim.engines.fast.plan import cell_sizes, classes_of
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.fast.session import FastSession
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.digest import digest_of
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage, stage_of
@@ -111,5 +112,5 @@ def test_golden_digests_hold_with_lanes_and_without(name: str, lanes: bool) -> N
     if lanes and not lanes_work():
         pytest.skip("this processor has no such registers")
     scene = stored(name)
-    rows, stopped = rows_of(FastSession(stage_of(scene), lanes=lanes), Stop(scene.until, scene.events))
+    rows, stopped = rows_of(FastSession(stage_of(scene), options=FastOptions(lanes=lanes)), Stop(scene.until, scene.events))
     assert {"events": len(rows), "stopped": stopped, "digest": digest_of(rows)} == KNOWN[name]

@@ -7,9 +7,10 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.fast import FastSession
+from eventsim.engines.fast.options import FastOptions
 from eventsim.engines.fast.plan import Sizes, classes_of, levels_of
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.fast.session import FastSession
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.digest import digest_of
 from eventsim.scene.stage import Stage, stage_of
 from tests.engines.fast.test_same_log import assert_same, rows_of
@@ -50,7 +51,7 @@ def test_grids_of_any_width_and_the_scalar_kernel_give_one_log() -> None:
         {"sizes": (square(18, 8, 0.2), square(3, 16, 1.2))},
         {"sizes": (square(40, 4, 0.05), square(16, 4, 0.2), square(1, 8, 1.2))},
     ]
-    digests = {digest_of(rows_of(FastSession(stage, **options), STOP)[0]) for options in choices}
+    digests = {digest_of(rows_of(FastSession(stage, options=FastOptions(**options)), STOP)[0]) for options in choices}
     assert len(digests) == 1
 
 

@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 
 import eventsim as es
 from eventsim.engines.base import Session, Stop
-from eventsim.engines.fast import FastSession, grids, plan
+from eventsim.engines.fast import grids, plan
+from eventsim.engines.fast.options import FastOptions
 from eventsim.engines.fast.plan import Sizes
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.fast.session import FastSession
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.digest import digest_of
 from eventsim.record.events import ROW, Rows
 from eventsim.scene.gallery import gallery, names
@@ -46,7 +48,7 @@ def rows_of(session: Session, stop: Stop) -> tuple[Rows, str]:
 
 
 def assert_same(stage: Stage, stop: Stop, **options: object) -> None:
-    reference, fast = ReferenceSession(stage), FastSession(stage, **options)
+    reference, fast = ReferenceSession(stage), FastSession(stage, options=FastOptions(**options))
     expected, why = rows_of(reference, stop)
     rows, stopped = rows_of(fast, stop)
     differ = next(
@@ -114,7 +116,7 @@ def test_scalar_kernel_and_lanes_and_two_cell_sizes_agree() -> None:
     stage = stage_of(lattice_gas(12, 12, 1.25, np.random.default_rng(5), "periodic", False, 0.0))
     stop = Stop(events=3000)
     digests = {
-        digest_of(rows_of(FastSession(stage, **options), stop)[0])
+        digest_of(rows_of(FastSession(stage, options=FastOptions(**options)), stop)[0])
         for options in (
             {"lanes": False},
             {"lanes": None},

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eventsim.engines.base import Stop
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.scene import Box, Disks, Open, Periodic, Scene
 from eventsim.scene.stage import stage_of
 from eventsim.validate.stress.case import Bench, Case, off
@@ -47,12 +48,12 @@ def _against_all_pairs(bench: Bench, scene: Scene, events: int) -> float:
 
     It is looked at where events are far apart: at the time of one, rounding would decide whether it has happened.
     """
-    first = ReferenceSession(stage_of(scene), keep_rows=True, grid=None)
+    first = ReferenceSession(stage_of(scene), options=ReferenceOptions(grid=None))
     first.advance(Stop(events=events), 10**9)
     times = first.take_rows()["time"][-LAST_TIMES:]
     widest = int(np.argmax(np.diff(times)))
     time = float(times[widest] + times[widest + 1]) / 2.0
-    session = ReferenceSession(stage_of(scene), keep_rows=False, grid=None)
+    session = ReferenceSession(stage_of(scene), keep_rows=False, options=ReferenceOptions(grid=None))
     session.advance(Stop(until=time), 10**9)
     motion = session.motion()
     run = bench.run(scene, until=time)

@@ -1,0 +1,112 @@
+"""Where the rows of a run go: memory, a log file, a digest, whoever else takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from eventsim.record.digest import Digester
+from eventsim.record.events import Rows, blank_rows
+from eventsim.record.files import FileSink, continued_sink, open_log, open_sink
+from eventsim.record.provenance import Ending, Provenance, Recorded, kicks_of
+from eventsim.runner.options import RunOptions
+from eventsim.runner.writer import Writer
+
+
+class Recording:
+    """The rows of one run on their way to those who keep them.
+
+    file: the log file, None where there is none.  memory: the log in memory, None where there is none.
+
+    Raises:
+        LogError: where the log file cannot be written, or is not the one that the run goes on with.
+    """
+
+    def __init__(self, wanted: RunOptions, provenance: Provenance) -> None:
+        self.memory = MemorySink(provenance) if wanted.log is True else None
+        self.file = _file_sink(wanted, provenance)
+        self._digester = Digester() if wanted.digest or wanted.log is not False else None
+        self._sinks = [sink for sink in (self.memory, self.file) if sink is not None]
+        takers = [sink.write for sink in self._sinks]
+        self._writer = Writer(takers + ([] if self._digester is None else [self._digester.update]) + wanted.takers)
+        self.write, self.settle = self._writer.write, self._writer.settle
+
+    def go_on(self, wanted: RunOptions) -> None:
+        """Take into the digest what the log file holds already.  Raises LogError where it does not follow from its scene."""
+        if self.file is not None and self._digester is not None:
+            for rows in _rows_before(self.file, wanted):
+                self._digester.update(rows)
+
+    @property
+    def waited_s(self) -> float:
+        """Seconds that the engine has waited for rows to be written."""
+        return self._writer.waited_s
+
+    def close(self, epoch: int, remainder: float, stopped: str) -> str | None:
+        """End with the run, at that time for that reason; the digest, None where none is computed."""
+        self._writer.finish()
+        digest = None if self._digester is None else self._digester.hexdigest()
+        for sink in self._sinks:
+            sink.close(Ending(epoch, remainder, stopped, digest))
+        return digest
+
+    def break_off(self, has_rows: bool) -> None:
+        """End where something broke the run off: a log that has rows stays as NAME.part, which can be read."""
+        self._writer.abandon()
+        for sink in self._sinks:
+            sink.leave() if has_rows else sink.abandon()
+
+
+def _file_sink(wanted: RunOptions, provenance: Provenance) -> FileSink | None:
+    """The writer of the log file: a new one, or that of the run that goes on."""
+    if isinstance(wanted.log, bool):
+        return None
+    path = Path(wanted.log)
+    if wanted.resumed is None:
+        return open_sink(path, provenance, compact=wanted.compact)
+    assert wanted.resumed.log is not None, "only a run that kept a log goes on with one"
+    return continued_sink(path, provenance, wanted.compact, wanted.resumed.log.mark)
+
+
+def _rows_before(file: FileSink, wanted: RunOptions) -> Iterator[Rows]:
+    """The full rows of the log that a run goes on with."""
+    provenance, blocks = open_log(file.part)
+    if not provenance.compact:
+        return blocks
+    assert wanted.expanded is not None, "who goes on with a compact log says how it is expanded"
+    provenance = replace(provenance, kicks=file.sync().kicks)
+    return iter([wanted.expanded(provenance, np.concatenate([blank_rows(0), *blocks]))])
+
+
+class MemorySink:
+    """Keeps the rows of a run in memory; `recorded()` is what has been written so far."""
+
+    def __init__(self, provenance: Provenance) -> None:
+        self._provenance = provenance
+        self._blocks: list[Rows] = []
+        self._ending: Ending | None = None
+
+    def write(self, rows: Rows) -> None:
+        """Append a block of rows; it is copied, so the caller may reuse it."""
+        self._blocks.append(rows.copy())
+
+    def close(self, ending: Ending | None = None) -> None:
+        """Say where the run ended."""
+        self._ending = ending
+
+    def leave(self) -> None:
+        """Memory holds what it holds."""
+
+    def abandon(self) -> None:
+        """Forget all rows."""
+        self._blocks.clear()
+
+    def recorded(self) -> Recorded:
+        """Return the rows so far as a log."""
+        rows = np.concatenate(self._blocks) if self._blocks else blank_rows(0)
+        self._blocks = [rows]
+        finished = self._provenance.finished(self._ending, tuple(kicks_of(rows)), len(rows))
+        return Recorded(finished, rows)
