@@ -1,0 +1,193 @@
+"""python -m tests.oracle --family NAME --scenes N --seed S [--engine reference|fast|both]: random scenes, judged."""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import eventsim as es
+from tests.oracle.families import FAMILIES, case_of
+from tests.oracle.families.case import Case
+from tests.oracle.judge import REFUSED, RIGHT, UNJUDGED, WRONG, Seen, Verdict, judge, observe
+from tests.oracle.loop import story
+
+ENGINES = {"reference": ("reference",), "fast": ("fast",), "both": ("reference", "fast")}
+
+WORDS = (RIGHT, REFUSED, WRONG, UNJUDGED)
+
+
+@dataclass
+class Tally:
+    """What came of the scenes of a family."""
+
+    counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(WORDS, 0))
+    judged: list[int] = field(default_factory=list)
+    total: list[int] = field(default_factory=list)
+    told: list[str] = field(default_factory=list)
+
+    @property
+    def scenes(self) -> int:
+        """How many."""
+        return sum(self.counts.values())
+
+    def line(self, family: str) -> str:
+        """One line of the table."""
+        c = self.counts
+        share = 100.0 * c[UNJUDGED] / max(1, self.scenes)
+        median = statistics.median(self.judged) if self.judged else 0
+        rows = statistics.median(self.total) if self.total else 0
+        return (
+            f"{family:16} {self.scenes:6} {c[RIGHT]:6} {c[REFUSED]:8} {c[WRONG]:13} {c[UNJUDGED]:11}"
+            f" {share:5.1f} % {median:11g} {rows:9g}"
+        )
+
+
+HEAD = (
+    f"{'family':16} {'scenes':>6} {'right':>6} {'refused':>8} {'silent wrong':>13} {'not judged':>11}"
+    f" {'':7} {'rows judged':>11} {'of (med.)':>9}"
+)
+
+
+def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
+    """The oracle's verdict on one case: the worst that it gives to one of the engines."""
+    told = story(case.scene, kicks=case.kicks)
+    verdicts: list[Verdict] = []
+    seen: list[Seen] = []
+    for engine in engines:
+        try:
+            one = observe(case.scene, engine, case.kicks)
+        except es.EventsimError as error:
+            verdicts.append(Verdict(REFUSED, str(error), -1, 0, 0))
+            continue
+        seen.append(one)
+        verdict = judge(told, one)
+        if verdict.word != WRONG and case.inside is not None:
+            verdict = _kept_inside(case.inside, one, verdict)
+        verdicts.append(verdict)
+    if len(seen) == 2 and not is_same(*seen):
+        verdicts.append(Verdict(WRONG, "the engines differ", -1, 0, 0))
+    return max(verdicts, key=lambda v: (RIGHT, UNJUDGED, REFUSED, WRONG).index(v.word))
+
+
+def is_same(one: Seen, other: Seen) -> bool:
+    """Whether two engines did the same, bit for bit."""
+    if one.stopped != other.stopped or len(one.rows) != len(other.rows):
+        return False
+    return all(
+        np.array_equal(one.rows[name], other.rows[name], equal_nan=one.rows[name].dtype.kind == "f")
+        for name in one.rows.dtype.names
+    )
+
+
+def _kept_inside(inside: Any, seen: Seen, verdict: Verdict) -> Verdict:
+    """Whether all disks stayed where they may be, also where floats do not determine the run."""
+    cx, cy = seen.corner
+    for number, row in enumerate(seen.rows):
+        for name in "ab":
+            if row[name] >= 0 and not inside(float(row[f"x{name}"]) + cx, float(row[f"y{name}"]) + cy):
+                return Verdict(
+                    WRONG, f"disk {row[name]} is on the other side of a wall", number, verdict.judged, verdict.total
+                )
+    if seen.stopped in ("until", "quiet"):
+        for i, (x, y) in enumerate(seen.position.tolist()):
+            if not inside(x, y):
+                return Verdict(
+                    WRONG, f"disk {i} ends on the other side of a wall", len(seen.rows), verdict.judged, verdict.total
+                )
+    return verdict
+
+
+def survey(
+    family: str, scenes: int, seed: int, engines: Sequence[str], first: int = 0, most_rows: int | None = None
+) -> Tally:
+    """Judge the scenes of a family; most_rows: leave out those that may have more."""
+    tally = Tally()
+    for number in range(first, first + scenes):
+        case = case_of(family, seed, number)
+        if most_rows is not None and case.scene.events > most_rows:
+            continue
+        verdict = verdict_of(case, engines)
+        tally.counts[verdict.word] += 1
+        tally.judged.append(verdict.judged)
+        tally.total.append(verdict.total)
+        if verdict.word != RIGHT:
+            at = f" row {verdict.row}" if verdict.row >= 0 else ""
+            tally.told.append(f"{verdict.word:8} --seed {seed} --first {number}{at}: {verdict.why}")
+    return tally
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Judge families and print the table; 1 where an answer was wrong without a word."""
+    parser = argparse.ArgumentParser(prog="python -m tests.oracle", description=__doc__)
+    parser.add_argument(
+        "--family", action="append", help="a name of --list, or the beginning of several; all by default"
+    )
+    parser.add_argument("--scenes", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--first", type=int, default=0, help="number of the first scene: to repeat one, with --scenes 1"
+    )
+    parser.add_argument("--engine", choices=ENGINES, default="both")
+    parser.add_argument("--list", action="store_true", help="name the families")
+    parser.add_argument("--quiet", action="store_true", help="no lines on single scenes")
+    parser.add_argument("--show", action="store_true", help="write each scene as TOML, and what the oracle tells of it")
+    wishes = parser.parse_args(arguments)
+    if wishes.list:
+        for name, make in FAMILIES.items():
+            print(f"{name:16} {(make.__doc__ or '').splitlines()[0]}")
+        return 0
+    chosen = [name for name in FAMILIES if not wishes.family or any(name.startswith(f) for f in wishes.family)]
+    if not chosen:
+        parser.error(f"no family is called {wishes.family}; see --list")
+    wrong = 0
+    lines = []
+    for name in chosen:
+        if wishes.show:
+            for number in range(wishes.first, wishes.first + wishes.scenes):
+                show(case_of(name, wishes.seed, number))
+        begun = time.perf_counter()
+        tally = survey(name, wishes.scenes, wishes.seed, ENGINES[wishes.engine], wishes.first)
+        if not wishes.quiet:
+            print(*tally.told, sep="\n")
+        lines.append(f"{tally.line(name)}   {time.perf_counter() - begun:.0f} s")
+        wrong += tally.counts[WRONG]
+        print(HEAD, lines[-1], sep="\n", flush=True)
+    if len(lines) > 1:
+        print("", HEAD, *lines, sep="\n")
+    return 1 if wrong else 0
+
+
+def show(case: Case) -> None:
+    """Print a case and the oracle's rows."""
+    from eventsim.scene.files import scene_to_dict
+
+    print(scene_to_dict(case.scene))
+    print(*case.kicks, sep="\n")
+    told = story(case.scene, kicks=case.kicks)
+    for number, row in enumerate(told.rows):
+        walls, idle = "/".join(sorted(row.walls)), " idle" if row.idle else ""
+        print(f"{number:4} {row.kind:5} t = {float(row.time):.15g} +- {row.time_error:.1g} {walls}{idle}")
+        for part in row.parts:
+            (x, y), (u, w) = part.place, part.velocity
+            place, velocity = f"({float(x):.15g}, {float(y):.15g})", f"({float(u):.15g}, {float(w):.15g})"
+            print(
+                f"     {part.disk:3} at {place} +- {part.place_error:.1g}, velocity {velocity} +- {part.velocity_error:.1g}"
+            )
+    print(told.ending, told.why, float(told.time))
+
+
+def write_scene(case: Case, path: Path) -> None:
+    """Keep a scene as a file."""
+    case.scene.save(path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
