@@ -26,8 +26,8 @@ from eventsim.runner.options import OnEvent, Progress, RunOptions, stop_of
 from eventsim.runner.outcome import diagnosed, provenance_of, state_of
 from eventsim.runner.recording import MemorySink
 from eventsim.scene import Scene
-from eventsim.scene.difference import difference
 from eventsim.scene.numbers import FASTEST, LONGEST, number, point
+from eventsim.scene.scene import difference
 from eventsim.scene.stage import stage_of
 
 STEP_BUDGET = 4096

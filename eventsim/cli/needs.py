@@ -11,7 +11,7 @@ import numpy as np
 from eventsim.engines.auto import first_engine
 from eventsim.engines.base import Stop
 from eventsim.engines.reference.cells import images_of, plan
-from eventsim.scene.disks import Disks
+from eventsim.scene.disks import Disks, species_among
 from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
 from eventsim.scene.scene import touching_by_rounding
@@ -160,15 +160,10 @@ def needs_of(scene: Scene) -> Needs:
 
 def _species(disks: Disks) -> tuple[tuple[Species, ...], int]:
     """The commonest species, and how many species there are."""
-    radii, radius_code = np.unique(disks.radius, return_inverse=True)
-    masses, mass_code = np.unique(disks.mass, return_inverse=True)
-    codes, first, counts = np.unique(radius_code * len(masses) + mass_code, return_index=True, return_counts=True)
-    commonest = sorted(range(len(codes)), key=lambda i: (-int(counts[i]), int(first[i])))[:SPECIES_SHOWN]
-    shown = (divmod(int(codes[i]), len(masses)) for i in commonest)
-    species = (
-        Species(int(counts[i]), float(radii[r]), float(masses[m])) for i, (r, m) in zip(commonest, shown, strict=True)
-    )
-    return tuple(species), len(codes)
+    found = species_among(disks)
+    commonest = np.lexsort((found.first, -found.count))[:SPECIES_SHOWN]
+    rows = zip(*(column[commonest].tolist() for column in (found.count, found.radius, found.mass)), strict=True)
+    return tuple(Species(*row) for row in rows), len(found.count)
 
 
 def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64], pace: int) -> float | str | None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eventsim.record.events import Floats
+from eventsim.scene.disks import species_among
 from eventsim.scene.domain import Box, Channel, Periodic
 from eventsim.scene.scene import Scene
 
@@ -166,12 +166,11 @@ def ensemble_of(scene: Scene) -> Ensemble:
     """The ensemble of a scene."""
     disks = scene.disks
     counted = np.isfinite(disks.mass) & (disks.mass > 0.0)
-    kinds: Floats = np.column_stack([disks.radius, disks.mass])
-    found, index, count = np.unique(kinds[counted], axis=0, return_inverse=True, return_counts=True)
+    found = species_among(disks.select(np.flatnonzero(counted)))
     species_of = np.full(len(disks), -1, dtype=np.int64)
-    if len(found) <= MOST_SPECIES:
-        species = tuple(Species(float(r), float(m), int(c)) for (r, m), c in zip(found, count, strict=True))
-        species_of[counted] = index.reshape(-1)
+    if len(found.count) <= MOST_SPECIES:
+        species = tuple(map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist()))
+        species_of[counted] = found.of
     else:
         species = (Species(math.nan, math.nan, int(counted.sum())),)
         species_of[counted] = 0

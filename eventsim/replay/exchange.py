@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, State
 from eventsim.record.files.atomic import atomic_write
+from eventsim.scene.disks import species_among
 from eventsim.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -37,12 +38,6 @@ def write_exchange(path: Path, scene: Scene, states: Sequence[State]) -> None:
             _write_gsd(part, scene, states)
 
 
-def species_of(scene: Scene) -> Any:
-    """The number of each disk's species (N,), by (radius, mass)."""
-    kinds = np.column_stack([scene.disks.radius, scene.disks.mass])
-    return np.unique(kinds, axis=0, return_inverse=True)[1].reshape(-1)
-
-
 def _cell(scene: Scene, states: Sequence[State]) -> tuple[Floats, Floats]:
     """(size, corner) of the cell: the domain, or on the open plane what holds all disks."""
     domain = scene.domain
@@ -63,7 +58,7 @@ def _write_xyz(path: Path, scene: Scene, states: Sequence[State]) -> None:
     periodic = " ".join("T" if axis else "F" for axis in (*scene.domain.periodic, False))
     columns = "species:S:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1"
     # letters that programs take for chemical elements would bring those colours and masses
-    names = [f"D{number}" for number in species_of(scene).tolist()]
+    names = [f"D{number}" for number in species_among(scene.disks).of.tolist()]
     tails = [f"{r!r} {m!r}" for r, m in zip(scene.disks.radius.tolist(), scene.disks.mass.tolist(), strict=True)]
     with path.open("w", encoding="utf-8", newline="\n") as file:
         for state in states:
@@ -94,7 +89,7 @@ def _write_gsd(path: Path, scene: Scene, states: Sequence[State]) -> None:
 def _frame(frame: Frame, number: int, scene: Scene, state: State, size: Floats, corner: Floats) -> Frame:
     disks = scene.disks
     count, flat = len(disks), np.zeros(len(disks))
-    species = species_of(scene)
+    species = species_among(scene.disks).of
     mass = np.where(np.isfinite(disks.mass), disks.mass, 0.0)
     frame.configuration.step = number
     frame.configuration.dimensions = 2

@@ -14,8 +14,8 @@ from eventsim.growth.schedule import JammedError, grown
 from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.disks import Disks, Floats, join
 from eventsim.scene.domain import Box, Channel, Domain, Periodic
-from eventsim.scene.fill import clear_of, place_gas, start_velocity
-from eventsim.scene.gas import Gas, Region, disk_radius, region_of
+from eventsim.scene.fill import clear_of, place_gas
+from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity
 from eventsim.scene.numbers import Point
 from eventsim.scene.walls import Wall
 

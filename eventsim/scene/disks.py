@@ -96,6 +96,32 @@ class Disks:
         return self.position, self.velocity, self.radius, self.mass
 
 
+@dataclass(frozen=True, slots=True)
+class Species:
+    """The kinds of disks: S pairs of a radius and a mass, in the order of these.
+
+    radius, mass, count: (S,) of each kind, and how many disks it has.  first: (S,) the first of them.  of: (N,) the kind of
+    each disk.
+    """
+
+    radius: Floats
+    mass: Floats
+    count: NDArray[np.int64]
+    first: NDArray[np.int64]
+    of: NDArray[np.int64]
+
+
+def species_among(disks: Disks) -> Species:
+    """The kinds that there are among disks; O(N log N)."""
+    radii, radius_code = np.unique(disks.radius, return_inverse=True)
+    masses, mass_code = np.unique(disks.mass, return_inverse=True)
+    codes, first, of, count = np.unique(
+        radius_code * len(masses) + mass_code, return_index=True, return_inverse=True, return_counts=True
+    )
+    radius_of, mass_of = np.divmod(codes, max(len(masses), 1))
+    return Species(radii[radius_of], masses[mass_of], count, first, of)
+
+
 def join(parts: list[Disks]) -> Disks:
     """All the disks of `parts`, in order, as one."""
     if not parts:

@@ -13,11 +13,10 @@ from eventsim.errors import SceneError
 from eventsim.scene.cells import Cells
 from eventsim.scene.disks import Disks, Floats
 from eventsim.scene.domain import Domain
-from eventsim.scene.gas import Gas, Region, disk_radius, region_of
+from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity
 from eventsim.scene.insertion import insert_at_random
 from eventsim.scene.lattice import Lattice
 from eventsim.scene.overlaps import period_of, touching_depth, wall_overlaps
-from eventsim.scene.velocities import equal_speeds, thermal_velocities
 from eventsim.scene.walls import Wall, parts_of
 
 # Random insertion jams at a packing fraction of .547; above this, many disks need not try.
@@ -63,15 +62,6 @@ def clear_of(
     assert region is not None
     place = _Place(replace(gas, radius=radius, packing_fraction=None), domain, walls, present, region, where)
     return bool(place.is_free(position).all())
-
-
-def start_velocity(gas: Gas, rng: np.random.Generator) -> Floats:
-    """Velocities (N, 2) as the gas wants them."""
-    if gas.temperature:
-        return thermal_velocities(gas.count, gas.mass, gas.temperature, rng)
-    if gas.speed:
-        return equal_speeds(gas.count, gas.speed, rng)
-    return np.zeros((gas.count, 2))
 
 
 class _Place:

@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import numpy as np
+
+from eventsim.scene.disks import Floats
 from eventsim.scene.domain import Domain
 from eventsim.scene.numbers import RADII, is_length, is_place
 
@@ -115,3 +118,32 @@ def _region_problems(gas: Gas, domain: Domain | None, where: str) -> Iterator[st
         if x0 < x or y0 < y or x1 > x + width or y1 > y + height:
             extent = [x, y, x + width, y + height]
             yield f"{where}.region = {list(gas.region)}: must be inside the domain {extent}"
+
+
+def start_velocity(gas: Gas, rng: np.random.Generator) -> Floats:
+    """Velocities (N, 2) as the gas wants them."""
+    if gas.temperature:
+        return thermal_velocities(gas.count, gas.mass, gas.temperature, rng)
+    if gas.speed:
+        return equal_speeds(gas.count, gas.speed, rng)
+    return np.zeros((gas.count, 2))
+
+
+def thermal_velocities(count: int, mass: float, temperature: float, rng: np.random.Generator) -> Floats:
+    """Maxwell's velocities (N, 2) of N equal disks at kT = `temperature`, without total momentum.
+
+    They are scaled so that the mean of m v^2 / 2 is kT but for rounding. A single disk keeps the velocity that is
+    drawn for it: without momentum it would be at rest. Draws 2 N normal numbers, x before y, disk by disk.
+    """
+    velocity = rng.standard_normal((count, 2))
+    if count > 1:
+        velocity -= velocity.mean(axis=0)
+        velocity *= math.sqrt(2.0 * count / float((velocity**2).sum()))
+    velocity *= math.sqrt(temperature) / math.sqrt(mass)
+    return velocity
+
+
+def equal_speeds(count: int, speed: float, rng: np.random.Generator) -> Floats:
+    """Velocities (N, 2) of one speed in random directions. Draws N uniform numbers, one angle for each disk."""
+    angle = 2.0 * math.pi * rng.random(count)
+    return speed * np.stack([np.cos(angle), np.sin(angle)], axis=1)

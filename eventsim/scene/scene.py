@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 from eventsim.errors import SceneError
@@ -123,3 +123,17 @@ def _demand_types(disks: object, domain: object, walls: Sequence[object], name: 
 def touching_by_rounding(scene: Scene) -> list[str]:
     """The overlaps of a scene that are so small that they count as touching, one sentence each."""
     return touching_notes(scene.disks, scene.domain, scene.walls)
+
+
+def difference(one: Scene, other: Scene) -> str:
+    """The first key in which `other` is not like `one`; O(N)."""
+    for item in fields(Scene):
+        mine, theirs = getattr(one, item.name), getattr(other, item.name)
+        if mine == theirs:
+            continue
+        if item.name != "disks":
+            return f"its {item.name} is {mine!r}, not {theirs!r}"
+        if len(mine) != len(theirs):
+            return f"it has {len(mine)} disks, not {len(theirs)}"
+        return "its disks begin elsewhere, or are others"
+    return "none"

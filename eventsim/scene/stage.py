@@ -21,10 +21,9 @@ from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.shape import seen
 from eventsim.scene.domain import Channel, Open, Periodic
-from eventsim.scene.features import Feature, boundaries_of, features_of
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
-from eventsim.scene.supports import any_lies, supports_of
+from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of
 from eventsim.scene.walls import feature_names
 
 Floats: TypeAlias = NDArray[np.float64]

@@ -14,7 +14,7 @@ from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
 from eventsim.replay.log import EventLog
 from eventsim.replay.replay import Replay
-from eventsim.scene import Disks
+from eventsim.scene.disks import Disks, species_among
 from eventsim.show.frames import Frame
 from eventsim.show.palette import AMOUNTS, AMOUNTS_FROM, AMOUNTS_TO, KINDS
 
@@ -101,8 +101,8 @@ def fastest_flight(log: EventLog) -> float:
 
 def species_of(disks: Disks) -> tuple[NDArray[np.int64], Floats]:
     """Return the species of each disk (N,), and radius and mass of each species (S, 2), the largest first."""
-    kinds, species = np.unique(np.column_stack([-disks.radius, -disks.mass]), axis=0, return_inverse=True)
-    return species.reshape(-1).astype(np.int64), -kinds
+    found = species_among(disks)
+    return len(found.count) - 1 - found.of, np.column_stack([found.radius, found.mass])[::-1]
 
 
 def _fixed(colours: Floats, key: Scale | Kinds | None) -> Colouring:
