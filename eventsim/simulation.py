@@ -14,7 +14,7 @@ from eventsim.engines import engine_named
 from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
 from eventsim.formulas.clock import clock_time
-from eventsim.record.events import Rows, State
+from eventsim.record.events import Rows, State, unchangeable
 from eventsim.record.provenance import Ending
 from eventsim.replay.expand import expand_rows
 from eventsim.replay.log import EventLog
@@ -193,11 +193,22 @@ class Simulation:
         chosen = engine_named(engine)
         self.scene = scene
         self.engine = chosen.name
+        self._options = options
         self._session = chosen.open(stage_of(a_scene(scene)), options=chosen.options_from(options))
         self._provenance = provenance_of(self._session, self.engine, scene)
         self._blocks: list[Rows] = []
         self._time: float | None = None
         self._broken_off = False
+
+    def __copy__(self) -> Simulation:
+        """A simulation that stands where this one does and goes on by itself."""
+        other = Simulation(self.scene, self.engine, **self._options)
+        other._blocks = list(self._blocks)
+        other.restore(self.snapshot())
+        return other
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Simulation:
+        return self.__copy__()
 
     @property
     def time(self) -> float:
@@ -300,7 +311,7 @@ class Simulation:
                 pass
             self._time = begun
         blocks = self._blocks[before:]
-        self._blocks[before:] = [np.concatenate(blocks)]
+        self._blocks[before:] = [unchangeable(np.concatenate(blocks))]
         return self._blocks[-1]
 
     def _advanced(self, stop: Stop) -> str | None:
@@ -317,7 +328,7 @@ class Simulation:
             raise EventsimError("the simulation was broken off in the middle of an event: restore() a snapshot, or begin anew")
 
     def _keep(self) -> None:
-        self._blocks.append(self._session.take_rows())
+        self._blocks.append(unchangeable(self._session.take_rows()))
 
     def _row_count(self) -> int:
         return sum(len(block) for block in self._blocks)

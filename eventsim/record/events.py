@@ -105,6 +105,13 @@ def blank_rows(count: int) -> Rows:
     return rows
 
 
+def unchangeable(rows: Rows) -> Rows:
+    """Return the same rows as an array that cannot be written to, for whoever only looks."""
+    view = rows.view()
+    view.flags.writeable = False
+    return view
+
+
 @dataclass(frozen=True, slots=True)
 class State:
     """Where all disks are at one time.

@@ -12,7 +12,7 @@ import numpy as np
 
 from eventsim.errors import LogWarning
 from eventsim.record.digest import digest_of
-from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows
+from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, unchangeable
 from eventsim.record.files import open_sink, read_log
 from eventsim.record.provenance import Provenance
 from eventsim.scene import Scene
@@ -31,8 +31,7 @@ class EventLog(Columns):
     """
 
     def __init__(self, provenance: Provenance, rows: Rows) -> None:
-        view = rows.view()
-        view.flags.writeable = False
+        view = unchangeable(rows)
         self.path: Path | None = None
         self.provenance = provenance
         self.rows = view

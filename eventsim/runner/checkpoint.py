@@ -10,7 +10,7 @@ import json
 import os
 from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
-from math import inf
+from math import inf, isfinite
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from eventsim import __version__
 from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.errors import CheckpointError, LogError
 from eventsim.reading import Npz, reading
-from eventsim.record.events import ROW, Rows
+from eventsim.record.events import ROW, Kind, Rows
 from eventsim.record.files import Mark
 from eventsim.record.provenance import Provenance, provenance_from_text
 from eventsim.runner.checking import demand_fit
@@ -33,7 +33,8 @@ FORMAT = 1
 
 METADATA, LAST_ROWS = "eventsim", "last_rows"
 
-TEMPORARY = ".part"
+TEMPORARY = ".part~"
+"""After the name of a checkpoint in the making; NAME.part is what its run claims."""
 
 SECONDS = {"min": 60.0, "s": 1.0, "h": 3600.0}
 """Units of time in which an interval can be given."""
@@ -198,14 +199,17 @@ def _checkpoint(data: dict[str, Any], arrays: Arrays, path: Path) -> Checkpoint:
         snapshot=_snapshot(data["snapshot"], arrays, kept),
         counters=_counters(data["counters"]),
         log=None if data["log"] is None else _kept_log(**data["log"], directory=path.resolve().parent),
-        last_rows=_last_rows(arrays[LAST_ROWS]),
-        elapsed_s=float(data["elapsed_s"]),
-        write_s=float(data["write_s"]),
+        last_rows=_last_rows(arrays[LAST_ROWS], kept),
+        elapsed_s=_seconds(data["elapsed_s"]),
+        write_s=_seconds(data["write_s"]),
     )
 
 
 def _stop(until: float | None, events: int | None) -> Stop:
-    return Stop(None if until is None else float(until), None if events is None else int(events))
+    stop = Stop(None if until is None else float(until), None if events is None else int(events))
+    if stop.until is not None and not isfinite(stop.until):
+        raise ValueError(f"until = {until!r}")
+    return stop
 
 
 def _every(events: int | None, seconds: float | None) -> Every:
@@ -223,20 +227,36 @@ def _kept_log(path: str, compact: bool, rows: int, kicks: list[list[float]], dir
 
 
 def _counters(data: dict[str, Any]) -> Counters:
-    """Counters of the types that their defaults have."""
+    """Counters of the types that their defaults have: counts, amounts, and pairs of amounts."""
     usual, counters = Counters(), Counters(**data)
     for item in fields(Counters):
         value = getattr(counters, item.name)
-        if type(value) is not type(getattr(usual, item.name)) or (type(value) is int and not 0 <= value < 2**62):
+        match getattr(usual, item.name):
+            case int():
+                fits = type(value) is int and 0 <= value < 2**62
+            case float():
+                fits = type(value) is float and isfinite(value)
+            case _:
+                fits = type(value) is list and list(map(type, value)) == [float, float] and all(map(isfinite, value))
+        if not fits:
             raise ValueError(f"counter {item.name} = {value!r}")
-    x, y = counters.outer_momentum
-    counters.outer_momentum = [float(x), float(y)]
     return counters
 
 
-def _last_rows(rows: Rows) -> Rows:
+def _seconds(value: Any) -> float:
+    if type(value) is not float or not 0.0 <= value < inf:
+        raise ValueError(f"{value!r} seconds")
+    return value
+
+
+def _last_rows(rows: Rows, provenance: Provenance) -> Rows:
+    """The last rows, whose numbers a diagnosis looks up in the scene."""
     if rows.dtype != ROW or rows.ndim != 1:
         raise ValueError("its last rows are not rows of a log")
+    disks, walls = len(provenance.scene.disks), len(provenance.wall_names)
+    for name, least, most in (("a", 0, disks), ("b", -1, disks), ("wall", -1, walls), ("kind", 0, len(Kind))):
+        if np.any((rows[name] < least) | (rows[name] >= most)):
+            raise ValueError(f"its last rows have {name} = {rows[name].tolist()}, which the scene has not"[:200])
     return rows
 
 

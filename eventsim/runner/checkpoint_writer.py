@@ -10,8 +10,10 @@ from eventsim.engines.base import Session, Stop
 from eventsim.errors import CheckpointError
 from eventsim.record.events import Rows
 from eventsim.record.files import FileSink
+from eventsim.record.files.claim import Claim
 from eventsim.record.provenance import Provenance, provenance_text
 from eventsim.runner.checkpoint import Checkpoint, Every, KeptLog, save_checkpoint
+from eventsim.suffixes import PART
 
 USUALLY = Every(seconds=60.0)
 
@@ -22,7 +24,8 @@ GOES_ON_AFTER = ("until", "events", "quiet", "interrupted")
 class CheckpointWriter:
     """Writes the checkpoints of one run to one file.
 
-    every: how often.  provenance, stop: of the run.  log: where its rows go, None where they are not kept.
+    every: how often.  provenance, stop: of the run.  log: where its rows go, None where they are not kept.  While this one is not
+    closed, another run that is to write the same file is refused (CheckpointError).
     """
 
     def __init__(self, path: Path, every: Every, provenance: Provenance, stop: Stop, log: FileSink | None) -> None:
@@ -34,6 +37,12 @@ class CheckpointWriter:
         self._log = log
         self._events: int | None = None
         self._time = 0.0
+        self._claim = Claim(path.with_name(path.name + PART), CheckpointError, f"the checkpoint {path.name}")
+        self._claim.take(make=True)
+
+    def close(self) -> None:
+        """Let another run write the file."""
+        self._claim.remove()
 
     def next_stop(self, stop: Stop, events: int) -> Stop:
         """The stop, or an earlier one where the next checkpoint is due by the number of events."""

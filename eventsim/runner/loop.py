@@ -13,7 +13,7 @@ from eventsim.engines.collapse import TAIL
 from eventsim.engines.options import Options
 from eventsim.errors import EventsimError
 from eventsim.formulas.clock import MOST_EPOCHS, clock_time
-from eventsim.record.events import Rows, blank_rows
+from eventsim.record.events import Rows, blank_rows, unchangeable
 from eventsim.runner.checkpoint_writer import CheckpointWriter
 from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.options import OnEvent, Progress, RunOptions
@@ -59,12 +59,11 @@ def run_session(session: Session, engine: Engine, scene: Scene, stop: Stop, want
         provenance = resumed.provenance
         session.restore(resumed.snapshot)
         session.counters.copy_from(resumed.counters)
-    compiled_before = session.compile_s
     recording = Recording(wanted, provenance)
+    checkpoints = None
     try:
         if resumed is not None:
             recording.go_on(wanted)
-        checkpoints = None
         if wanted.checkpoint is not None:
             checkpoints = CheckpointWriter(wanted.checkpoint, wanted.every, provenance, stop, recording.file)
         loop = Loop(session, stop, recording, checkpoints, interrupt, wanted.on_event, wanted.progress)
@@ -80,6 +79,8 @@ def run_session(session: Session, engine: Engine, scene: Scene, stop: Stop, want
         raise
     finally:
         interrupt.session = None
+        if checkpoints is not None:
+            checkpoints.close()
     return Outcome(
         scene=scene,
         engine=session.at_work,  # of `auto`, the one that came last
@@ -89,7 +90,7 @@ def run_session(session: Session, engine: Engine, scene: Scene, stop: Stop, want
         stopped=stopped,
         reason=reason,
         digest=digest,
-        elapsed_s=loop.elapsed - (session.compile_s - compiled_before),
+        elapsed_s=loop.elapsed,
         compile_s=session.compile_s,
         begun_by=session.begun_by,
         write_s=written,
@@ -130,7 +131,8 @@ def _demand_possible(engine: Engine, stop: Stop, stage: Stage, wanted: RunOption
 class Loop:
     """A run in stints short enough to be interrupted, and what is done between them.
 
-    elapsed: seconds simulating.  saving: seconds spent on checkpoints.  last_rows: the last of all, for a diagnosis.
+    elapsed: seconds simulating, without those of compiling.  saving: seconds spent on checkpoints.  last_rows: the last of all,
+    for a diagnosis.
     """
 
     session: Session
@@ -150,13 +152,14 @@ class Loop:
         self._save()
         while True:
             aim = self._next_stop()
-            began = perf_counter()
+            began, compiled = perf_counter(), session.compile_s
             try:
                 stopped = session.advance(aim, budget)
             except BrokenOffError:
                 stopped = "interrupted"
             stint = perf_counter() - began
-            self.elapsed += stint
+            # What is compiled outside a stint, as for a checkpoint before the first one, takes nothing from it.
+            self.elapsed += max(stint - (session.compile_s - compiled), 0.0)
             if stint < 0.5 * LONGEST_STINT:
                 budget = min(2 * budget, LARGEST_BUDGET)
             elif stint > LONGEST_STINT:
@@ -188,7 +191,7 @@ class Loop:
             self.last_rows = rows[-TAIL:] if len(rows) >= TAIL else np.concatenate([self.last_rows, rows])[-TAIL:]
             self.recording.write(rows)
             if self.on_event is not None:
-                self.on_event(rows)
+                self.on_event(unchangeable(rows))
 
     def _save(self, stopped: str | None = None) -> None:
         """Write a checkpoint where one is due, behind all rows so far."""

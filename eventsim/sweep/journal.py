@@ -5,9 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 from pathlib import Path
+from typing import Any
 
 from eventsim import __version__
 from eventsim.errors import EventsimError
+from eventsim.reading import reading
+from eventsim.record.files.claim import Claim
 from eventsim.scene.files import scene_to_dict
 from eventsim.sweep.grid import Task
 from eventsim.sweep.task import Plan, Row
@@ -22,11 +25,10 @@ class Journal:
         """Open the journal of a table; raise EventsimError where it belongs to another sweep or cannot be written."""
         self.path = out.with_name(out.name + SUFFIX)
         self.done: dict[str, Row] = {}
+        self._claim = Claim(self.path, EventsimError, f"the sweep {out.name}")
         try:
-            if self.path.exists():
-                self._read(identity)
-            else:
-                self.path.write_text(json.dumps({"sweep": identity}) + "\n", encoding="utf-8")
+            self._claim.take(make=True)
+            self._read(json.dumps({"sweep": identity}).encode() + b"\n")
             self._file = self.path.open("a", encoding="utf-8")
         except OSError as error:
             raise EventsimError(f"{self.path}: cannot be written ({error.strerror or error})") from None
@@ -41,27 +43,37 @@ class Journal:
         """Close it; where the table is whole it is not needed any more."""
         self._file.close()
         if whole:
-            self.path.unlink()
+            self._claim.remove()
+            self.path.unlink(missing_ok=True)
+        self._claim.release()
 
-    def _read(self, identity: str) -> None:
-        lines = self.path.read_text(encoding="utf-8").splitlines(keepends=True)
-        kept = []
-        for number, line in enumerate(lines):
-            try:
-                entry = json.loads(line)
-            except ValueError:
-                break  # the last line of a sweep that was killed while writing
-            if number == 0 and entry.get("sweep") != identity:
-                raise EventsimError(
-                    f"{self.path}: belongs to another sweep (another scene, stop or version); remove it to begin anew"
-                )
-            if "task" in entry:
-                self.done[entry["task"]] = entry["row"]
+    def _read(self, head: bytes) -> None:
+        """Take over the rows of a sweep that was broken off; its last line may not be whole."""
+        with reading(self.path, EventsimError, "is not the journal of a sweep") as file:
+            lines = file.read().splitlines(keepends=True)
+        if lines and lines[0] != head and not (len(lines) == 1 and head.startswith(lines[0])):
+            raise EventsimError(
+                f"{self.path}: belongs to another sweep (another scene, stop or version), or to none; remove it to begin anew"
+            )
+        kept = [head]
+        for line in lines[1:]:
+            entry = _entry(line)
+            if entry is None:
+                break
+            self.done[entry["task"]] = entry["row"]
             kept.append(line)
-        if not kept:
-            kept = [json.dumps({"sweep": identity}) + "\n"]
-        if kept != lines:
-            self.path.write_text("".join(kept), encoding="utf-8")
+        self.path.write_bytes(b"".join(kept))
+
+
+def _entry(line: bytes) -> dict[str, Any] | None:
+    """The row that a line tells; None where it is not whole, or none."""
+    try:
+        entry = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(entry, dict) or not line.endswith(b"\n"):
+        return None
+    return entry if isinstance(entry.get("task"), str) and isinstance(entry.get("row"), dict) else None
 
 
 def identity_of(plan: Plan, first: Task) -> str:

@@ -1,5 +1,6 @@
 """The log is one object: no grid, label, pause, look or queue changes a bit of it."""
 
+import copy
 import math
 
 import numpy as np
@@ -198,3 +199,20 @@ def test_a_kick_is_logged_and_changes_the_future():
     assert sim.log.provenance.kicks == ((int(np.flatnonzero(sim.log.kinds == "kick")[0]), 2.0, -1.0),)
     with pytest.raises(es.EventsimError, match="disk 99"):
         sim.set_velocity(99, (0.0, 0.0))
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_a_copy_of_a_simulation_goes_on_by_itself(engine, copied):
+    sim = es.Simulation(SCENES["walls"](), engine=engine)
+    sim.advance_to(1.0)
+    before = sim.log.rows.tobytes()
+    other = copied(sim)
+    other.set_velocity(0, (0.5, -0.25))
+    other.advance_to(2.0)
+    assert (sim.time, sim.log.rows.tobytes()) == (1.0, before)
+    assert other.log.rows.tobytes().startswith(before)
+    sim.set_velocity(0, (0.5, -0.25))
+    sim.advance_to(2.0)
+    assert sim.log.rows.tobytes() == other.log.rows.tobytes()
+    assert sim.counters.events == other.counters.events

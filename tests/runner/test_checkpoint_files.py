@@ -16,6 +16,7 @@ import eventsim.engines.auto
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Snapshot, Stop
 from eventsim.formulas.rest import SUPPORTED
+from eventsim.record.events import blank_rows
 from eventsim.runner.checking import demand_fit
 from eventsim.runner.checkpoint import load_checkpoint
 from eventsim.runner.snapshots import packed, unpacked
@@ -87,6 +88,13 @@ def put(name, index, value):
     return change
 
 
+def odd_row(name, value):
+    """A row that no scene has."""
+    rows = blank_rows(1)
+    rows[name] = value
+    return rows
+
+
 @pytest.mark.parametrize(
     ("change_data", "change_arrays", "words"),
     [
@@ -96,6 +104,15 @@ def put(name, index, value):
         (lambda data: data["snapshot"].pop("wraps_x"), None, "other fields: wraps_x"),
         (lambda data: data["counters"].update(events=-1), None, "counter events"),
         (lambda data: data["counters"].update(events=1.5), None, "counter events"),
+        (lambda data: data["counters"].update(support_force=["0", "0"]), None, "counter support_force"),
+        (lambda data: data["counters"].update(support_force=[math.nan, 0.0]), None, "counter support_force"),
+        (lambda data: data["counters"].update(support_force=[0.0]), None, "counter support_force"),
+        (lambda data: data["counters"].update(outer_momentum=[0.0, math.inf]), None, "counter outer_momentum"),
+        (lambda data: data["counters"].update(outer_momentum={"x": 0.0}), None, "counter outer_momentum"),
+        (lambda data: data["counters"].update(deepest_overlap=math.nan), None, "counter deepest_overlap"),
+        (lambda data: data.update(elapsed_s=-1.0), None, "-1.0 seconds"),
+        (lambda data: data.update(write_s=math.nan), None, "nan seconds"),
+        (lambda data: data["stop"].update(until=math.nan), None, "until = nan"),
         (lambda data: data["every"].update(events=0), None, "no interval"),
         (lambda data: data["snapshot"].update(window={"value": 5000}), None, "clock"),
         (lambda data: data["snapshot"].update(now={"value": math.nan}), None, "after the present"),
@@ -110,6 +127,8 @@ def put(name, index, value):
         (None, lambda arrays: arrays.update(x=arrays["x"][:-1]), "x has 35 entries for 36 disks"),
         (None, lambda arrays: arrays.update(at_once=arrays["x"]), "at_once has entries that are not whole"),
         (None, lambda arrays: arrays.update(last_rows=np.zeros(3)), "last rows"),
+        (None, lambda arrays: arrays.update(last_rows=odd_row("a", 10**6)), "last rows have a = "),
+        (None, lambda arrays: arrays.update(last_rows=odd_row("wall", -2)), "last rows have wall = "),
         (None, lambda arrays: arrays.pop("last_rows"), "not a checkpoint"),
     ],
 )

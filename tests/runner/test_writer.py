@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.engines import ENGINES
+from eventsim.engines.base import Stop
+from eventsim.engines.reference import ReferenceSession
 from eventsim.record.events import blank_rows
+from eventsim.runner.loop import run_session
+from eventsim.runner.options import RunOptions
 from eventsim.runner.writer import MANY_ROWS, WAITING, Writer
+from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
 
 
@@ -78,3 +84,47 @@ def test_a_log_is_the_same_beside_the_engine_and_in_line(tmp_path, monkeypatch):
     in_line = es.simulate(scene, events=stop, engine="fast", log=tmp_path / "b.npz")
     assert beside.digest == in_line.digest == es.load_log(tmp_path / "a.npz").digest()
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_whoever_is_told_of_events_cannot_change_them(tmp_path, engine):
+    """Rows were the writer's own: who scaled them in place wrote another log."""
+    told = []
+
+    def scale(rows):
+        told.append(rows)
+        with pytest.raises(ValueError, match="read-only"):
+            rows["xa"] *= 2.0
+
+    scene = lattice_gas(36, 0.3)
+    right = es.simulate(scene, events=9000, engine=engine, log=True).log
+    es.simulate(scene, events=9000, engine=engine, log=tmp_path / "log.npz", on_event=scale)
+    assert es.load_log(tmp_path / "log.npz").rows.tobytes() == right.rows.tobytes()
+    assert np.concatenate(told).tobytes() == right.rows.tobytes()  # those of the first call too: they were not filled anew
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_rows_of_a_step_cannot_be_changed(engine):
+    sim = es.Simulation(lattice_gas(36, 0.3), engine=engine)
+    for rows in (sim.step(), sim.advance_to(1.0)):
+        with pytest.raises(ValueError, match="read-only"):
+            rows["xa"] = 0.0
+
+
+class Compiles(ReferenceSession):
+    """A session that compiles whenever it is asked for a snapshot, and nowhere else."""
+
+    compile_s = 0.0
+
+    def snapshot(self):
+        self.compile_s += 1.0
+        return super().snapshot()
+
+
+def test_no_stopwatch_runs_backwards(tmp_path):
+    """What was compiled for the first checkpoint was taken from the time of simulating: -418 ms."""
+    scene, stop = lattice_gas(36, 0.3), Stop(events=50)
+    wanted = RunOptions(checkpoint=tmp_path / "run.checkpoint")
+    outcome = run_session(Compiles(stage_of(scene)), ENGINES["reference"], scene, stop, wanted)
+    assert outcome.compile_s >= 2.0
+    assert 0.0 < outcome.elapsed_s < 1.0
