@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,7 @@ from eventsim.cli.words import aligned, short
 from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
-    from eventsim.measure import Measures, Quantity
+    from eventsim.measure import Measures
     from eventsim.measure.structure import Structure
 
 
@@ -65,14 +64,16 @@ def measured(
 def measures_text(asked: str, measures: Measures, structure: Structure | None) -> str:
     """The measures as aligned lines: measured, theory, difference, where the theory comes from."""
     eta = "" if measures.packing_fraction is None else f", packing fraction {short(measures.packing_fraction)}"
-    lines = [f"{asked}: {plural(measures.disks, 'disk')}{eta}, over {short(measures.duration)} units of time"]
-    how = "as asked" if measures.discard_given else "found from the pressure"
-    if measures.steady:
+    who = [plural(measures.disks, "disk")] if measures.disks or not measures.tracers else []
+    who += [plural(measures.tracers, "tracer")] if measures.tracers else []
+    lines = [f"{asked}: {' and '.join(who)}{eta}, over {short(measures.duration)} units of time"]
+    if measures.table_seen is not None:
+        area, perimeter = (short(number) for number in measures.table_seen)
+        lines.append(f"  table of the centre: area {area}, perimeter {perimeter}")
+    if measures.discarded > 0.0:
+        how = "as asked" if measures.discard_given else "found from the pressure"
         lines.append(f"  left out at the beginning: {short(measures.discarded)} ({how})")
-    rows = [("quantity", "measured", "theory", "difference", "")]
-    rows += [_row(quantity) for quantity in measures.quantities]
-    widths = [max(len(row[k]) for row in rows) for k in range(4)]
-    lines += ["  " + "  ".join(f"{row[k]:<{w}}" for k, w in enumerate(widths)) + f"  {row[4]}" for row in rows]
+    lines.append(measures.table())
     for histogram in measures.speeds:
         if histogram.misfit is not None:
             kind = f" of species {histogram.species}" if len(measures.speeds) > 1 else ""
@@ -83,41 +84,11 @@ def measures_text(asked: str, measures: Measures, structure: Structure | None) -
     return "\n".join(line.rstrip() for line in lines)
 
 
-def _row(quantity: Quantity) -> tuple[str, str, str, str, str]:
-    digits = _digits(quantity.value, quantity.error)
-    theory = "" if quantity.theory is None else f"{quantity.theory:.{digits}g}"
-    name = quantity.name if quantity.plain else f"{quantity.name} [{quantity.unit}]"
-    return name, value_with_error(quantity), theory, _difference(quantity), quantity.source or ""
-
-
-def value_with_error(quantity: Quantity) -> str:
-    """A value to the digits that its error leaves: "2.0625 +- 0.0008"."""
-    if not math.isfinite(quantity.error):
-        return f"{short(quantity.value)} (no error bar)"
-    digits = _digits(quantity.value, quantity.error)
-    if quantity.error <= 1e-9 * abs(quantity.value):
-        return f"{quantity.value:.{digits}g}"
-    return f"{quantity.value:.{digits}g} \N{PLUS-MINUS SIGN} {quantity.error:.2g}"
-
-
-def _digits(value: float, error: float) -> int:
-    """Significant digits of a value down to the second digit of its error."""
-    if not (math.isfinite(error) and error > 0.0 and value != 0.0):
-        return 7
-    return min(max(2 + math.floor(math.log10(abs(value))) - math.floor(math.log10(error)), 2), 10)
-
-
-def _difference(quantity: Quantity) -> str:
-    if quantity.theory is None:
-        return ""
-    if quantity.deviation is None:
-        return f"{quantity.value / quantity.theory - 1.0:+.1%}" if quantity.theory else ""
-    return f"{quantity.deviation:+.1f} sigma"
-
-
 def _verdict(measures: Measures) -> str:
     if not measures.steady:
-        return f"  no steady state: {measures.doubts[0]}; averages are over the whole run"
+        return f"  no steady state: {measures.doubts[0]}; --series tells it along the run"
+    if measures.disks < 2:
+        return f"  {measures.doubts[0]}"
     if not measures.doubts:
         return "  equilibrated, as far as this run can tell"
     return "  NOT known to be equilibrated: " + ";\n    ".join(measures.doubts)

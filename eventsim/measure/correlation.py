@@ -55,6 +55,15 @@ class Correlator:
             self._taken[level] += len(way)
             way, velocity = way[begin::2], velocity[begin::2]
 
+    def coarsen(self) -> None:
+        """Double the interval: every second sample is left out from here on, and what was summed stays."""
+        first, half = self._sums[0].copy(), LAGS_PER_LEVEL // 2
+        self.interval *= 2.0
+        self._sums = np.concatenate([self._sums[1:], np.zeros_like(self._sums[:1])])
+        self._sums[0, 1 : half + 1] += 0.5 * first[2::2]  # at twice as many starts as will follow
+        self._taken = [*self._taken[1:], 0]
+        self._kept = [*self._kept[1:], None]
+
     def _add_level(self, level: int, way: Floats, velocity: Floats) -> None:
         kept = self._kept[level]
         if kept is not None:
@@ -89,8 +98,17 @@ class Correlator:
         return Correlations(steps * 2.0**levels * self.interval, msd, msd_error, means[1], errors[1])
 
 
-def diffusion(correlations: Correlations, free_time: float, widest: float) -> tuple[float, float] | None:
-    """(D, its standard error) from the slope 4 D of the mean squared displacement; None where there are too few lags.
+class Slope(NamedTuple):
+    """D and its standard error, and the lags, time, that it was read between."""
+
+    value: float
+    error: float
+    first: float
+    last: float
+
+
+def diffusion(correlations: Correlations, free_time: float, widest: float) -> Slope | None:
+    """D from the slope 4 D of the mean squared displacement; None where there are too few lags.
 
     free_time: mean, of disks.  widest: displacements beyond it, root mean square, are left out; length.
     """
@@ -102,4 +120,9 @@ def diffusion(correlations: Correlations, free_time: float, widest: float) -> tu
     first, last = np.flatnonzero(usable)[[0, -1]]
     span = 4.0 * (lag[last] - lag[first])
     # the displacement at the short lag is part of that at the long one: their errors do not add
-    return float((msd[last] - msd[first]) / span), float(correlations.msd_error[last] / span)
+    return Slope(
+        float((msd[last] - msd[first]) / span),
+        float(correlations.msd_error[last] / span),
+        float(lag[first]),
+        float(lag[last]),
+    )

@@ -1,4 +1,4 @@
-"""What kind of gas a scene is: its species, degrees of freedom and densities, and which theory speaks about it."""
+"""What kind of gas a scene is: who is in it, whom they meet, what is conserved, and which theory speaks about it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.measure.billiard_table import Table, table_of
 from eventsim.scene.disks import species_among
-from eventsim.scene.domain import Box, Channel, Periodic
+from eventsim.scene.domain import Box, Channel, Open, Periodic
 from eventsim.scene.scene import Scene
+from eventsim.scene.walls import Arc, Circle
 
 MOST_SPECIES = 8
 """More kinds of disks than this are measured together only."""
@@ -20,9 +22,15 @@ MOST_SPECIES = 8
 LAST_DIGITS = 2.0**-40
 """A share of the energy that is mostly rounding: sums of squares over a long run are good to some 2**-45."""
 
+CHANCE = 4.0
+"""Times kT that one freedom has by chance in one case of 200."""
+
+LOOKED_FROM = 32
+"""Disks from whose places the table is explored, evenly picked where there are more."""
+
 
 class Species(NamedTuple):
-    """Disks of one radius and one mass."""
+    """Disks of one radius and one mass; NaN where several kinds are measured together."""
 
     radius: float
     mass: float
@@ -31,40 +39,89 @@ class Species(NamedTuple):
 
 @dataclass(frozen=True)
 class Ensemble:
-    """The disks of a scene that carry energy (finite positive mass), as statistical mechanics sees them.
+    """The disks of a scene as statistical mechanics sees them.
 
-    scene: what was simulated.  counted: (N,) which disks carry energy.  species: the kinds of these, or one entry with NaN
-    for radius and mass where there are too many kinds.  species_of: (N,) index into `species`, -1 for the others.
+    scene: what was simulated.  kicked: whether velocities are set from outside.  counted: (N,) which disks carry energy: those
+    of finite positive mass.  species: the kinds of these; then tracers, if there are any; then immovable disks, if there are
+    any.  species_of: (N,) index into `species`.
     """
 
     scene: Scene
+    kicked: bool
     counted: NDArray[np.bool_]
     species: tuple[Species, ...]
     species_of: NDArray[np.int64]
 
-    @property
+    @cached_property
     def n(self) -> int:
         """Number of disks that carry energy."""
         return int(self.counted.sum())
 
+    @cached_property
+    def kinds(self) -> int:
+        """How many species carry energy; they come first."""
+        return len(self.species) - (self.tracers is not None) - (self.posts is not None)
+
+    @cached_property
+    def tracers(self) -> int | None:
+        """The species of tracers."""
+        return next((k for k, one in enumerate(self.species) if one.mass == 0.0), None)
+
+    @cached_property
+    def posts(self) -> int | None:
+        """The species of immovable disks."""
+        return next((k for k, one in enumerate(self.species) if one.mass == math.inf), None)
+
+    @property
+    def partners(self) -> list[int]:
+        """Species that deflect whom they meet: those that carry energy, and immovable disks."""
+        return [k for k in range(len(self.species)) if k != self.tracers]
+
+    @cached_property
+    def circle(self) -> Circle | None:
+        """The round container, where there is nothing else that holds disks."""
+        walls = self.scene.walls
+        lone = len(walls) == 1 and isinstance(walls[0], Circle) and isinstance(self.scene.domain, Open)
+        return walls[0] if lone and isinstance(walls[0], Circle) else None
+
     @property
     def alone(self) -> bool:
-        """Whether there is nothing but these disks and the domain: no posts, tracers or inner walls."""
-        return bool(self.counted.all()) and not self.scene.walls
+        """Whether there is nothing to meet but these disks and the domain, or one round container."""
+        return self.posts is None and (not self.scene.walls or self.circle is not None)
 
     @property
     def elastic(self) -> bool:
         """Whether contacts keep the energy."""
-        return self.scene.restitution is None
+        restitution = self.scene.restitution
+        return restitution is None or (restitution.pair == 1.0 and restitution.wall == 1.0)
 
     @property
+    def pushed(self) -> bool:
+        """Whether moving obstacles change the energy."""
+        disks = self.scene.disks
+        return bool((np.isinf(disks.mass) & (disks.velocity != 0.0).any(axis=1)).any())
+
+    @property
+    def conserved(self) -> bool:
+        """Whether the kinetic energy never changes."""
+        return self.elastic and not self.kicked and not self.pushed and self.scene.gravity is None
+
+    @cached_property
     def unsteady(self) -> str | None:
         """Why no equilibrium can be reached, a clause; None where it can: elastic, not driven, and held together."""
-        moved = np.isinf(self.scene.disks.mass) & (self.scene.disks.velocity != 0.0).any(axis=1)
-        if not self.elastic or moved.any():
-            return "contacts or moving obstacles change the energy"
-        if self.area is None and not self.scene.walls:
+        if self.kicked:
+            return "kicks change the energy"
+        if not self.elastic:
+            return "contacts take energy"
+        if self.pushed:
+            return "moving obstacles change the energy"
+        gravity = self.scene.gravity
+        if not self.held:
             return "on the open plane disks fly apart"
+        if gravity is not None and any(
+            g != 0.0 and p for g, p in zip(gravity, self.scene.domain.periodic, strict=True)
+        ):
+            return "along the period disks fall for ever"
         return None
 
     @property
@@ -72,10 +129,28 @@ class Ensemble:
         """Whether an equilibrium can be reached at all."""
         return self.unsteady is None
 
+    @cached_property
+    def held(self) -> bool:
+        """Whether disks cannot get away: the domain has a size, or walls enclose all who move."""
+        if not isinstance(self.scene.domain, Open) or self.circle is not None:
+            return True
+        return bool(self.scene.walls) and self._table(self._smallest) is not None
+
     @property
     def simple(self) -> bool:
-        """Whether theory for a homogeneous gas applies: alone, elastic, without gravity."""
-        return self.alone and self.steady and self.scene.gravity is None and self.area is not None
+        """Whether theory for a homogeneous gas applies: alone, elastic, without gravity, held."""
+        return self.alone and self.steady and self.scene.gravity is None
+
+    @property
+    def billiard(self) -> bool:
+        """Whether those who move never meet: tracers alone, or one disk, flying straight among what stands still."""
+        movers = self.n if self.n else 0 if self.tracers is None else self.species[self.tracers].number
+        return (self.n == 0 or movers == 1) and movers > 0 and self.steady and self.scene.gravity is None
+
+    @cached_property
+    def integrable(self) -> bool:
+        """Whether a billiard's flights keep what they begin with: no post and no arc scatters them."""
+        return self.posts is None and not any(isinstance(wall, Arc) for wall in self.scene.walls)
 
     @property
     def torus(self) -> bool:
@@ -89,19 +164,44 @@ class Ensemble:
 
     @property
     def equal(self) -> bool:
-        """Whether all disks are of one kind."""
-        return len(self.species) == 1 and math.isfinite(self.species[0].mass)
+        """Whether all disks that carry energy are of one kind."""
+        return self.kinds == 1 and math.isfinite(self.species[0].mass)
 
     @property
+    def movers(self) -> NDArray[np.bool_]:
+        """(N,) those that carry energy; tracers where there are none."""
+        return self.counted if self.n else self.scene.disks.mass == 0.0
+
+    @cached_property
+    def table(self) -> Table | None:
+        """What the centre of a mover sees; None for movers of several radii, on the open plane, and behind too many walls."""
+        radii = np.unique(self.scene.disks.radius[self.movers])
+        return self._table(float(radii[0])) if len(radii) == 1 else None
+
+    @cached_property
     def area(self) -> float | None:
-        """Of the domain, length^2; None for the open plane."""
+        """Area that disks can cover, length^2: posts and what walls shut off left out; None where nothing bounds it."""
         size = self.scene.domain.size
-        return None if size is None else size[0] * size[1]
+        if size is not None and not self.scene.walls and self.posts is None:
+            return size[0] * size[1]
+        if self.circle is not None and self.posts is None:
+            return math.pi * self.circle.radius**2
+        table = self._table(0.0) if self.held else None
+        return None if table is None else table.area
+
+    @property
+    def _smallest(self) -> float:
+        return float(self.scene.disks.radius[self.movers].min())
+
+    def _table(self, radius: float) -> Table | None:
+        places = self.scene.disks.position[self.movers]
+        picked = np.unique(np.linspace(0, len(places) - 1, LOOKED_FROM).astype(np.int64))
+        return table_of(self.scene, radius, places[picked])
 
     @cached_property
     def packing_fraction(self) -> float | None:
-        """Share of the area that the disks cover; None for the open plane."""
-        if self.area is None:
+        """Share of the area that the disks cover; None where nothing bounds it."""
+        if self.area is None or not self.n:
             return None
         return float(math.pi * (self.scene.disks.radius[self.counted] ** 2).sum() / self.area)
 
@@ -113,14 +213,25 @@ class Ensemble:
     @property
     def kept_momenta(self) -> int:
         """How many components of the total momentum are conserved."""
-        if not self.alone or self.scene.gravity is not None:
+        if not self.alone or self.scene.gravity is not None or self.circle is not None:
             return 0
-        return 2 if self.area is None or self.torus else 1 if isinstance(self.scene.domain, Channel) else 0
+        return (
+            2 if isinstance(self.scene.domain, Open | Periodic) else 1 if isinstance(self.scene.domain, Channel) else 0
+        )
+
+    @cached_property
+    def angular_momentum(self) -> float | None:
+        """About the middle of a lone round container, where it is conserved: mass length^2 / time."""
+        if self.circle is None or self.posts is not None or self.scene.gravity is not None:
+            return None
+        disks = self.scene.disks
+        arm, velocity = (disks.position - np.array(self.circle.center))[self.counted], disks.velocity[self.counted]
+        return float((disks.mass[self.counted] * (arm[:, 0] * velocity[:, 1] - arm[:, 1] * velocity[:, 0])).sum())
 
     @property
     def freedoms(self) -> int:
-        """Degrees of freedom that share the thermal energy: 2 N less the conserved momenta."""
-        return 2 * self.n - self.kept_momenta
+        """Degrees of freedom that share the thermal energy: 2 N less what is conserved of the momenta."""
+        return 2 * self.n - self.kept_momenta - (self.angular_momentum is not None)
 
     @cached_property
     def total_mass(self) -> float:
@@ -140,6 +251,18 @@ class Ensemble:
     def at_rest(self) -> bool:
         """Whether the common motion is nothing but rounding."""
         return self.drift_energy <= 1e-20 * self.start_energy
+
+    @property
+    def turns(self) -> bool:
+        """Whether the gas turns as a whole in its round container, by more than chance has it: one freedom has kT / 2."""
+        if self.angular_momentum is None or not self.n:
+            return False
+        disks = self.scene.disks
+        assert self.circle is not None
+        arm2 = ((disks.position - np.array(self.circle.center))[self.counted] ** 2).sum(axis=1)
+        inertia = float((disks.mass[self.counted] * arm2).sum())
+        rotation = 0.5 * self.angular_momentum**2
+        return rotation > CHANCE * self.start_energy / self.n * inertia
 
     @property
     def drowned(self) -> bool:
@@ -162,16 +285,22 @@ class Ensemble:
         return 1.0 - 0.5 * self.kept_momenta * mass / self.total_mass
 
 
-def ensemble_of(scene: Scene) -> Ensemble:
-    """The ensemble of a scene."""
+def ensemble_of(scene: Scene, kicked: bool = False) -> Ensemble:
+    """The ensemble of a scene; kicked: velocities are set from outside."""
     disks = scene.disks
     counted = np.isfinite(disks.mass) & (disks.mass > 0.0)
     found = species_among(disks.select(np.flatnonzero(counted)))
     species_of = np.full(len(disks), -1, dtype=np.int64)
     if len(found.count) <= MOST_SPECIES:
-        species = tuple(map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist()))
+        species = list(map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist()))
         species_of[counted] = found.of
     else:
-        species = (Species(math.nan, math.nan, int(counted.sum())),)
+        species = [Species(math.nan, math.nan, int(counted.sum()))]
         species_of[counted] = 0
-    return Ensemble(scene, counted, species, species_of)
+    for mass in (0.0, math.inf):
+        others = disks.mass == mass
+        if others.any():
+            radii = np.unique(disks.radius[others])
+            species_of[others] = len(species)
+            species.append(Species(float(radii[0]) if len(radii) == 1 else math.nan, mass, int(others.sum())))
+    return Ensemble(scene, kicked, counted, tuple(species), species_of)

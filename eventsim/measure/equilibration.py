@@ -31,13 +31,19 @@ FEWEST_DISKS = 16
 """With fewer, a disk need not come far to have been everywhere."""
 
 
-def settled_after(series: Floats) -> int:
+FEWEST_PER_BATCH, FEWEST_PER_DISK = 8, 20
+"""Contacts in a stretch, and of a disk in the whole run, from which on the stretches can show an end of the transient; with
+fewer, what looks like one is chance."""
+
+
+def settled_after(series: Floats, contacts: float, disks: int) -> int:
     """How many entries of a series (n,) belong to the transient: those whose loss makes the mean most certain.
 
-    Source: K. P. White, Simulation 69, 323 (1997), doi:10.1177/003754979706900601 (MSER).
+    contacts: between disks, in the whole run.  Source: K. P. White, Simulation 69, 323 (1997),
+    doi:10.1177/003754979706900601 (MSER).
     """
     size = len(series) // BATCHES
-    if size < 1:
+    if size < 1 or contacts < FEWEST_PER_BATCH * BATCHES or 2.0 * contacts < FEWEST_PER_DISK * disks:
         return 0
     batches = series[: size * BATCHES].reshape(BATCHES, size).mean(axis=1)
     best = min(range(BATCHES // 2), key=lambda first: float(batches[first:].var()) / (BATCHES - first))
@@ -45,29 +51,26 @@ def settled_after(series: Floats) -> int:
     return best * size if best > 1 else 0
 
 
-def doubts(ensemble: Ensemble, virial: Floats, bar: ErrorBar, late: bool, moved: float) -> list[str]:
+def doubts(ensemble: Ensemble, rates: Floats, bar: ErrorBar, late: bool, moved: float) -> list[str]:
     """Reasons why a steady state may not have been reached, a clause each; none: nothing speaks against it.
 
-    virial: series of the part that is kept.  bar: its mean.  late: the transient reaches to the middle of the run.
+    rates: the virial per time in the part that is kept.  bar: its mean.  late: the transient reaches to the middle of the run.
     moved: root mean square displacement over the run, length.
     """
     found = []
-    if ensemble.drowned:
-        found.append("the energy of the common motion leaves no digits of the thermal energy")
     if late:
         found.append("the pressure still changes in the second half of the run")
     if math.isnan(bar.error):
         found.append("the run is too short for error bars")
     elif not bar.independent:
         found.append("no block length was found beyond which blocks are independent")
-    half = len(virial) // 2
-    first, second = block_average(virial[:half]), block_average(virial[half:])
+    half = len(rates) // 2
+    first, second = block_average(rates[:half]), block_average(rates[half:])
     spread = math.hypot(first.error, second.error)
     if abs(first.mean - second.mean) > DRIFT * spread > 0.0:
         away = abs(first.mean - second.mean) / spread
         found.append(f"the pressure drifts: its halves differ by {away:.1f} standard errors")
-    found += _caged(ensemble, moved)
-    return found
+    return found + _caged(ensemble, moved)
 
 
 def strangers(deviations: Iterable[tuple[str, float | None, str | None]]) -> list[str]:

@@ -1,4 +1,4 @@
-"""A meter takes rows in blocks and keeps sums and correlations; memory does not grow with the run.
+"""A meter takes rows in blocks and keeps sums and correlations; neither memory nor pace depends on what the run does.
 
 The sums do not depend on how the rows were cut into blocks: they are taken up in blocks of the meter's own.
 """
@@ -8,32 +8,44 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
-from eventsim.measure.cooling import Cooling
+from eventsim.measure import sums
+from eventsim.measure.compiled import Kernels, kernels
 from eventsim.measure.correlation import Correlator
-from eventsim.measure.ensemble import ensemble_of
-from eventsim.measure.equilibration import settled_after
-from eventsim.measure.flights import Flights, Follower
+from eventsim.measure.ensemble import Ensemble, ensemble_of
+from eventsim.measure.gathered import measures_of
+from eventsim.measure.measures import Measures
 from eventsim.measure.pace import at_full_pace, slowed_rows
-from eventsim.measure.results import Measures, Records, results_of
-from eventsim.measure.series import FIRST_BINS, Series
-from eventsim.measure.tally import ENERGY, VIRIAL, Tally
-from eventsim.record.events import Floats, Rows
+from eventsim.measure.profile import Profiler
+from eventsim.measure.records import Records
+from eventsim.measure.speeds import FASTEST
+from eventsim.measure.walls import described_walls
+from eventsim.record.events import ROW, Floats, Rows
 from eventsim.record.provenance import Kick
 from eventsim.replay.log import EventLog
 from eventsim.scene.pace import later, pace_of_scene, slowed_scene
 from eventsim.scene.scene import Scene
-from eventsim.scene.stage import stage_of
+from eventsim.scene.stage import Stage, stage_of
 
 BLOCK = 1 << 15
 """Rows that are taken up together."""
+
+FIRST_BINS = 64
+"""Bins into which the first block of rows is cut: from there on the width only doubles."""
 
 WATCHED = 512
 """Disks whose displacements and velocities are correlated, evenly picked where there are more."""
 
 SAMPLES_PER_FLIGHT = 4
-"""Samples in the mean time between two events of a disk."""
+"""Samples in the mean time between two events of a disk; fewer where the run slows down."""
+
+MOST_SAMPLED = 1 << 18
+"""Disks times samples that are kept before they are added; where one block of rows fills that, samples become half as many."""
+
+MOST_WALLS = 64
+"""More walls than this are measured together only."""
 
 
 class Meter:
@@ -42,141 +54,222 @@ class Meter:
     >>> meter = Meter(scene); meter.write(rows); meter.write(more_rows); meter.finish(duration)
     """
 
-    def __init__(self, scene: Scene, discard: float | None = None, kicks: tuple[Kick, ...] = ()) -> None:
-        """discard: time from the start that is left out; None: the scene's `equilibration`, or else found from the pressure.
+    def __init__(
+        self,
+        scene: Scene,
+        discard: float | None = None,
+        kicks: tuple[Kick, ...] = (),
+        profile: str | None = None,
+    ) -> None:
+        """Begin to measure a scene; very fast and very slow runs are measured at their pace (`scene.pace`).
 
-        kicks: velocities that are set from outside.  Very fast and very slow runs are measured at their pace (`scene.pace`).
+        Args:
+            scene: what is simulated.
+            discard: time from the start that is left out; None: the scene's `equilibration`, or else found from the pressure.
+            kicks: velocities that are set from outside.
+            profile: "x" or "y" for profiles along that axis as well.
 
-        Raises EventsimError for a negative or infinite time, and for a scene without disks that carry energy.
+        Raises:
+            EventsimError: for a negative or infinite time, and for a scene in which nothing can be deflected.
         """
         if discard is not None and not 0.0 <= discard < math.inf:
             raise EventsimError(f"discard = {discard!r}: must be a finite time, at least 0")
         self._pace = pace_of_scene(scene, kicks)
         self._epoch_length = math.ldexp(stage_of(scene).epoch_length, self._pace)
         self.scene = scene = slowed_scene(scene, self._pace)
-        self.ensemble = ensemble_of(scene)
-        if not self.ensemble.n:
-            raise EventsimError("there is nothing to measure: no disk has a finite positive mass")
+        self.ensemble = ensemble = ensemble_of(scene, bool(kicks))
+        if not ensemble.movers.any():
+            raise EventsimError("there is nothing to measure: no disk can be deflected (all have mass inf)")
         self.discard = scene.equilibration if discard is None else later(discard, self._pace)
-        self._stage = stage_of(scene)
-        self._tally = Tally(self.ensemble, self._stage)
-        self._follower = Follower(self._stage)
-        counted = np.flatnonzero(self.ensemble.counted)
-        self._watched = counted[np.linspace(0, len(counted) - 1, min(WATCHED, len(counted))).astype(np.int64)]
-        self._waiting: list[Rows] = []
-        self._waiting_rows = 0
-        self._series: Series | None = None
+        self._stage = stage = stage_of(scene)
+        movers = np.flatnonzero(ensemble.movers)
+        watched = movers[np.linspace(0, len(movers) - 1, min(WATCHED, len(movers))).astype(np.int64)]
+        self._profiler = None if profile is None else Profiler(scene, ensemble, profile)
+        self._correlated = np.arange(len(watched))
+        if self._profiler is not None:
+            self._correlated = np.searchsorted(movers, watched)
+            watched = movers
+        walls = len(stage.wall_names) if len(stage.wall_names) <= MOST_WALLS else 0
+        self._plan = sums.Plan(len(ensemble.species), walls, *(length or 0.0 for length in stage.period))
+        self._sums = _sums(scene, stage, ensemble, self._plan, watched)
+        self._sums.numbers[sums.ORIGIN] = self.discard or 0.0
+        self._block = np.empty(BLOCK, dtype=ROW)
+        self._filled, self._rows = 0, 0
         self._correlator: Correlator | None = None
-        self._samples_taken = 0
         self._time = 0.0
-        self._energy = self.ensemble.start_energy
-        self._cooling = Cooling(self._energy)
 
     def write(self, rows: Rows) -> None:
         """Take a block of full rows, the next of the run."""
-        self._waiting.append(slowed_rows(rows, self._pace) if self._pace else rows.copy())
-        self._waiting_rows += len(rows)
-        if self._waiting_rows >= BLOCK:
-            every = np.concatenate(self._waiting)
-            whole = len(every) - len(every) % BLOCK
-            for first in range(0, whole, BLOCK):
-                self._take(every[first : first + BLOCK])
-            self._waiting, self._waiting_rows = [every[whole:].copy()], len(every) - whole
+        begin = 0
+        while begin < len(rows):
+            count = min(len(rows) - begin, BLOCK - self._filled)
+            part = rows[begin : begin + count]
+            self._block[self._filled : self._filled + count] = slowed_rows(part, self._pace) if self._pace else part
+            self._filled, begin = self._filled + count, begin + count
+            if self._filled == BLOCK:
+                self._take(self._block)
+                self._filled = 0
 
     def finish(self, duration: float) -> Measures:
-        """The measures of the run, which lasted `duration` (time since the start).
+        """Return the measures of the run, which lasted `duration` (time since the start).
 
-        Raises EventsimError where no time has passed, or less than is to be discarded.
+        Raises:
+            EventsimError: where no time has passed, or less than is to be discarded.
         """
         if not duration > 0.0:
             raise EventsimError("there is nothing to measure: no time passes in this run")
         length, duration = duration, math.ldexp(duration, self._pace)
         if self.discard is not None and self.discard >= duration:
             raise EventsimError(f"discard = {math.ldexp(self.discard, -self._pace)!r}: the run lasts {length!r} only")
-        if self._waiting_rows:
-            self._take(np.concatenate(self._waiting))
-            self._waiting, self._waiting_rows = [], 0
-        series, correlator = self._scales(duration, 0)
-        samples = self._sample_times(correlator, duration)
-        flights, way, velocity = self._follower.rest(duration, samples, self._watched)
-        correlator.add(way, velocity)
-        self._add_flights(flights, series)
-        if self.scene.gravity is None:
-            end = max(duration, self._time)
-            series.add_held(ENERGY, np.array([self._time, end]), np.array([self._energy]))
-        bins = series.whole_bins(duration)
-        settled = self.discard
-        if settled is None:
-            settled = settled_after(bins[:, VIRIAL]) * series.width if self.ensemble.steady else 0.0
-        way = np.hypot(*self._follower.way[self._watched].T)
-        longest = float(way.max())
-        moved = longest * float(np.sqrt(((way / longest) ** 2).mean())) if longest > 0.0 else 0.0
+        if self._filled:
+            self._take(self._block[: self._filled])
+            self._filled = 0
+        correlator = self._scales(duration, 0)
+        end = max(duration, self._time)
+        kernel = kernels(self._rows)
+        while not kernel.finish(end, self._plan, self._sums):
+            self._drain(coarsen=True)
+        self._drain()
         records = Records(
             ensemble=self.ensemble,
-            tally=self._tally,
+            plan=self._plan,
             wall_names=self._stage.wall_names,
             duration=duration,
-            discarded=settled,
-            discard_given=self.discard is not None,
-            width=series.width,
-            bins=bins[series.bin_after(settled) :],
+            end=end,
+            discard=self.discard,
+            sums=self._sums,
+            thermal_speed=_thermal_speed(self.ensemble),
             correlations=correlator.result(),
-            cooling=self._cooling,
-            moved=moved,
+            profile=None if self._profiler is None else self._profiler.result(),
         )
-        measures = results_of(records)
+        measures = measures_of(records)
         return at_full_pace(measures, self._pace) if self._pace else measures
 
     def _take(self, rows: Rows) -> None:
         """Take up a block of the meter's own."""
         time = rows["epoch"] * self._epoch_length + rows["remainder"]
         time = np.maximum.accumulate(np.maximum(time, self._time))  # logged times may step back by an ulp
-        end = float(time[-1])
-        series, correlator = self._scales(end, len(rows))
-        samples = self._sample_times(correlator, end)
-        flights, way, velocity = self._follower.follow(rows, time, samples, self._watched)
-        correlator.add(way, velocity)
-        self._tally.add_contacts(series, rows, time)
-        self._add_flights(flights, series)
+        self._scales(float(time[-1]), len(rows))
+        self._rows += len(rows)
+        kernel = kernels(self._rows)
+        self._hold(kernel)
+        self._time = float(time[-1])
+        block = sums.Block(time, *(rows[name] for name in sums.Block._fields[1:]))
+        done = 0
+        while (done := kernel.take(block, done, self._plan, self._sums)) < len(rows):
+            self._drain(coarsen=True)
+        self._drain()
+
+    def _hold(self, kernel: Kernels) -> None:
+        """Make rates and energy anew from the velocities: sums of changes lose digits where a gas has cooled."""
+        disks, numbers = self._sums.disks, self._sums.numbers
+        kernel.hold_all(self._plan, self._sums, max(self._time - numbers[sums.ORIGIN], 0.0))
         if self.scene.gravity is None:
-            energy = self._energy + np.cumsum(self._tally.energy_changes(flights, len(rows)))
-            held = np.concatenate([[self._energy], energy[:-1]])
-            series.add_held(ENERGY, np.concatenate([[self._time], time]), held)
-            self._energy = float(energy[-1])
-            self._cooling.add(rows, energy)
-        self._time = end
+            speed2 = disks[:, sums.VX] ** 2 + disks[:, sums.VY] ** 2
+            numbers[sums.HEAT] = 0.5 * float(disks[:, sums.MASS] @ speed2)
 
-    def _add_flights(self, flights: Flights, series: Series) -> None:
-        self._tally.add_flights(series, flights)
-        if self.scene.gravity is not None:
-            self._tally.add_energy(series, flights)
-            self._tally.add_weight(series, flights)
-
-    def _scales(self, end: float, rows: int) -> tuple[Series, Correlator]:
-        """The series and the correlator, made from the pace of the first block."""
-        if self._series is None or self._correlator is None:
-            span = end if end > 0.0 else 1.0
-            self._series = Series(self._tally.channels, span / FIRST_BINS)
-            flight = span * self.ensemble.n / max(2 * rows, 1)
+    def _scales(self, end: float, rows: int) -> Correlator:
+        """Return the correlator; width of bins and interval of samples are made from the pace of the first block."""
+        if self._correlator is None:
+            numbers = self._sums.numbers
+            span = end - numbers[sums.ORIGIN] if end > numbers[sums.ORIGIN] else end if end > 0.0 else 1.0
+            numbers[sums.WIDTH] = span / FIRST_BINS
+            movers = max(int(self.ensemble.movers.sum()), 1)
+            flight = (end if end > 0.0 else 1.0) * movers / max(2 * rows, 1)
             self._correlator = Correlator(flight / SAMPLES_PER_FLIGHT)
-        return self._series, self._correlator
+            numbers[sums.INTERVAL] = self._correlator.interval
+            self._hold(kernels(rows))
+        return self._correlator
 
-    def _sample_times(self, correlator: Correlator, end: float) -> Floats:
-        """The times at which samples are due, up to `end`."""
-        begin = self.discard or 0.0
-        due = max(math.floor((end - begin) / correlator.interval) + 1, self._samples_taken)
-        numbers = np.arange(self._samples_taken, due, dtype=np.float64)
-        self._samples_taken = due
-        return begin + correlator.interval * numbers
+    def _drain(self, coarsen: bool = False) -> None:
+        """Add the samples that are in the buffer; coarsen: take them half as often from here on."""
+        assert self._correlator is not None
+        numbers, counts = self._sums.numbers, self._sums.counts
+        filled = int(counts[sums.FILLED])
+        if filled:
+            way, velocity = self._sums.way[:filled], self._sums.velocity[:filled]
+            taken = int(counts[sums.SAMPLED])
+            times = numbers[sums.INTERVAL] * np.arange(taken - filled, taken, dtype=np.float64)
+            self._correlator.add(way[:, self._correlated], velocity[:, self._correlated])
+            if self.ensemble.angular_momentum is not None:
+                self._add_rotation(times, way)
+            if self._profiler is not None:
+                self._profiler.add(times, way, velocity)
+        counts[sums.FILLED] = 0
+        if coarsen:
+            self._correlator.coarsen()
+            numbers[sums.INTERVAL] *= 2.0
+            counts[sums.SAMPLED] = -(-int(counts[sums.SAMPLED]) // 2)
+
+    def _add_rotation(self, times: Floats, way: Floats) -> None:
+        """Add the energy of the common rotation, L^2 / 2 I, at the times of samples."""
+        circle, turning = self.ensemble.circle, self.ensemble.angular_momentum
+        assert circle is not None
+        assert turning is not None
+        watched = self._sums.watched
+        mass = self._sums.disks[watched, sums.MASS]
+        arm = way + (self.scene.disks.position[watched] - np.array(circle.center))
+        inertia = np.einsum("swk,swk,w->s", arm, arm, mass) * (self.ensemble.total_mass / mass.sum())
+        bins = self._sums.bins
+        place = np.minimum((times / self._sums.numbers[sums.WIDTH]).astype(np.int64), len(bins) - 1)
+        np.add.at(bins[:, sums.ROTATION], place, 0.5 * turning * (turning / inertia))
+        np.add.at(bins[:, sums.SAMPLES], place, 1.0)
 
 
-def measure(log: EventLog, discard: float | None = None) -> Measures:
+def _thermal_speed(ensemble: Ensemble) -> float:
+    """Of a unit mass, at the start; where there is no temperature, the root mean square of all speeds."""
+    start = ensemble.temperature(ensemble.start_energy) if ensemble.n else math.nan
+    if start > 0.0 and not ensemble.drowned:
+        return math.sqrt(start)
+    if ensemble.n:
+        return 1.0
+    speed2 = (ensemble.scene.disks.velocity[ensemble.movers] ** 2).sum(axis=1)
+    return math.sqrt(float(speed2.mean())) or 1.0
+
+
+def _disks(stage: Stage, ensemble: Ensemble) -> Floats:
+    """The disks (N, DISK_COLUMNS) as sums know them, at the start."""
+    mass = np.where(ensemble.counted, ensemble.scene.disks.mass, 0.0)
+    thermal = _thermal_speed(ensemble) / np.sqrt(np.where(mass > 0.0, mass, 1.0))
+    falls = np.ones(stage.n) if stage.mass is None else np.isfinite(stage.mass).astype(np.float64)
+    disks = np.zeros((stage.n, sums.DISK_COLUMNS))
+    disks[:, sums.VX], disks[:, sums.VY], disks[:, sums.LIES_ON] = stage.vx, stage.vy, -1.0
+    disks[:, sums.MASS], disks[:, sums.RADIUS], disks[:, sums.SPECIES] = mass, stage.radius, ensemble.species_of
+    for column, fall, pull in zip(
+        (sums.GX, sums.GY), (sums.FALL_X, sums.FALL_Y), stage.gravity or (0.0, 0.0), strict=True
+    ):
+        disks[:, column] = disks[:, fall] = falls * pull
+    disks[:, sums.SCALE] = sums.SPEED_BINS / (FASTEST * thermal)
+    return disks
+
+
+def _sums(scene: Scene, stage: Stage, ensemble: Ensemble, plan: sums.Plan, watched: NDArray[np.intp]) -> sums.Sums:
+    """Empty sums, with the disks at the start of the run."""
+    numbers, counts = np.zeros(sums.NUMBERS), np.zeros(sums.COUNTS, dtype=np.int64)
+    numbers[sums.HEAT], counts[sums.STRIDE] = ensemble.start_energy, 1
+    channels, room = sums.channels_of(plan), max(MOST_SAMPLED // len(watched), 4)
+    return sums.Sums(
+        disks=_disks(stage, ensemble),
+        walls=described_walls(scene, stage, ensemble),
+        bins=np.zeros((sums.MOST_BINS, channels)),
+        rates=np.zeros(channels),
+        since=np.zeros(channels),
+        numbers=numbers,
+        counts=counts,
+        points=np.zeros((sums.MOST_POINTS, sums.POINT_COLUMNS)),
+        watched=watched.astype(np.int64),
+        way=np.zeros((room, len(watched), 2)),
+        velocity=np.zeros((room, len(watched), 2)),
+    )
+
+
+def measure(log: EventLog, discard: float | None = None, profile: str | None = None) -> Measures:
     """Measure the run that a log tells; a compact log is expanded first.
 
-    discard: as of Meter.  Raises EventsimError where there is nothing to measure, LogError for a log without an end.
+    discard, profile: as of Meter.  Raises EventsimError where there is nothing to measure, LogError for a log without an end.
     """
     full = log.expand()
-    meter = Meter(full.scene, discard, full.provenance.kicks)
+    meter = Meter(full.scene, discard, full.provenance.kicks, profile)
     for first in range(0, len(full), BLOCK):
         meter.write(full.rows[first : first + BLOCK])
     ending = full.provenance.ending

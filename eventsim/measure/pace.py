@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from eventsim.measure.correlation import Correlations
-from eventsim.measure.results import Measures, Quantity
+from eventsim.measure.measures import Measure, Measures
+from eventsim.measure.profile import Profile
+from eventsim.measure.series import TimeSeries
 from eventsim.measure.speeds import SpeedHistogram
 from eventsim.record.events import Rows
 from eventsim.scene.pace import as_float
@@ -47,11 +49,13 @@ def at_full_pace(measures: Measures, pace: int) -> Measures:
         quantities=quantities,
         speeds=tuple(_histogram(histogram, pace) for histogram in measures.speeds),
         correlations=_correlations(measures.correlations, pace),
+        series=_series(measures.series, pace),
+        profile=None if measures.profile is None else _profile(measures.profile, pace),
         by_name={quantity.name: quantity for quantity in quantities},
     )
 
 
-def _quantity(quantity: Quantity, pace: int) -> Quantity:
+def _quantity(quantity: Measure, pace: int) -> Measure:
     """One quantity; where it is no float in the scene's unit, the unit is a power of two of that."""
     power = RATES[quantity.unit] * pace
     numbers = quantity.value, quantity.error, quantity.theory, quantity.accuracy
@@ -83,4 +87,34 @@ def _correlations(correlations: Correlations, pace: int) -> Correlations:
             lag=np.ldexp(correlations.lag, -pace),
             vacf=np.ldexp(correlations.vacf, 2 * pace),
             vacf_error=np.ldexp(correlations.vacf_error, 2 * pace),
+        )
+
+
+def _series(series: TimeSeries, pace: int) -> TimeSeries:
+    """Energies may be no floats in the scene's unit: inf or 0."""
+    with np.errstate(over="ignore", under="ignore"):
+        return TimeSeries(
+            time=np.ldexp(series.time, -pace),
+            contacts=series.contacts,
+            energy=np.ldexp(series.energy, 2 * pace),
+            temperature=np.ldexp(series.temperature, 2 * pace),
+            pressure=np.ldexp(series.pressure, 2 * pace),
+            collision_rate=np.ldexp(series.collision_rate, pace),
+        )
+
+
+def _profile(profile: Profile, pace: int) -> Profile:
+    with np.errstate(over="ignore", under="ignore"):
+        return replace(
+            profile,
+            species=tuple(
+                replace(
+                    one,
+                    velocity=np.ldexp(one.velocity, pace),
+                    velocity_error=np.ldexp(one.velocity_error, pace),
+                    temperature=np.ldexp(one.temperature, 2 * pace),
+                    temperature_error=np.ldexp(one.temperature_error, 2 * pace),
+                )
+                for one in profile.species
+            ),
         )

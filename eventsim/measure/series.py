@@ -1,79 +1,110 @@
-"""Sums by time, in constant memory: bins of equal width that are merged in pairs when there are too many."""
+"""Series along a run: energy, temperature, pressure and collision rate against time and against the contacts of a disk.
+
+Where contacts alone change the energy, the run is cut into parts of equal numbers of contacts, so a gas that cools by many
+decades is told as well at its end as at its beginning; else into parts of equal time.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
+from typing import Any
+
 import numpy as np
 
-from eventsim.record.events import Column, Floats
+from eventsim.measure import sums
+from eventsim.measure.records import Records
+from eventsim.record.events import Floats
 
-MOST_BINS = 2048
-FIRST_BINS = 64
-"""Bins into which the first block of rows is cut: from there on the width only doubles."""
+PARTS = 32
+"""Lines of a series, or fewer where less is known."""
 
 
-class Series:
-    """Sums of several channels over bins of time since the start, (bins, channels); at most `MOST_BINS` bins."""
+@dataclass(frozen=True, slots=True)
+class TimeSeries:
+    """Columns (K,), a line for each part of the run.
 
-    def __init__(self, channels: int, width: float) -> None:
-        """width: of a bin, time; doubled as often as needed."""
-        self.width = width
-        self._sums = np.zeros((MOST_BINS, channels))
+    Attributes:
+        time: at the end of the part, since the start of the run.
+        contacts: of a disk with others, since what is discarded, by then.
+        energy: kinetic; at `time` where contacts alone change it, else the mean over the part.
+        temperature: kT of that energy; NaN where the energy is shared by too few.
+        pressure: over the part, from the virial; NaN where nothing bounds the gas, and under gravity.
+        collision_rate: contacts of a disk with others per time, over the part.
+    """
 
-    def add(self, channel: Column | int, time: Floats, amount: Floats) -> None:
-        """Add amounts (n,) to channels (n,) or one for all, in the bins of their times (n,)."""
-        if not len(time):
-            return
-        self._reach(float(time.max()))
-        place = np.minimum((time / self.width).astype(np.int64), MOST_BINS - 1)
-        low, high = int(place.min()), int(place.max()) + 1
-        channels = self._sums.shape[1]
-        if isinstance(channel, int):
-            self._sums[low:high, channel] += np.bincount(place - low, amount, high - low)
-            return
-        flat = np.bincount((place - low) * channels + channel, amount, (high - low) * channels)
-        self._sums[low:high] += flat.reshape(-1, channels)
+    time: Floats
+    contacts: Floats
+    energy: Floats
+    temperature: Floats
+    pressure: Floats
+    collision_rate: Floats
 
-    def add_spread(self, channel: Column, begin: Floats, end: Floats, amount: Floats) -> None:
-        """Add amounts (n,), not negative, to channels (n,), evenly spread between times (n,), cut exactly where bins end."""
-        if not len(end):
-            return
-        self._reach(float(end.max()))
-        low, high = (np.minimum((at / self.width).astype(np.int64), MOST_BINS - 1) for at in (begin, end))
-        span = end - begin
-        rate = np.divide(amount, span, out=np.zeros_like(amount), where=span > 0.0)
-        parts = high > low
-        first = np.where(parts, rate * ((low + 1) * self.width - begin), amount)
-        np.add.at(self._sums, (low, channel), first)
-        if parts.any():
-            low, high, channel, rate, end = low[parts], high[parts], channel[parts], rate[parts], end[parts]
-            np.add.at(self._sums, (high, channel), rate * (end - high * self.width))
-            lowest = int(low.min())
-            steps = np.zeros((int(high.max()) - lowest + 1, self._sums.shape[1]))
-            np.add.at(steps, (low + 1 - lowest, channel), rate)
-            np.subtract.at(steps, (high - lowest, channel), rate)
-            self._sums[lowest : lowest + len(steps)] += self.width * np.maximum(np.cumsum(steps, axis=0), 0.0)
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data."""
+        return {field.name: getattr(self, field.name).tolist() for field in fields(self)}
 
-    def add_held(self, channel: int, time: Floats, value: Floats) -> None:
-        """Add value x time of values (n,) that are held between times (n + 1,), cut exactly where bins end."""
-        self._reach(float(time[-1]))
-        gone = np.concatenate([[0.0], np.cumsum(value * np.diff(time))])
-        low, high = int(time[0] / self.width), int(time[-1] / self.width)
-        edges = self.width * np.arange(low + 1, high + 1)
-        parts = np.diff(np.interp(edges, time, gone), prepend=0.0, append=gone[-1])
-        self._sums[low : high + 1, channel] += parts
 
-    def whole_bins(self, until: float) -> Floats:
-        """The bins (bins, channels) that end at or before a time."""
-        return self._sums[: min(int(until / self.width), MOST_BINS)]
+def series_of(records: Records) -> TimeSeries:
+    """Return the series of a run."""
+    ensemble = records.ensemble
+    if not ensemble.conserved and ensemble.scene.gravity is None and records.sums.counts[sums.POINTS] > 1:
+        return _along_contacts(records)
+    return _along_time(records)
 
-    def bin_after(self, time: float) -> int:
-        """The first bin that begins at or after a time."""
-        return int(np.ceil(time / self.width))
 
-    def _reach(self, time: float) -> None:
-        """Double the width until a time has a bin."""
-        while time >= self.width * MOST_BINS:
-            merged = self._sums.reshape(MOST_BINS // 2, 2, -1).sum(axis=1)
-            self._sums[: MOST_BINS // 2] = merged
-            self._sums[MOST_BINS // 2 :] = 0.0
-            self.width *= 2.0
+def _along_contacts(records: Records) -> TimeSeries:
+    counts, ensemble = records.sums.counts, records.ensemble
+    points = records.sums.points[: counts[sums.POINTS]]
+    stride = int(counts[sums.STRIDE])
+    step = -(-len(points) // PARTS)
+    chosen = np.arange(step - 1, len(points), step)
+    begin = np.zeros((1, sums.POINT_COLUMNS))
+    begin[0, sums.POINT_ENERGY] = ensemble.start_energy
+    line = np.concatenate([begin, points[chosen]])
+    number = np.concatenate([[0], (chosen + 1) * stride])
+    span = np.diff(line[:, sums.POINT_TIME])
+    energy = line[:, sums.POINT_ENERGY]
+    virial = np.diff(line[:, sums.POINT_VIRIAL])
+    return _series(
+        records,
+        line[1:, sums.POINT_TIME],
+        2.0 * number / ensemble.n,
+        energy[1:],
+        0.5 * (energy[1:] + energy[:-1]),
+        span,
+        virial,
+    )
+
+
+def _along_time(records: Records) -> TimeSeries:
+    step = -(-records.count // PARTS)
+    first = np.arange(0, records.count, step)
+
+    def parts(channel: Floats) -> Floats:
+        """Sums over the bins of each part."""
+        found: Floats = np.add.reduceat(channel[: records.count], first)
+        return found
+
+    span = parts(records.all_widths)
+    time = records.origin + np.cumsum(span)
+    met = np.cumsum(parts(records.all_contacts))
+    movers = max(int(records.ensemble.movers.sum()), 1)
+    energy = parts(records.sums.bins[:, sums.ENERGY]) / span
+    virial = parts(records.sums.bins[:, sums.VIRIAL])
+    contacts = np.concatenate([[0.0], met / movers])
+    return _series(records, time, contacts, energy, energy, span, virial)
+
+
+def _series(
+    records: Records, time: Floats, contacts: Floats, energy: Floats, mean_energy: Floats, span: Floats, virial: Floats
+) -> TimeSeries:
+    """Return the series; contacts (K + 1,) at the ends of the parts, the other arrays (K,)."""
+    ensemble = records.ensemble
+    kt = np.full(len(time), np.nan)
+    pressure = kt.copy()
+    if ensemble.n > 1 and not ensemble.drowned and records.on_a_line is None:
+        kt = np.array([ensemble.temperature(float(e)) for e in energy])
+        if ensemble.area is not None and ensemble.alone and ensemble.scene.gravity is None and not ensemble.turns:
+            mean = np.array([ensemble.temperature(float(e)) for e in mean_energy])
+            pressure = (ensemble.n * mean + 0.5 * virial / span) / ensemble.area
+    return TimeSeries(time, contacts[1:], energy, kt, pressure, np.diff(contacts) / span)

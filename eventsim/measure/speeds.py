@@ -8,14 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.measure.blocking import ratio_average
 from eventsim.measure.ensemble import Ensemble
-from eventsim.measure.tally import DISK_TIME, FASTEST, PER_SPECIES, SPEED_BINS, Tally
+from eventsim.measure.records import Records
+from eventsim.measure.sums import SPEED_BINS, first_speed
 from eventsim.measure.theory import survival
 from eventsim.record.events import Floats
 
 WELL_KNOWN = 0.2
 """Relative error below which a bin says something about the fit: rare speeds have no reliable error bars."""
+
+FASTEST = 5.0
+"""Thermal speeds sqrt(kT / m) up to which speeds have bins."""
 
 FEWEST_FREEDOMS = 4
 """With fewer the energy fixes the speeds."""
@@ -54,19 +57,23 @@ class SpeedHistogram:
         }
 
 
-def speed_histograms(ensemble: Ensemble, tally: Tally, bins: Floats, kt: float) -> tuple[SpeedHistogram, ...]:
-    """One histogram for each species, from the series (time bins, channels)."""
+def speed_histograms(records: Records) -> tuple[SpeedHistogram, ...]:
+    """One histogram for each species that moves."""
+    ensemble, plan = records.ensemble, records.plan
     result = []
+    kt = records.found.get("temperature", math.nan)
     for kind, species in enumerate(ensemble.species):
         if not math.isfinite(species.mass):
             continue
-        edges = np.linspace(0.0, FASTEST * tally.thermal_speed / math.sqrt(species.mass), SPEED_BINS + 1)
-        flown = bins[:, tally.first_species + PER_SPECIES * kind + DISK_TIME]
-        first = tally.first_speed + (SPEED_BINS + 1) * kind
-        bars = [ratio_average(bins[:, first + k], flown) for k in range(SPEED_BINS)]
+        unit = math.sqrt(species.mass) if species.mass > 0.0 else 1.0
+        edges = np.linspace(0.0, FASTEST * records.thermal_speed / unit, SPEED_BINS + 1)
+        first = first_speed(plan) + (SPEED_BINS + 1) * kind
+        flown = species.number * records.time
+        bars = [records.ratio(records.channel(first + k), flown, remembered=True) for k in range(SPEED_BINS)]
         width = edges[1]
         theory = None
-        if ensemble.simple and ensemble.at_rest and kt > 0.0 and ensemble.freedoms >= FEWEST_FREEDOMS:
+        holds = ensemble.simple and ensemble.at_rest and not ensemble.turns and ensemble.freedoms >= FEWEST_FREEDOMS
+        if kind < ensemble.kinds and holds and records.mixed and kt > 0.0:
             above = [_above(ensemble, speed, kt, species.mass) for speed in edges.tolist()]
             theory = -np.diff(above) / width
         density = np.array([bar.mean for bar in bars]) / width

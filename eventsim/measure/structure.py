@@ -37,9 +37,7 @@ def structure_of(scene: Scene, state: State) -> Structure:
     try:
         import freud
     except ImportError:
-        raise EventsimError(
-            "structure is measured by freud: pip install 'eventsim-disks[structure]'"
-        ) from None
+        raise EventsimError("structure is measured by freud: pip install 'eventsim-disks[structure]'") from None
     domain = scene.domain
     if not isinstance(domain, Periodic):
         raise EventsimError(f'structure: the domain is "{domain.kind}"; freud works in periodic ones')

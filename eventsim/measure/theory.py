@@ -159,11 +159,15 @@ def mixture_compressibility_factor(components: Sequence[Component]) -> float:
 
 def mixture_rate(components: Sequence[Component], i: int, j: int, kt: float) -> float:
     """Contacts per time of one disk of species i with disks of species j."""
+    return ideal_rate(components, i, j, kt) * mixture_contact_value(components, i, j)
+
+
+def ideal_rate(components: Sequence[Component], i: int, j: int, kt: float) -> float:
+    """The same for a contact value of 1: 2 rho_j s_ij sqrt(pi kT / 2 mu_ij)."""
     a, b = components[i], components[j]
-    reduced = a.mass * b.mass / (a.mass + b.mass)
+    reduced = a.mass * (b.mass / (a.mass + b.mass))
     reach = 0.5 * (a.diameter + b.diameter)
-    flux = 2.0 * b.density * reach * math.sqrt(0.5 * math.pi * kt / reduced)
-    return flux * mixture_contact_value(components, i, j)
+    return 2.0 * b.density * reach * math.sqrt(0.5 * math.pi * kt / reduced)
 
 
 def two_disk_torus(area: float, d: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -80,6 +81,8 @@ def _measured(plan: Plan, task: Task) -> Row:
     }
     for quantity in measures.quantities:
         if not quantity.plain:  # a column has one unit: what is no float in it is missing
+            continue
+        if math.isnan(quantity.value):  # it has no meaning in this run
             continue
         row[quantity.name] = quantity.value
         row[f"{quantity.name}_error"] = quantity.error

@@ -1,0 +1,80 @@
+"""The sums in machine code, where numba is installed and the run is long; else as they are.  Both give the same bits."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import cache
+from importlib.util import find_spec
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from eventsim.measure import sums
+
+FEW_ROWS = 1 << 15
+"""Rows up to which plain Python is done before a compiler is even loaded."""
+
+VERY_FEW_ROWS = 1 << 11
+"""The same where the compiler has been loaded for the run itself."""
+
+
+class Kernels(NamedTuple):
+    """`sums.take`, `sums.finish` and `sums.hold_all`."""
+
+    take: Callable[[sums.Block, int, sums.Plan, sums.Sums], int]
+    finish: Callable[[float, sums.Plan, sums.Sums], bool]
+    hold_all: Callable[[sums.Plan, sums.Sums, float], None]
+
+
+def kernels(rows: int) -> Kernels:
+    """The kernels for a run that has come to so many rows."""
+    few = VERY_FEW_ROWS if "numba" in sys.modules else FEW_ROWS
+    return _compiled() if rows > few and find_spec("numba") is not None else PLAIN
+
+
+def _viewed(arrays: Any) -> Any:
+    """Arrays as views whose elements are Python's own numbers, which plain Python is several times faster with."""
+    return type(arrays)(*(memoryview(cast(Any, item)) if isinstance(item, np.ndarray) else item for item in arrays))
+
+
+PLAIN = Kernels(
+    lambda block, first, plan, held: sums.take(_viewed(block), first, plan, _viewed(held)),
+    lambda until, plan, held: sums.finish(until, plan, _viewed(held)),
+    lambda plan, held, time: sums.hold_all(plan, _viewed(held), time),
+)
+
+
+@cache
+def _compiled() -> Kernels:
+    """Nothing is allocated, so no references are counted (`_nrt`), which would take most of the time."""
+    from numba import njit
+    from numba.extending import register_jitable
+
+    for part in (
+        sums.first_pair,
+        sums.first_wall,
+        sums.first_speed,
+        sums.merge,
+        sums.reach,
+        sums.turn,
+        sums.slot_of,
+        sums.hold,
+        sums.spread,
+        sums.fall,
+        sums.fly,
+        sums.nearest,
+        sums.side_of,
+        sums.sample,
+        sums.sample_before,
+        sums.mark,
+        sums.leave,
+        sums.meet,
+        sums.strike,
+    ):
+        register_jitable(error_model="numpy", forceinline=True, _nrt=False)(part)
+    whole = (sums.take, sums.finish, sums.hold_all)
+    try:
+        return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False, cache=True)(part) for part in whole))
+    except RuntimeError:  # no folder to keep them in
+        return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False)(part) for part in whole))

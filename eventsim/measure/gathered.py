@@ -1,0 +1,76 @@
+"""From the records of a run to its measures: quantities, doubts, speeds, correlations, series."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventsim.measure import sums
+from eventsim.measure.blocking import block_average
+from eventsim.measure.equilibration import DRIFT, doubts, strangers, transient
+from eventsim.measure.measures import Measures
+from eventsim.measure.quantities import quantities_of
+from eventsim.measure.records import FEWEST_CONTACTS, Records
+from eventsim.measure.series import series_of
+from eventsim.measure.speeds import speed_histograms
+
+
+def measures_of(records: Records) -> Measures:
+    """Return the measures that records amount to."""
+    ensemble = records.ensemble
+    quantities = quantities_of(records)
+    found = _doubts(records)
+    if not found and ensemble.steady:
+        found = strangers((quantity.name, quantity.deviation, quantity.source) for quantity in quantities)
+    table = ensemble.table if ensemble.steady or ensemble.billiard else None
+    return Measures(
+        disks=ensemble.n,
+        tracers=0 if ensemble.tracers is None else ensemble.species[ensemble.tracers].number,
+        packing_fraction=ensemble.packing_fraction,
+        table_seen=None if table is None or not ensemble.billiard else (table.area, table.perimeter),
+        duration=records.duration,
+        discarded=records.discarded,
+        discard_given=records.discard is not None,
+        steady=ensemble.steady,
+        doubts=tuple(found),
+        quantities=quantities,
+        speeds=speed_histograms(records),
+        correlations=records.correlations,
+        series=series_of(records),
+        profile=records.profile,
+        by_name={quantity.name: quantity for quantity in quantities},
+    )
+
+
+def _doubts(records: Records) -> list[str]:
+    """Reasons why there is no steady state, or why the run cannot tell."""
+    ensemble = records.ensemble
+    if records.no_temperature is not None:
+        return [records.no_temperature]
+    if not records.mixed:
+        return [
+            f"{records.events / ensemble.n:.2g} contacts of a disk are too few to tell (at least {FEWEST_CONTACTS:g})"
+        ]
+    rates = records.channel(sums.VIRIAL) / records.time
+    late = records.discard is None and transient(records.discarded - records.origin, records.end - records.origin)
+    way = np.hypot(*records.sums.disks[ensemble.counted, sums.WX : sums.WY + 1].T)
+    longest = float(way.max())
+    moved = longest * float(np.sqrt(((way / longest) ** 2).mean())) if longest > 0.0 else 0.0
+    return doubts(ensemble, rates, block_average(rates), late, moved) + _exchanging(records)
+
+
+def _exchanging(records: Records) -> list[str]:
+    """A clause where one species still gives energy to others."""
+    for kind in records.everyone if records.ensemble.kinds > 1 else ():
+        square, half = records.species(kind, sums.SPEED2), len(records.time) // 2
+        first, second = (
+            records.ratio(square[part], records.time[part], remembered=True)
+            for part in (slice(half), slice(half, None))
+        )
+        spread = math.hypot(first.error, second.error)
+        if abs(first.mean - second.mean) > DRIFT * spread > 0.0:
+            return [
+                f"species {kind} still exchanges energy with others: its mean v^2 differs between the halves of the run"
+            ]
+    return []

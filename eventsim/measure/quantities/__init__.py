@@ -1,0 +1,53 @@
+"""Quantities: one module a family, each with `measures(records)`; to add one is its file and one line in `FAMILIES`.
+
+A family finds in `records.found` the values that families before it have found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from eventsim.measure.measures import Measure
+from eventsim.measure.quantities import (
+    cooling,
+    diffusion,
+    paths,
+    pressure,
+    rates,
+    species,
+    speeds,
+    temperature,
+    walls,
+)
+from eventsim.measure.records import Records
+
+
+class Family(NamedTuple):
+    """A family of quantities: how help calls them, and what makes them of the records of a run."""
+
+    words: str
+    measures: Callable[[Records], Iterator[Measure]]
+
+
+FAMILIES = (
+    Family("temperature (kT); energy_start and energy_end where it changes", temperature.measures),
+    Family("Z (P V / N kT from the virial), Z_walls, pressure, contact_value or contact_value_I_J", pressure.measures),
+    Family(
+        "collision_rate (contacts of a disk with others per time), wall_contact_rate (of all disks)", rates.measures
+    ),
+    Family("force_WALL (impacts, and the weight of disks at rest), force_WALL_SIDE, pressure_WALL", walls.measures),
+    Family("mean_free_time, mean_free_path; of tracers beside a gas: tracer_...", paths.measures),
+    Family("mean_speed", speeds.measures),
+    Family(
+        "temperature_I, mean_speed_I, collision_rate_I, collision_rate_I_J (of a disk of species I)", species.measures
+    ),
+    Family("diffusion (d <r^2> / d 4t, with its lags)", diffusion.measures),
+    Family("cooling_exponent (-d ln T per contact of a disk)", cooling.measures),
+)
+"""The table of families, in the order of the page."""
+
+
+def quantities_of(records: Records) -> tuple[Measure, ...]:
+    """Return all quantities of a run."""
+    return tuple(quantity for family in FAMILIES for quantity in family.measures(records))

@@ -1,0 +1,255 @@
+"""What a meter has gathered when the run is over, in the words that quantities ask in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from eventsim.measure import sums
+from eventsim.measure.blocking import FEWEST_BLOCKS, ErrorBar, ratio_average
+from eventsim.measure.correlation import Correlations
+from eventsim.measure.ensemble import Ensemble
+from eventsim.measure.equilibration import settled_after
+from eventsim.measure.profile import Profile
+from eventsim.measure.sums import Plan, Sums
+from eventsim.record.events import Floats
+
+FEWEST_EVENTS = 32
+"""Contacts, of all disks together, from which on their scatter says how sure a mean is: some 18 % of the bar itself."""
+
+MEMORY = 6.0
+"""Contacts of a disk after which nothing is left of its speed."""
+
+FEWEST_CONTACTS = 10.0
+"""Contacts of a disk after which it may have forgotten how it began; a few are enough in a gas, at least one in a crowd."""
+
+NO_SCATTER = 1e-9
+"""Share of a value below which its bar is rounding: what repeats itself for ever has no scatter to make a bar of."""
+
+ON_A_LINE = 1e-18
+"""Share of the squared energy that the determinant of the mean v v^T has for motion along one line: rounding, squared."""
+
+
+@dataclass(frozen=True)
+class Records:
+    """Sums of a run, and what follows from them for all quantities alike.
+
+    Attributes:
+        ensemble, plan, wall_names, sums: see `Meter`.
+        duration: of the run; end: of its last flight, which may be an ulp later.
+        discard: what is asked to be left out; None: what the pressure tells.
+        thermal_speed: the unit of speeds of a unit mass.
+        correlations, profile: of samples.
+        found: the values of quantities so far, by name.
+    """
+
+    ensemble: Ensemble
+    plan: Plan
+    wall_names: tuple[str, ...]
+    duration: float
+    end: float
+    discard: float | None
+    sums: Sums
+    thermal_speed: float
+    correlations: Correlations
+    profile: Profile | None
+    found: dict[str, float] = field(default_factory=dict)
+
+    # --- bins of time
+
+    @property
+    def origin(self) -> float:
+        """Time at which the bins begin."""
+        return float(self.sums.numbers[sums.ORIGIN])
+
+    @property
+    def width(self) -> float:
+        """Of a bin, time; the last one is cut off by the end of the run."""
+        return float(self.sums.numbers[sums.WIDTH])
+
+    @cached_property
+    def count(self) -> int:
+        """Number of bins, the last one included."""
+        return min(max(math.ceil((self.end - self.origin) / self.width), 1), sums.MOST_BINS)
+
+    @cached_property
+    def all_widths(self) -> Floats:
+        """Time of each bin (bins,)."""
+        widths = np.full(self.count, self.width)
+        widths[-1] = (self.end - self.origin) - (self.count - 1) * self.width
+        return widths
+
+    @cached_property
+    def skipped(self) -> int:
+        """Bins at the beginning that belong to the transient; none where it was said what to leave out."""
+        if self.discard is not None or not self.ensemble.steady or self.ensemble.n < 2:
+            return 0
+        bins = self.sums.bins[: self.count]
+        return settled_after(bins[:, sums.VIRIAL], float(bins[:, sums.PAIRS].sum()), self.ensemble.n)
+
+    @property
+    def discarded(self) -> float:
+        """Time at the beginning that is left out."""
+        return self.origin + self.skipped * self.width
+
+    @cached_property
+    def time(self) -> Floats:
+        """Time of each bin that is kept."""
+        return self.all_widths[self.skipped :]
+
+    def channel(self, place: int) -> Floats:
+        """One channel of the bins that are kept."""
+        return self.sums.bins[self.skipped : self.count, place]
+
+    # --- channels by what they mean
+
+    def species(self, kind: int, place: int) -> Floats:
+        """One channel of a species."""
+        return self.channel(sums.GENERAL + sums.PER_SPECIES * kind + place)
+
+    def met(self, kind: int, other: int) -> Floats:
+        """Contacts of disks of one species with disks of another; those among themselves count for both."""
+        return self.channel(sums.first_pair(self.plan) + self.plan.kinds * kind + other)
+
+    def contacts(self, kind: int) -> Floats:
+        """Contacts of disks of a species with disks that deflect it."""
+        return sum((self.met(kind, other) for other in self.ensemble.partners), np.zeros_like(self.time))
+
+    def wall(self, place: int, side: int) -> Floats:
+        """Impulse given to one side of a wall."""
+        return self.channel(sums.first_wall(self.plan) + sums.SIDES * place + side)
+
+    def _over(self, kinds: range, place: int) -> Floats:
+        return sum((self.species(kind, place) for kind in kinds), np.zeros_like(self.time))
+
+    @property
+    def everyone(self) -> range:
+        """The species that carry energy."""
+        return range(self.ensemble.kinds)
+
+    @cached_property
+    def pair_contacts(self) -> Floats:
+        """Contacts of disks that carry energy with such disks (each for both) and with immovable ones."""
+        return sum((self.contacts(kind) for kind in self.everyone), np.zeros_like(self.time))
+
+    @cached_property
+    def wall_contacts(self) -> Floats:
+        """Contacts of disks that carry energy with walls."""
+        return self._over(self.everyone, sums.HITS)
+
+    @cached_property
+    def path(self) -> Floats:
+        """Length of the flights of disks that carry energy."""
+        return self._over(self.everyone, sums.PATH)
+
+    @property
+    def all_contacts(self) -> Floats:
+        """Contacts of all who move with others, in all bins."""
+        ensemble, kinds = self.ensemble, self.plan.kinds
+        movers = self.everyone if ensemble.n else range(kinds)
+        first = sums.first_pair(self.plan)
+        places = [first + kinds * k + other for k in movers if k != ensemble.posts for other in ensemble.partners]
+        found: Floats = self.sums.bins[: self.count, places].sum(axis=1)
+        return found
+
+    # --- what the run was like
+
+    @property
+    def events(self) -> float:
+        """Contacts in what is kept, of all disks, with each other and with walls."""
+        return float(self.pair_contacts.sum() + self.wall_contacts.sum())
+
+    @property
+    def per_disk(self) -> float:
+        """Contacts of a disk with others in what is kept."""
+        return float(self.pair_contacts.sum()) / max(self.ensemble.n, 1)
+
+    @cached_property
+    def on_a_line(self) -> str | None:
+        """A clause where all disks moved along one line, from the first to the last."""
+        xx, xy, yy = (float(self.channel(k).sum()) for k in (sums.XX, sums.XY, sums.YY))
+        trace = xx + yy
+        if self.ensemble.n and trace > 0.0 and (xx / trace) * (yy / trace) - (xy / trace) ** 2 <= ON_A_LINE:
+            return "the disks move along one line and do not mix"
+        return None
+
+    @cached_property
+    def moves(self) -> bool:
+        """Whether anything that carries energy moves."""
+        return bool(self.channel(sums.ENERGY).any())
+
+    @cached_property
+    def no_temperature(self) -> str | None:
+        """Why there is no temperature, a clause; None where there is one."""
+        ensemble = self.ensemble
+        if not ensemble.n:
+            return "tracers carry no energy"
+        if not self.moves:
+            return "nothing moves"
+        if ensemble.unsteady is not None:
+            return ensemble.unsteady
+        if ensemble.n == 1:
+            return "one disk shares its energy with nobody"
+        if ensemble.drowned:
+            return "the energy of the common motion leaves no digits of the thermal energy"
+        if self.on_a_line is not None:
+            return self.on_a_line
+        if ensemble.n < FEW and self.events < FEWEST_CONTACTS * ensemble.n:
+            return f"{self.events:g} contacts are too few to share the energy"
+        return None
+
+    @cached_property
+    def no_pressure(self) -> str | None:
+        """Why there is no pressure of the gas, a clause; None where there is one."""
+        ensemble = self.ensemble
+        if self.no_temperature is not None:
+            return self.no_temperature
+        if ensemble.scene.gravity is not None:
+            return "under gravity it falls with the height"
+        if not ensemble.alone:
+            return "walls and posts inside make it a matter of place"
+        if ensemble.turns:
+            return "the gas turns as a whole, and it grows outwards"
+        return None if ensemble.area is not None else "nothing bounds the gas"
+
+    @property
+    def mixed(self) -> bool:
+        """Whether every disk has had the contacts to come into equilibrium: else theory has nothing to say yet."""
+        return self.no_temperature is None and self.events >= FEWEST_CONTACTS * self.ensemble.n
+
+    # --- bars
+
+    def ratio(self, above: Floats, below: Floats, remembered: bool = False) -> ErrorBar:
+        """sum(above) / sum(below), with an error bar where the run can tell one.
+
+        remembered: of what disks keep from one contact to the next, such as speeds.  Stretches are then at least as long as
+        that memory, however few are left: in a short run the scatter itself could not tell it.
+        """
+        step = 1
+        if remembered and self.events > 0.0:
+            memory = MEMORY * float(self.time.sum()) * self.ensemble.n / self.events
+            step = max(min(math.ceil(memory / self.width), len(above) // FEWEST_BLOCKS), 1)
+        starts = np.arange(0, len(above), step)
+        bar = ratio_average(np.add.reduceat(above, starts), np.add.reduceat(below, starts))
+        bar = bar._replace(length=bar.length * step)
+        return bar if self.no_bar(bar) is None else bar._replace(error=math.nan)
+
+    def no_bar(self, bar: ErrorBar) -> str | None:
+        """Why a ratio of sums has no error bar, a clause; None where it has one."""
+        events = self.events if self.ensemble.n else float(self.sums.disks[self.ensemble.movers, sums.HIT].sum())
+        if not self.ensemble.steady:
+            return "an average over this run, which has no steady state"
+        if events < FEWEST_EVENTS:
+            return f"{events:g} contacts are too few for an error bar"
+        if math.isnan(bar.error):
+            return "the run is too short for an error bar"
+        if bar.error <= NO_SCATTER * abs(bar.mean):
+            return "it repeats itself, without a scatter to make an error bar of"
+        return None
+
+
+FEW = 16
+"""Disks below which a temperature needs contacts: the energy that few disks share is not told by how they begin."""

@@ -1,0 +1,433 @@
+"""What a run sums up, row by row: every disk is followed from contact to contact, in memory that does not grow.
+
+Plain Python, and machine code where there is a compiler (`compiled`): both give the same bits.  All is in one file, so that
+numba, which keeps compiled code by the file it came from, notices every edit.
+
+What disks do between contacts without gravity is a constant: speed, energy, the bin of the speed histogram.  A channel holds the
+sum of these over all disks, its rate, and rate x time goes to the present bin of time when the rate changes or the bin ends.
+So sums are right to the very end of a run, flights under way included.  A flight under gravity is added when it ends, to all bins
+that it passed through.  Bins double in width when the run outgrows them, and so does the interval between samples, so a run that
+slows down by many decades costs no more than one that does not.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.int64]
+
+PAIR, WALL, REST, KICK = 0, 1, 2, 3
+"""Kinds of rows, as `record.events.Kind` has them."""
+
+MOST_BINS = 2048
+VIRIAL, PAIRS, WALL_VIRIAL, ROTATION, SAMPLES, ENERGY, XX, XY, YY = range(9)
+GENERAL = 9
+"""Channels of a bin.  Sums of reach x impulse, and number of contacts, between disks that carry energy; sum of lever x impulse at
+walls; energy of the common rotation, summed over samples, and the number of these; of disks that carry energy, the integrals over
+time of the energy, and of m v_x^2, m v_x v_y, m v_y^2."""
+
+PATH, SPEED2, HITS = 0, 1, 2
+PER_SPECIES = 3
+"""Channels of a species: length of its flights; integral of v^2; contacts with walls."""
+
+SPEED_BINS = 50
+"""Bins of the speed histogram; one more is for what is beyond."""
+
+PIECES = 4
+"""Parts of a flight under gravity, each with a speed of its own in the histogram."""
+
+MOST_POINTS = 2048
+POINT_TIME, POINT_ENERGY, POINT_VIRIAL = 0, 1, 2
+POINT_COLUMNS = 3
+"""Columns of the points along the contacts: time, energy, and the sum of VIRIAL by then."""
+
+WIDTH, ORIGIN, INTERVAL, HEAT, FORCE = range(5)
+NUMBERS = 5
+"""Numbers that change: width of a bin; time at which the bins begin; interval of samples; energy now; sum of VIRIAL so far."""
+
+PLACE, SAMPLED, FILLED, CONTACTS, STRIDE, POINTS = range(6)
+COUNTS = 6
+"""Counts that change: the present bin; samples so far; those in the buffer; pair contacts so far; contacts from point to point;
+points so far."""
+
+TIME, VX, VY, GX, GY, WX, WY, LIES_ON, LENGTH, HIT, MASS, RADIUS, SPECIES, FALL_X, FALL_Y, SCALE = range(16)
+DISK_COLUMNS = 16
+"""Columns of a disk, two cache lines.  Of its present flight: when it began, velocity and acceleration then, displacement since
+the start of the run, the wall on which it rests or -1.  Length of its flights, number of its contacts.  What it is: mass, 0 where
+it carries no energy; radius; species; acceleration in free flight; bins of the histogram per unit of speed."""
+
+WALL_X, WALL_Y, NORMAL_X, NORMAL_Y, LEVER, INSET, PRESS, SLOPE_X, SLOPE_Y, BEND = range(10)
+WALL_COLUMNS = 10
+"""Columns of a wall: a point of a straight one, the centre of a round one; the normal of a straight one, to its left or into the
+domain, 0, 0 of a round one; from the middle of the region to the wall, a disk's own being shorter by `INSET` radii; how hard a
+disk of unit mass presses that rests on it, and its acceleration; the radius of a round one."""
+
+SIDES = 3
+"""Of a wall: left or inner, right or outer, ends."""
+
+AT_END = 1e-7
+"""Share of a wall's size by which a centre may be off its place beside the wall: well above rounding, and below what is seen."""
+
+
+class Block(NamedTuple):
+    """Columns (R,) of rows of a log; time since the start of the run, ascending."""
+
+    time: Floats
+    kind: NDArray[np.int32]
+    a: NDArray[np.int32]
+    b: NDArray[np.int32]
+    wall: NDArray[np.int32]
+    xa: Floats
+    ya: Floats
+    vxa: Floats
+    vya: Floats
+    vxb: Floats
+    vyb: Floats
+    impulse: Floats
+
+
+class Plan(NamedTuple):
+    """Where things go: numbers of species and of walls with channels of their own; periods, 0 where there is none."""
+
+    kinds: int
+    walls: int
+    period_x: float
+    period_y: float
+
+
+class Sums(NamedTuple):
+    """What is gathered.
+
+    disks: (N, DISK_COLUMNS).  walls: (W, WALL_COLUMNS).  bins: (MOST_BINS, channels).  rates, since: (channels,) the rate of each
+    channel, and until when it is in the bins.  numbers, counts: see WIDTH, PLACE.  points: (MOST_POINTS, POINT_COLUMNS).
+    watched: (W,) disks that are sampled.  way, velocity: (S, W, 2) buffers of samples.
+    """
+
+    disks: Floats
+    walls: Floats
+    bins: Floats
+    rates: Floats
+    since: Floats
+    numbers: Floats
+    counts: Indices
+    points: Floats
+    watched: Indices
+    way: Floats
+    velocity: Floats
+
+
+def channels_of(plan: Plan) -> int:
+    """The number of channels of a bin."""
+    return first_speed(plan) + plan.kinds * (SPEED_BINS + 1)
+
+
+def first_pair(plan: Plan) -> int:
+    """Channels from here on: contacts of species with species (kinds x kinds)."""
+    return GENERAL + plan.kinds * PER_SPECIES
+
+
+def first_wall(plan: Plan) -> int:
+    """Channels from here on: impulse given to each side of each wall."""
+    return first_pair(plan) + plan.kinds * plan.kinds
+
+
+def first_speed(plan: Plan) -> int:
+    """Channels from here on: time at speeds, species by species."""
+    return first_wall(plan) + SIDES * plan.walls
+
+
+def merge(sums: Sums) -> None:
+    """Double the width of the bins."""
+    bins = sums.bins
+    for c in range(len(sums.rates)):
+        for k in range(MOST_BINS // 2):
+            bins[k, c] = bins[2 * k, c] + bins[2 * k + 1, c]
+        for k in range(MOST_BINS // 2, MOST_BINS):
+            bins[k, c] = 0.0
+    sums.numbers[WIDTH] *= 2.0
+    sums.counts[PLACE] //= 2
+
+
+def reach(sums: Sums, time: float) -> None:
+    """Come to a time since ORIGIN: all channels are added to the bins that end before it."""
+    numbers, counts = sums.numbers, sums.counts
+    while time >= numbers[WIDTH] * (counts[PLACE] + 1):
+        place = counts[PLACE]
+        if place == MOST_BINS - 1:
+            merge(sums)
+            continue
+        end = numbers[WIDTH] * (place + 1)
+        for c in range(len(sums.rates)):
+            if sums.rates[c] != 0.0:
+                sums.bins[place, c] += sums.rates[c] * (end - sums.since[c])
+            sums.since[c] = end
+        counts[PLACE] = place + 1
+
+
+def turn(sums: Sums, channel: int, time: float, change: float) -> None:
+    """Change the rate of a channel at a time in the present bin."""
+    if sums.rates[channel] != 0.0:
+        sums.bins[sums.counts[PLACE], channel] += sums.rates[channel] * (time - sums.since[channel])
+    sums.since[channel] = time
+    sums.rates[channel] += change
+
+
+def slot_of(plan: Plan, species: int, speed: float, scale: float) -> int:
+    """The channel of a speed in the histogram of its species."""
+    return first_speed(plan) + (SPEED_BINS + 1) * species + int(min(speed * scale, float(SPEED_BINS)))
+
+
+def hold(plan: Plan, sums: Sums, i: int, time: float, sign: float) -> None:
+    """Add what disk i does in a flight without gravity to the rates (sign 1), or take it away (-1), at a time since ORIGIN."""
+    disks = sums.disks
+    if disks[i, GX] != 0.0 or disks[i, GY] != 0.0:
+        return
+    vx, vy, mass, species = disks[i, VX], disks[i, VY], disks[i, MASS], int(disks[i, SPECIES])
+    speed2 = vx * vx + vy * vy
+    speed = math.sqrt(speed2)
+    general = GENERAL + PER_SPECIES * species
+    turn(sums, general + PATH, time, sign * speed)
+    turn(sums, general + SPEED2, time, sign * speed2)
+    turn(sums, slot_of(plan, species, speed, disks[i, SCALE]), time, sign)
+    if mass > 0.0:
+        turn(sums, ENERGY, time, sign * 0.5 * mass * speed2)
+        turn(sums, XX, time, sign * mass * vx * vx)
+        turn(sums, XY, time, sign * mass * vx * vy)
+        turn(sums, YY, time, sign * mass * vy * vy)
+        wall = int(disks[i, LIES_ON])
+        if wall >= 0 and plan.walls > 0:
+            turn(sums, first_wall(plan) + SIDES * wall, time, sign * mass * sums.walls[wall, PRESS])
+
+
+def hold_all(plan: Plan, sums: Sums, time: float) -> None:
+    """Make all rates anew: sums of changes lose digits where a gas has cooled."""
+    for c in range(len(sums.rates)):
+        turn(sums, c, time, -sums.rates[c])
+        sums.rates[c] = 0.0
+    for i in range(len(sums.disks)):
+        hold(plan, sums, i, time, 1.0)
+
+
+def spread(sums: Sums, begin: float, end: float, channel: int, rate: float) -> None:
+    """Add a rate x time to a channel, between two times since ORIGIN, both in bins that have been reached."""
+    begin = max(begin, 0.0)
+    if not end > begin:
+        return
+    width = sums.numbers[WIDTH]
+    low, high = min(int(begin / width), MOST_BINS - 1), min(int(end / width), MOST_BINS - 1)
+    for k in range(low, high + 1):
+        part = (end if k == high else (k + 1) * width) - (begin if k == low else k * width)
+        sums.bins[k, channel] += rate * part
+
+
+def fall(plan: Plan, sums: Sums, i: int, duration: float, time: float) -> None:
+    """Add a flight of disk i under gravity, which ends at a time since ORIGIN, to the bins; the disk has its velocity then."""
+    disks = sums.disks
+    mass, species, scale = disks[i, MASS], int(disks[i, SPECIES]), disks[i, SCALE]
+    gx, gy = disks[i, GX], disks[i, GY]
+    general = GENERAL + PER_SPECIES * species
+    part = duration / PIECES
+    wall = int(disks[i, LIES_ON])
+    if wall >= 0 and plan.walls > 0:
+        spread(sums, time - duration, time, first_wall(plan) + SIDES * wall, mass * sums.walls[wall, PRESS])
+    for piece in range(PIECES):
+        begin = time - duration + piece * part
+        end = time if piece == PIECES - 1 else begin + part
+        ux, uy = disks[i, VX], disks[i, VY]  # at its beginning, in its middle, at its end
+        mx, my = ux + gx * (0.5 * part), uy + gy * (0.5 * part)
+        ex, ey = ux + gx * part, uy + gy * part
+        middle = mx * mx + my * my
+        # Simpson's rule, exact for v^2
+        speed2 = ((ux * ux + uy * uy) + 4.0 * middle + (ex * ex + ey * ey)) / 6.0
+        speed = (math.sqrt(ux * ux + uy * uy) + 4.0 * math.sqrt(middle) + math.sqrt(ex * ex + ey * ey)) / 6.0
+        spread(sums, begin, end, general + PATH, speed)
+        spread(sums, begin, end, general + SPEED2, speed2)
+        spread(sums, begin, end, slot_of(plan, species, math.sqrt(middle), scale), 1.0)
+        if mass > 0.0:
+            spread(sums, begin, end, ENERGY, 0.5 * mass * speed2)
+            spread(sums, begin, end, XX, mass * (ux * ux + 4.0 * mx * mx + ex * ex) / 6.0)
+            spread(sums, begin, end, XY, mass * (ux * uy + 4.0 * mx * my + ex * ey) / 6.0)
+            spread(sums, begin, end, YY, mass * (uy * uy + 4.0 * my * my + ey * ey) / 6.0)
+        if end > 0.0:
+            disks[i, LENGTH] += speed * (end - max(begin, 0.0))
+        disks[i, VX], disks[i, VY] = ex, ey
+
+
+def fly(plan: Plan, sums: Sums, i: int, time: float) -> None:
+    """Bring disk i to a time along its present flight."""
+    disks, origin = sums.disks, sums.numbers[ORIGIN]
+    start = disks[i, TIME]
+    duration = time - start
+    if not duration > 0.0:
+        return
+    disks[i, TIME] = time
+    vx, vy, gx, gy = disks[i, VX], disks[i, VY], disks[i, GX], disks[i, GY]
+    disks[i, WX] += duration * (vx + 0.5 * duration * gx)
+    disks[i, WY] += duration * (vy + 0.5 * duration * gy)
+    if gx != 0.0 or gy != 0.0:
+        fall(plan, sums, i, duration, time - origin)
+    elif time > origin:
+        disks[i, LENGTH] += math.sqrt(vx * vx + vy * vy) * (time - max(start, origin))
+
+
+def nearest(d: float, period: float) -> float:
+    """A difference of coordinates to the nearest image; period 0: there are no images."""
+    return d - period * round(d / period) if period > 0.0 else d
+
+
+def side_of(plan: Plan, sums: Sums, wall: int, radius: float, x: float, y: float, vx: float, vy: float) -> int:
+    """Which side a disk that has just met a wall is on: 0 left or inner, 1 right or outer, 2 at an end."""
+    walls = sums.walls
+    nx, ny = walls[wall, NORMAL_X], walls[wall, NORMAL_Y]
+    dx, dy = nearest(x - walls[wall, WALL_X], plan.period_x), nearest(y - walls[wall, WALL_Y], plan.period_y)
+    if nx == 0.0 and ny == 0.0:
+        far = math.sqrt(dx * dx + dy * dy)
+        off, away = far - walls[wall, BEND], dx * vx + dy * vy
+        size = far
+    else:
+        norm = math.sqrt(nx * nx + ny * ny)
+        off, away = -(nx * dx + ny * dy) / norm, -(nx * vx + ny * vy)
+        size = max(norm, abs(dx) + abs(dy))
+    if abs(abs(off) - radius) > AT_END * size:
+        return 2
+    if radius > AT_END * size:
+        return 1 if off > 0.0 else 0
+    return 1 if away > 0.0 else 0  # a point leaves on the side that it is on
+
+
+def sample(sums: Sums, time: float) -> None:
+    """Put displacement and velocity of the watched disks at a time into the buffer."""
+    disks, place = sums.disks, sums.counts[FILLED]
+    for w in range(len(sums.watched)):
+        i = sums.watched[w]
+        lag = time - disks[i, TIME]
+        vx, vy, gx, gy = disks[i, VX], disks[i, VY], disks[i, GX], disks[i, GY]
+        sums.way[place, w, 0] = disks[i, WX] + lag * (vx + 0.5 * lag * gx)
+        sums.way[place, w, 1] = disks[i, WY] + lag * (vy + 0.5 * lag * gy)
+        sums.velocity[place, w, 0] = vx + lag * gx
+        sums.velocity[place, w, 1] = vy + lag * gy
+    sums.counts[FILLED] = place + 1
+    sums.counts[SAMPLED] += 1
+
+
+def sample_before(sums: Sums, time: float) -> bool:
+    """Take the samples that are due before a time; False where the buffer is full first."""
+    numbers, counts = sums.numbers, sums.counts
+    while numbers[ORIGIN] + numbers[INTERVAL] * counts[SAMPLED] < time:
+        if counts[FILLED] == len(sums.way):
+            return False
+        sample(sums, numbers[ORIGIN] + numbers[INTERVAL] * counts[SAMPLED])
+    return True
+
+
+def mark(sums: Sums, time: float) -> None:
+    """Put a point along the contacts; every second one goes where there are too many."""
+    counts, points, numbers = sums.counts, sums.points, sums.numbers
+    if counts[POINTS] == MOST_POINTS:
+        for k in range(MOST_POINTS // 2):
+            for c in range(POINT_COLUMNS):
+                points[k, c] = points[2 * k + 1, c]
+        counts[POINTS] = MOST_POINTS // 2
+        counts[STRIDE] *= 2
+        if counts[CONTACTS] % counts[STRIDE] != 0:
+            return
+    place = counts[POINTS]
+    points[place, POINT_TIME] = time
+    points[place, POINT_ENERGY] = numbers[HEAT]
+    points[place, POINT_VIRIAL] = numbers[FORCE]
+    counts[POINTS] = place + 1
+
+
+def leave(plan: Plan, sums: Sums, i: int, time: float, vx: float, vy: float) -> float:
+    """Disk i begins a free flight at a time with a new velocity; return by how much its energy changes."""
+    disks, since = sums.disks, max(time - sums.numbers[ORIGIN], 0.0)
+    hold(plan, sums, i, since, -1.0)
+    fly(plan, sums, i, time)
+    old_x, old_y = disks[i, VX], disks[i, VY]
+    disks[i, VX], disks[i, VY] = vx, vy
+    disks[i, GX], disks[i, GY], disks[i, LIES_ON] = disks[i, FALL_X], disks[i, FALL_Y], -1.0
+    hold(plan, sums, i, since, 1.0)
+    change: float = 0.5 * disks[i, MASS] * ((vx * vx + vy * vy) - (old_x * old_x + old_y * old_y))
+    return change
+
+
+def meet(plan: Plan, sums: Sums, a: int, b: int, time: float, impulse: float) -> None:
+    """Count a contact of two disks."""
+    disks, bins, numbers, counts = sums.disks, sums.bins, sums.numbers, sums.counts
+    counted, place = time >= numbers[ORIGIN], counts[PLACE]
+    if counted:
+        one, other, pairs = int(disks[a, SPECIES]), int(disks[b, SPECIES]), first_pair(plan)
+        bins[place, pairs + plan.kinds * one + other] += 1.0
+        bins[place, pairs + plan.kinds * other + one] += 1.0
+        disks[a, HIT] += 1.0
+        disks[b, HIT] += 1.0
+    if disks[a, MASS] > 0.0 and disks[b, MASS] > 0.0:
+        force = (disks[a, RADIUS] + disks[b, RADIUS]) * impulse
+        numbers[FORCE] += force
+        if counted:
+            bins[place, VIRIAL] += force
+            bins[place, PAIRS] += 1.0
+        counts[CONTACTS] += 1
+        if counts[CONTACTS] % counts[STRIDE] == 0:
+            mark(sums, time)
+
+
+def strike(plan: Plan, sums: Sums, a: int, wall: int, side: int, impulse: float) -> None:
+    """Add the impulse that a disk gives to a wall."""
+    disks, bins, place = sums.disks, sums.bins, sums.counts[PLACE]
+    if disks[a, MASS] > 0.0 and impulse > 0.0:
+        lever = sums.walls[wall, LEVER] - sums.walls[wall, INSET] * disks[a, RADIUS]
+        bins[place, WALL_VIRIAL] += lever * impulse
+        if plan.walls > 0:
+            bins[place, first_wall(plan) + SIDES * wall + side] += impulse
+
+
+def take(block: Block, first: int, plan: Plan, sums: Sums) -> int:
+    """Take up rows from `first` on; return the number of the next row: all are taken, or the buffer of samples is full."""
+    disks, numbers = sums.disks, sums.numbers
+    for row in range(first, len(block.time)):
+        time = block.time[row]
+        if not sample_before(sums, time):
+            return row
+        reach(sums, time - numbers[ORIGIN])
+        kind, a, b, wall = block.kind[row], block.a[row], block.b[row], block.wall[row]
+        vx, vy = block.vxa[row], block.vya[row]
+        change = leave(plan, sums, a, time, vx, vy)
+        if b >= 0:
+            change += leave(plan, sums, b, time, block.vxb[row], block.vyb[row])
+        numbers[HEAT] += change
+        if kind == PAIR:
+            meet(plan, sums, a, b, time, block.impulse[row])
+        elif kind != KICK:
+            if time >= numbers[ORIGIN]:
+                side = side_of(plan, sums, wall, disks[a, RADIUS], block.xa[row], block.ya[row], vx, vy)
+                strike(plan, sums, a, wall, side, block.impulse[row])
+                # a disk without energy gives no impulse; a disk that reaches the end of its wall meets nothing
+                if kind == WALL and (block.impulse[row] > 0.0 or not disks[a, MASS] > 0.0):
+                    sums.bins[sums.counts[PLACE], GENERAL + PER_SPECIES * int(disks[a, SPECIES]) + HITS] += 1.0
+                    disks[a, HIT] += 1.0
+            if kind == REST:
+                since = max(time - numbers[ORIGIN], 0.0)
+                hold(plan, sums, a, since, -1.0)
+                disks[a, LIES_ON] = wall
+                disks[a, GX], disks[a, GY] = sums.walls[wall, SLOPE_X], sums.walls[wall, SLOPE_Y]
+                hold(plan, sums, a, since, 1.0)
+    return len(block.time)
+
+
+def finish(until: float, plan: Plan, sums: Sums) -> bool:
+    """Bring all disks to the end of the run, flights under way included; False where the buffer of samples is full first."""
+    if not sample_before(sums, until):
+        return False
+    since = max(until - sums.numbers[ORIGIN], 0.0)
+    reach(sums, since)
+    for c in range(len(sums.rates)):
+        turn(sums, c, since, 0.0)
+    for i in range(len(sums.disks)):
+        fly(plan, sums, i, until)
+    return True
