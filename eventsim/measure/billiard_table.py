@@ -20,7 +20,7 @@ import numpy as np
 from eventsim.record.events import Floats
 from eventsim.scene.domain import Box, Channel, Open
 from eventsim.scene.scene import Scene
-from eventsim.scene.walls import Arc, Circle, Segment, features
+from eventsim.scene.walls import Arc, Circle, Part, Segment, parts_of
 
 Point: TypeAlias = tuple[float, float]
 
@@ -159,7 +159,7 @@ def _pieces(scene: Scene, r: float) -> Iterator[_Piece]:
         for k, hard in enumerate((hard_y, hard_x, hard_y, hard_x)):
             yield _Line(*corners[k], *corners[(k + 1) % 4], hard)
     for shift in _shifts(scene):
-        for wall in features(scene.walls):
+        for wall in parts_of(scene.walls):
             yield from _around(wall, r, shift)
         disks = scene.disks
         for k in np.flatnonzero(np.isinf(disks.mass)).tolist():
@@ -178,12 +178,16 @@ def _shifts(scene: Scene) -> list[Floats]:
     return [np.array([dx, dy]) for dx in along[0] for dy in along[1]]
 
 
-def _around(wall: Segment | Arc | Circle, r: float, shift: Floats) -> Iterator[_Piece]:
+def _around(wall: Part, r: float, shift: Floats) -> Iterator[_Piece]:
     """What a wall keeps a centre away from."""
     sx, sy = float(shift[0]), float(shift[1])
     if isinstance(wall, Circle):
         if not shift.any():
             yield _Bow(wall.center[0], wall.center[1], wall.radius - r, -math.pi, 2.0 * math.pi)
+        return
+    if not isinstance(wall, Arc | Segment):
+        for chord in _chords(wall):
+            yield from _around(chord, r, shift)
         return
     ends = [(wall.start[0] + sx, wall.start[1] + sy), (wall.end[0] + sx, wall.end[1] + sy)]
     if isinstance(wall, Segment):
@@ -202,6 +206,12 @@ def _around(wall: Segment | Arc | Circle, r: float, shift: Floats) -> Iterator[_
     if r > 0.0:
         for x, y in ends:
             yield _Bow(x, y, r, math.pi, -2.0 * math.pi)
+
+
+def _chords(wall: Part) -> list[Segment]:
+    """A wall of another kind, as the line that is drawn of it: good to some 1e-4 of its area."""
+    points = [(float(x), float(y)) for x, y in wall.outline()]
+    return [Segment(p, q) for p, q in pairwise(points) if p != q]
 
 
 def circle_through(wall: Arc) -> tuple[float, float, float, float, float]:
@@ -224,7 +234,10 @@ class _Reach:
         self.scene, self.r = scene, r
         posts = np.isinf(scene.disks.mass)
         self.posts, self.keep = scene.disks.position[posts], scene.disks.radius[posts] + r
-        self.walls, self.shifts = features(scene.walls), _shifts(scene)
+        self.shifts = _shifts(scene)
+        self.walls: list[Circle | Arc | Segment] = []
+        for wall in parts_of(scene.walls):
+            self.walls += [wall] if isinstance(wall, Circle | Arc | Segment) else _chords(wall)
         size = scene.domain.size
         places = [p for wall in self.walls for p in _extent(wall)]
         if size is not None:

@@ -71,9 +71,19 @@ class Records:
         return float(self.sums.numbers[sums.WIDTH])
 
     @cached_property
+    def bins(self) -> Floats:
+        """The bins (bins, channels) up to the end of the run; a last one that is not half full is part of the one before."""
+        last = int(self.sums.counts[sums.PLACE])
+        bins = self.sums.bins[: last + 1].copy()
+        if last and self.end - self.origin - last * self.width < 0.5 * self.width:
+            bins[-2] += bins[-1]
+            bins = bins[:-1]
+        return bins
+
+    @property
     def count(self) -> int:
-        """Number of bins, the last one included."""
-        return min(max(math.ceil((self.end - self.origin) / self.width), 1), sums.MOST_BINS)
+        """Number of bins."""
+        return len(self.bins)
 
     @cached_property
     def all_widths(self) -> Floats:
@@ -87,8 +97,7 @@ class Records:
         """Bins at the beginning that belong to the transient; none where it was said what to leave out."""
         if self.discard is not None or not self.ensemble.steady or self.ensemble.n < 2:
             return 0
-        bins = self.sums.bins[: self.count]
-        return settled_after(bins[:, sums.VIRIAL], float(bins[:, sums.PAIRS].sum()), self.ensemble.n)
+        return settled_after(self.bins[:, sums.VIRIAL], float(self.bins[:, sums.PAIRS].sum()), self.ensemble.n)
 
     @property
     def discarded(self) -> float:
@@ -102,7 +111,7 @@ class Records:
 
     def channel(self, place: int) -> Floats:
         """One channel of the bins that are kept."""
-        return self.sums.bins[self.skipped : self.count, place]
+        return self.bins[self.skipped :, place]
 
     # --- channels by what they mean
 
@@ -152,7 +161,7 @@ class Records:
         movers = self.everyone if ensemble.n else range(kinds)
         first = sums.first_pair(self.plan)
         places = [first + kinds * k + other for k in movers if k != ensemble.posts for other in ensemble.partners]
-        found: Floats = self.sums.bins[: self.count, places].sum(axis=1)
+        found: Floats = self.bins[:, places].sum(axis=1)
         return found
 
     # --- what the run was like

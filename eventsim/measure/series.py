@@ -82,15 +82,15 @@ def _along_time(records: Records) -> TimeSeries:
 
     def parts(channel: Floats) -> Floats:
         """Sums over the bins of each part."""
-        found: Floats = np.add.reduceat(channel[: records.count], first)
+        found: Floats = np.add.reduceat(channel, first)
         return found
 
     span = parts(records.all_widths)
     time = records.origin + np.cumsum(span)
     met = np.cumsum(parts(records.all_contacts))
     movers = max(int(records.ensemble.movers.sum()), 1)
-    energy = parts(records.sums.bins[:, sums.ENERGY]) / span
-    virial = parts(records.sums.bins[:, sums.VIRIAL])
+    energy = parts(records.bins[:, sums.ENERGY]) / span
+    virial = parts(records.bins[:, sums.VIRIAL])
     contacts = np.concatenate([[0.0], met / movers])
     return _series(records, time, contacts, energy, energy, span, virial)
 

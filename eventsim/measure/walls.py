@@ -13,7 +13,7 @@ from eventsim.measure.ensemble import Ensemble
 from eventsim.record.events import Floats
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage
-from eventsim.scene.walls import Arc, Circle, features
+from eventsim.scene.walls import Arc, Circle, Segment, parts_of
 
 
 class Sides(NamedTuple):
@@ -32,7 +32,7 @@ def described_walls(scene: Scene, stage: Stage, ensemble: Ensemble) -> Floats:
         mine[sums.WALL_X + boundary.axis] = boundary.position
         mine[sums.NORMAL_X + boundary.axis] = boundary.side
         mine[sums.LEVER], mine[sums.INSET] = 0.5 * stage.size[boundary.axis], 1.0
-    for mine, wall in zip(walls[len(stage.boundaries) :], features(scene.walls), strict=True):
+    for mine, wall in zip(walls[len(stage.boundaries) :], parts_of(scene.walls), strict=True):
         if isinstance(wall, Circle):
             place = wall.center
             mine[sums.BEND] = wall.radius
@@ -41,6 +41,8 @@ def described_walls(scene: Scene, stage: Stage, ensemble: Ensemble) -> Floats:
         elif isinstance(wall, Arc):
             x, y, mine[sums.BEND], *_ = circle_through(wall)
             place = x, y
+        elif not isinstance(wall, Segment):
+            continue  # of another kind: its sides are not told apart
         else:
             place = wall.start
             mine[sums.NORMAL_X], mine[sums.NORMAL_Y] = wall.start[1] - wall.end[1], wall.end[0] - wall.start[0]
@@ -57,12 +59,15 @@ def sides_of(scene: Scene, stage: Stage) -> tuple[Sides, ...]:
     for boundary in stage.boundaries:
         assert stage.size is not None
         found.append(Sides(stage.size[1 - boundary.axis], ("", "")))
-    for wall in features(scene.walls):
+    for wall in parts_of(scene.walls):
         if isinstance(wall, Circle):
             found.append(Sides(2.0 * math.pi * wall.radius, ("", "")))
         elif isinstance(wall, Arc):
             _, _, radius, _, turn = circle_through(wall)
             found.append(Sides(radius * abs(turn), ("inside", "outside")))
-        else:
+        elif isinstance(wall, Segment):
             found.append(Sides(math.dist(wall.start, wall.end), ("left", "right")))
+        else:
+            steps = np.diff(wall.outline(), axis=0)
+            found.append(Sides(float(np.hypot(steps[:, 0], steps[:, 1]).sum()), ("", "")))
     return tuple(found)

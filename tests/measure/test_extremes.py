@@ -22,8 +22,8 @@ def two_disks(domain, unit=1.0, velocity=((1.0, 0.3), (-1.0, 0.2)), mass=1.0):
 def test_disks_at_rest_have_no_temperature_and_no_steady_state(mass):
     scene = two_disks(es.Box, velocity=np.zeros((2, 2)), mass=mass)
     measures = es.simulate(scene, until=3.0, measure=True).measures
-    assert measures["temperature"].value == 0.0
-    assert "Z" not in measures
+    assert math.isnan(measures["temperature"].value)
+    assert math.isnan(measures["Z"].value)
     assert measures.doubts == ("nothing moves",)
     assert "nan" not in measures_text("rest", measures, None)
 
@@ -44,8 +44,9 @@ def test_measures_scale_exactly_with_the_unit_of_length(domain, power):
 def test_a_disk_too_heavy_to_be_moved_leaves_no_temperature():
     scene = two_disks(es.Periodic, velocity=[[1.0, 0.0], [-1.0, 0.2]], mass=[1e-300, 1e300])
     measures = es.simulate(scene, until=30.0, measure=True).measures
-    assert all(math.isfinite(quantity.value) for quantity in measures.quantities)
-    assert not {"temperature", "pressure", "temperature_0", "temperature_1"} & set(measures.by_name)
+    told = {quantity.name for quantity in measures.quantities if math.isfinite(quantity.value)}
+    assert all(measures[name].doubt for name in set(measures.keys()) - told)
+    assert not {"temperature", "pressure", "temperature_0", "temperature_1"} & told
     assert measures["mean_speed_1"].value == pytest.approx(math.hypot(1.0, 0.2), rel=1e-12)
     assert "common motion" in measures.doubts[0]
 
@@ -71,5 +72,5 @@ def test_the_open_plane_has_no_steady_state():
 @pytest.mark.parametrize("domain", [es.Box, es.Periodic])
 def test_a_run_without_contacts_has_no_line_of_what_was_not_seen(domain):
     measures = es.simulate(two_disks(domain), until=1e-3, measure=True).measures
-    assert all(math.isfinite(quantity.value) for quantity in measures.quantities)
+    assert all(math.isfinite(quantity.value) or quantity.doubt for quantity in measures.quantities)
     assert "nan" not in measures_text("short", measures, None)
