@@ -31,7 +31,7 @@ class Family(NamedTuple):
 
 
 FAMILIES = (
-    Family("temperature (kT); where there is none: energy_start and energy_end, kinetic_energy under gravity", temperature.measures),
+    Family("temperature (kT); where there is none: energy_start, energy_end; kinetic_energy", temperature.measures),
     Family("Z (P V / N kT from the virial), Z_walls, pressure, contact_value or contact_value_I_J", pressure.measures),
     Family(
         "collision_rate (contacts of a disk with others per time), wall_contact_rate (of all disks)", rates.measures
