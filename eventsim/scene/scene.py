@@ -15,9 +15,6 @@ from eventsim.scene.restitution import Restitution, as_restitution
 from eventsim.scene.validate import find_problems, scalar_problems, touching_notes
 from eventsim.scene.walls import WALLS, Wall
 
-SCALARS = "name", "gravity", "restitution", "contact_duration", "equilibration", "until", "events", "start_time"
-"""What has rules of its own."""
-
 
 @dataclass(frozen=True, slots=True, init=False)
 class Scene:
@@ -74,7 +71,7 @@ class Scene:
         """
         _demand_types(disks, domain, walls, name)
         pull = None if gravity is None else point(gravity, "gravity")
-        fields: dict[str, Any] = {
+        given: dict[str, Any] = {
             "disks": disks,
             "domain": domain,
             "walls": tuple(walls),
@@ -87,10 +84,10 @@ class Scene:
             "start_time": number(start_time, "start_time"),
             "name": name,
         }
-        for key, value in fields.items():
+        for key, value in given.items():
             object.__setattr__(self, key, value)
-        told = list(scalar_problems(**{key: fields[key] for key in SCALARS}))
-        problems = find_problems(disks, domain, self.walls, self.gravity, names or DiskNames(), told)
+        names = names or DiskNames()
+        problems = find_problems(disks, domain, self.walls, self.gravity, names, list(scalar_problems(given)))
         if problems:
             raise SceneError(problems)
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,6 @@ from eventsim.scene.overlaps import (
     feature_overlaps,
     pair_overlaps,
 )
-from eventsim.scene.restitution import Restitution
 from eventsim.scene.scale_rules import scale_problems
 from eventsim.scene.walls import Wall, parts_of, wall_names
 
@@ -88,18 +88,10 @@ def touching_notes(disks: Disks, domain: Domain, walls: Sequence[Wall]) -> list[
     ]
 
 
-def scalar_problems(
-    *,
-    name: str | None,
-    gravity: Point | None,
-    restitution: Restitution | None,
-    contact_duration: float | None,
-    equilibration: float | None,
-    start_time: float,
-    until: float | None,
-    events: int | None,
-) -> Iterator[str]:
-    """Rules for the single numbers of a scene, and its name."""
+def scalar_problems(given: Mapping[str, Any]) -> Iterator[str]:
+    """Rules for the single numbers of a scene, by key, and its name."""
+    name, gravity, restitution = given["name"], given["gravity"], given["restitution"]
+    start, until, events = given["start_time"], given["until"], given["events"]
     if name is not None and not is_name(name):
         yield f"name = {name!r}: must be one line without control characters"
     if gravity is not None and not is_place(gravity):
@@ -112,13 +104,13 @@ def scalar_problems(
         for key, value in both.items():
             if not 0.0 <= value <= 1.0:
                 yield f"{key} = {value}: must be from 0 to 1"
-    for key, span in {"contact_duration": contact_duration, "equilibration": equilibration}.items():
-        if span is not None and not 0.0 <= span < math.inf:
-            yield f"{key} = {span}: must be a finite time, at least 0"
-    if not math.isfinite(start_time):
-        yield f"start_time = {start_time}: must be finite"
-    elif until is not None and not start_time <= until < math.inf:
-        yield f"until = {until}: must be finite and not before start_time = {start_time}"
+    for key in ("contact_duration", "equilibration"):
+        if given[key] is not None and not 0.0 <= given[key] < math.inf:
+            yield f"{key} = {given[key]}: must be a finite time, at least 0"
+    if not math.isfinite(start):
+        yield f"start_time = {start}: must be finite"
+    elif until is not None and not start <= until < math.inf:
+        yield f"until = {until}: must be finite and not before start_time = {start}"
     if events is not None and events < 0:
         yield f"events = {events}: must be at least 0"
 
