@@ -8,7 +8,7 @@ import pytest
 import eventsim as es
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
-from eventsim.engines.reference import ReferenceSession
+from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.events import blank_rows
 from eventsim.runner.loop import run_session
 from eventsim.runner.options import RunOptions
