@@ -11,6 +11,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from eventsim.compiler import SWITCH, is_switched_off
 from eventsim.engines.certified.options import CertifiedOptions
 from eventsim.engines.fast.options import FastOptions
 from eventsim.engines.options import Options, names_of, wrong_value
@@ -47,10 +48,14 @@ class Engine:
 
     @property
     def missing(self) -> str | None:
-        """A sentence on what has to be installed first; None where nothing has."""
-        if self.needs is None or find_spec(self.needs[0]) is not None:
+        """A sentence on what it needs and does not find; None where all is there."""
+        if self.needs is None:
             return None
-        _, called, extra = self.needs
+        module, called, extra = self.needs
+        if find_spec(module) is not None:
+            if module != "numba" or not is_switched_off():
+                return None
+            return f"the engine {self.name} is compiled, and {SWITCH} is set: unset it, or take the engine reference"
         return f"the engine {self.name} needs {called}, which is not installed: pip install 'eventsim-disks[{extra}]'"
 
     def options_from(self, given: Mapping[str, Any], others: tuple[str, ...] = ()) -> Options:

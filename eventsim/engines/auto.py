@@ -6,11 +6,11 @@ Both write the same log, so there is no seam; a small scene never loads the comp
 from __future__ import annotations
 
 import sys
-from importlib.util import find_spec
 from time import perf_counter, thread_time
 
 import numpy as np
 
+from eventsim.compiler import SWITCH, has_compiler, is_switched_off
 from eventsim.engines.base import BrokenOffError, Motion, Session, Snapshot, Stop
 from eventsim.engines.forecast import reference_seconds
 from eventsim.engines.reference.loop import ReferenceSession
@@ -33,13 +33,6 @@ SURE = 0.8
 
 With these numbers no guess costs more than a fifth of the better engine's time, a forecast that is twice the truth a third.
 """
-
-MISSING = "the engine fast needs numba, which is not installed: this run goes on with the reference engine"
-
-
-def has_compiler() -> bool:
-    """Whether the fast engine can be used."""
-    return find_spec("numba") is not None
 
 
 def first_engine(stage: Stage, stop: Stop, keep_rows: bool = True) -> str:
@@ -147,7 +140,9 @@ class AutoSession(Session):
         """Hand over if the reference engine would take longer than it takes to begin with the fast one."""
         if not has_compiler():
             self._may_change = False
-            print(f"note: {MISSING}", file=sys.stderr)
+            why = f"{SWITCH} tells not to compile" if is_switched_off() else "is not installed"
+            note = f"the engine fast needs numba, which {why}: this run goes on with the reference engine"
+            print(f"note: {note}", file=sys.stderr)
             return
         left = self._sampled * self._share_left(stop)
         if left < WARM or (self._is_cold and left < COLD):

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from importlib.util import find_spec
 
+from eventsim.compiler import has_compiler
 from eventsim.growth import kernel
 
 FEW = 48
 """Disks that plain Python compresses before a compiler is even loaded."""
-
-
-def has_compiler() -> bool:
-    """Whether numba is installed."""
-    return find_spec("numba") is not None
 
 
 def grower(n: int) -> Callable[..., tuple[int, float, int]]:

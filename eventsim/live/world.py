@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eventsim.engines.auto import has_compiler
+from eventsim.compiler import has_compiler
 from eventsim.errors import EventsimError
 from eventsim.live.messages import Move, Open, Resize, Throw
 from eventsim.live.packets import packet

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eventsim.compiler import has_compiler
 from eventsim.record.events import ROW, Column, Rows
 from eventsim.record.provenance import Provenance
 from eventsim.record.times import clock_times
@@ -29,7 +29,7 @@ def expand_rows(provenance: Provenance, compact: Rows) -> Rows:
     Raises LogError where the rows do not follow from the scene.
     """
     expansion = Expansion(provenance, compact)
-    if len(compact) >= MANY_ROWS and expansion.stage.supports is None and find_spec("numba") is not None:
+    if len(compact) >= MANY_ROWS and expansion.stage.supports is None and has_compiler():
         return _expanded_by_kernels(expansion, compact)
     rows = compact.copy()
     numbers = expansion.numbers()

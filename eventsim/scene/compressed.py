@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from eventsim.compiler import has_compiler
 from eventsim.errors import SceneError
-from eventsim.growth.compiled import has_compiler
 from eventsim.growth.schedule import JammedError, grown
 from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.disks import Disks, Floats, join

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eventsim.compiler import has_compiler
 from eventsim.engines import ENGINES
-from eventsim.engines.auto import has_compiler
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene import Scene

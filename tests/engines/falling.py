@@ -1,7 +1,7 @@
 """What falls, for tests of several kinds, and the engines that they try."""
 
 import eventsim as es
-from eventsim.engines.auto import has_compiler
+from eventsim.compiler import has_compiler
 
 ENGINES = ("reference", "fast") if has_compiler() else ("reference",)
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eventsim as es
-from eventsim.engines.auto import has_compiler
+from eventsim.compiler import has_compiler
 from eventsim.record.events import Kind
 from eventsim.replay.replay import Replay
 from eventsim.scene.stage import stage_of

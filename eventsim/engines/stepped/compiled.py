@@ -1,4 +1,4 @@
-"""How loops of the stepped engines become machine code; where numba is not installed they run as plain Python."""
+"""How loops of the stepped engines become machine code; where there is no compiler they run as plain Python."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from eventsim.compiler import has_compiler
+
 Loop = TypeVar("Loop", bound=Callable[..., Any])
 
-try:
-    import numba
-    from numba import njit
-
-    from eventsim.engines.fast import compiled  # makes the formulas callable from kernels
-except ImportError:
+if not has_compiler():
     COMPILED = False
 
     def kernel(function: Loop) -> Loop:
@@ -23,6 +20,11 @@ except ImportError:
 
     part = kernel
 else:
+    import numba
+    from numba import njit
+
+    from eventsim.engines.fast import compiled  # makes the formulas callable from kernels
+
     COMPILED = True
     config: Any = numba.config  # its settings are made when it is imported
 
