@@ -1,11 +1,13 @@
-"""Signals: what Ctrl-C and the signal to terminate do while a verb of the command line is at work."""
+"""Signals: what Ctrl-C and the signals to end do while a verb of the command line is at work."""
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -14,24 +16,30 @@ if TYPE_CHECKING:
 
 Handler: TypeAlias = Callable[[int, FrameType | None], Any]
 
+HANGUP = getattr(signal, "SIGHUP", None)
+"""The terminal has gone; there is no such signal everywhere."""
+
+ENDING = tuple(number for number in (signal.SIGTERM, HANGUP) if number is not None)
+"""Signals that ask a process to end."""
+
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Let the signal to terminate raise KeyboardInterrupt inside, so that processes are ended and what was found is told."""
-    with _handled((signal.SIGTERM,), _raise):
+    """Let a signal to end raise KeyboardInterrupt inside, so that processes are ended and what was found is told."""
+    with _handled(ENDING, _raise):
         yield
 
 
 @contextmanager
 def interruptible() -> Iterator[Interrupt]:
-    """For one run: Ctrl-C, or the signal to terminate, ends it between two events; a second one breaks in.
+    """For one run: Ctrl-C, or a signal to end, ends it between two events; a second one breaks in.
 
     While the engine only prepares itself (loads a compiler, compiles), which takes long, the first one breaks in.
     """
     from eventsim.runner.interrupt import Interrupt
 
     interrupt = Interrupt()
-    with _handled((signal.SIGINT, signal.SIGTERM), lambda number, frame: interrupt.break_in()):
+    with _handled((signal.SIGINT, *ENDING), lambda number, frame: interrupt.break_in()):
         yield interrupt
 
 
@@ -45,9 +53,34 @@ def _handled(numbers: tuple[signal.Signals, ...], handler: Handler) -> Iterator[
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, handler) for number in numbers}
+    terminals = _terminals()
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        if number == HANGUP:
+            _leave(terminals)
+        handler(number, frame)
+
+    # nohup lets a command ignore that its terminal goes
+    wanted = [number for number in numbers if number != HANGUP or signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, handle) for number in wanted}
     try:
         yield
     finally:
         for number, usual in before.items():
             signal.signal(number, usual)
+
+
+def _terminals() -> list[int]:
+    """Which of stdout and stderr are terminals; of one that is gone nobody could tell any more."""
+    found = []
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError, AttributeError):  # it may be closed, or none
+            if stream.isatty():
+                found.append(stream.fileno())
+    return found
+
+
+def _leave(terminals: list[int]) -> None:
+    """Write nowhere what would be written to a terminal that is gone: the last words would end in an error."""
+    for number in terminals:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), number)

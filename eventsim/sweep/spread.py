@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import get_context
@@ -14,6 +13,7 @@ from typing import TypeAlias
 
 from eventsim import __version__
 from eventsim.errors import EventsimError
+from eventsim.processes import obey_parent
 from eventsim.sweep.grid import Task, tasks_of
 from eventsim.sweep.journal import Journal, identity_of
 from eventsim.sweep.table import FORMAT, check_suffix, write_table
@@ -146,6 +146,11 @@ def _gather(executor: Executor, plan: Plan, tasks: Sequence[Task]) -> Iterator[t
     try:
         for future in as_completed(list(futures)):
             yield futures[future], future.result()
+    except CancelledError:
+        raise EventsimError(
+            "the executor gave up its tasks: its scheduler or its workers are gone; the same sweep again goes on from what is "
+            "done"
+        ) from None
     finally:
         for future in futures:
             future.cancel()
@@ -165,7 +170,7 @@ def _alone(plan: Plan, task: Task) -> Row:
 @contextmanager
 def _processes(workers: int) -> Iterator[Executor]:
     """Fresh processes, the same on every system; Ctrl-C is left to the parent."""
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_ignore_interrupts)
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=obey_parent)
     try:
         yield pool
     except BaseException:
@@ -174,7 +179,3 @@ def _processes(workers: int) -> Iterator[Executor]:
         pool.shutdown(wait=False, cancel_futures=True)
         raise
     pool.shutdown()
-
-
-def _ignore_interrupts() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -175,7 +175,10 @@ main()
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+ENDING = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
+
+
+@pytest.mark.parametrize("number", ENDING)
 def test_an_interrupted_run_keeps_its_log_and_goes_on(tmp_path, eventsim, number):
     log, checkpoint = tmp_path / "run.jsonl", tmp_path / "run.checkpoint"
     words = ("run", "gas", "--set", "n=30", "--until", "1e9", "--log", log, "--checkpoint", checkpoint)
@@ -219,3 +222,61 @@ def test_a_place_where_nobody_may_write_is_told(eventsim, option):
     assert result.exit_code == 2
     assert "/proc/run.csv" in result.stderr
     assert not os.path.exists("/proc/run.csv")
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="there is no such signal")
+def test_a_run_whose_terminal_goes_keeps_its_log_and_ends_as_interrupted(tmp_path):
+    """Its last words, to a terminal that is gone, ended in an error."""
+    pty = pytest.importorskip("pty")
+    mine, theirs = pty.openpty()
+    log = tmp_path / "run.jsonl"
+    words = command("run", "gas", "--set", "n=30", "--until", "1e9", "--log", log)
+    running = subprocess.Popen(words, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True)
+    os.close(theirs)
+    wait_for(lambda: Path(f"{log}.part").exists() and Path(f"{log}.part").stat().st_size > 10_000)
+    os.close(mine)
+    running.send_signal(signal.SIGHUP)
+    assert running.wait(timeout=30) == 130
+    assert es.load_log(log).provenance.ending.reason == "interrupted"
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="there is no such signal")
+def test_a_run_under_nohup_outlives_its_terminal(tmp_path):
+    log = tmp_path / "run.jsonl"
+    words = command("run", "gas", "--set", "n=30", "--until", "1e9", "--log", log)
+    running = subprocess.Popen(
+        words, stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    )
+    wait_for(lambda: Path(f"{log}.part").exists() and Path(f"{log}.part").stat().st_size > 10_000)
+    running.send_signal(signal.SIGHUP)
+    before = Path(f"{log}.part").stat().st_size
+    wait_for(lambda: Path(f"{log}.part").stat().st_size > before)
+    running.terminate()
+    assert running.wait(timeout=30) == 130
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks for children in /proc")
+def test_workers_of_a_sweep_that_is_killed_end_with_it(tmp_path):
+    words = ("sweep", "gas", "--set", "n=30,40,50,60", "--until", "1e9", "--engine", "reference", "--workers", 2)
+    running = subprocess.Popen(command(*words, "--out", tmp_path / "t.csv"), stderr=subprocess.DEVNULL)
+    wait_for(lambda: len(children_of(running.pid)) >= 3, 30)  # two workers, and what tracks their resources
+    workers = children_of(running.pid)
+    running.kill()
+    running.wait()
+    wait_for(lambda: not any(is_alive(pid) for pid in workers), 15)
+
+
+def children_of(pid: int) -> list[int]:
+    return [int(other.name) for other in Path("/proc").glob("[0-9]*") if _stat(other)[1:2] == [str(pid)]]
+
+
+def is_alive(pid: int) -> bool:
+    return _stat(Path(f"/proc/{pid}"))[:1] not in ([], ["Z"])
+
+
+def _stat(process: Path) -> list[str]:
+    """State, parent, ... of a process; nothing of one that has ended."""
+    try:
+        return (process / "stat").read_text().rpartition(") ")[2].split()
+    except OSError:
+        return []

@@ -1,8 +1,13 @@
 """Sweeps: the same table whoever does the runs, and after every kind of trouble."""
 
+import json
 import os
 import signal
+import subprocess
+import sys
+import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -184,3 +189,45 @@ def test_what_is_no_float_in_the_unit_of_its_column_is_missing():
     assert 0.5e250 < very_fast["mean_speed"] <= 1e250
     assert very_fast.get("temperature") is None
     assert very_fast["failed"] is None
+
+
+@pytest.mark.slow
+def test_a_dask_scheduler_that_is_killed_is_told_and_what_was_done_stays(tmp_path):
+    pytest.importorskip("distributed")
+    scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard"]
+    file = tmp_path / "scheduler.json"
+    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--no-dashboard", "--no-nanny"]
+    out = tmp_path / "t.csv"
+    words = ["sweep", "gas", "--set", "n=40,50,60,70,80,90", "--events", "6000", "--engine", "reference", "--out", str(out)]
+    quiet = {"stderr": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
+    with (
+        ended(subprocess.Popen([*scheduler, "--scheduler-file", str(file)], **quiet)) as first,
+        ended(subprocess.Popen(worker, **quiet)),
+    ):
+        wait_for(lambda: file.exists() and file.read_text().strip().endswith("}"))
+        address = json.loads(file.read_text())["address"]
+        command = [sys.executable, "-m", "eventsim", *words, "--dask", address]
+        running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        wait_for(lambda: Path(f"{out}.journal").exists() and Path(f"{out}.journal").read_text().count("\n") >= 2)
+        first.kill()
+        _, stderr = running.communicate(timeout=60)
+    assert running.returncode == 2
+    assert stderr.startswith("Error: the executor gave up its tasks: its scheduler or its workers are gone")
+    assert stderr.count("\n") == 1
+    assert Path(f"{out}.journal").read_text().count("\n") >= 2
+
+
+@contextmanager
+def ended(process):
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def wait_for(there, seconds=60):
+    end = time.monotonic() + seconds
+    while not there():
+        assert time.monotonic() < end
+        time.sleep(0.05)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import multiprocessing
-import signal
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from time import perf_counter
 from typing import Any, Generic, TypeVar
+
+from eventsim.processes import obey_parent
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
@@ -82,7 +83,7 @@ def _started(work: Callable[[Item], Any], items: list[Item]) -> _Worker[Item]:
 
 def _work(work: Callable[[Item], Any], items: Sequence[Item], pipe: Connection) -> None:
     """What a process does; Ctrl-C is left to its parent."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    obey_parent()
     for item in items:
         pipe.send((work(item),))
     pipe.close()
