@@ -14,12 +14,29 @@ from typing import Any
 import numpy as np
 
 import eventsim as es
+from tests.oracle.digits import TooFewDigitsError
 from tests.oracle.families import FAMILIES, case_of
 from tests.oracle.families.case import Case
-from tests.oracle.judge import REFUSED, RIGHT, UNJUDGED, WRONG, Seen, Verdict, judge, observe
-from tests.oracle.loop import story
+from tests.oracle.judge import (
+    REFUSED,
+    RIGHT,
+    STOPS,
+    UNJUDGED,
+    WRONG,
+    Seen,
+    Verdict,
+    judge,
+    observe,
+)
+from tests.oracle.loop import Story, story
 
 ENGINES = {"reference": ("reference",), "fast": ("fast",), "both": ("reference", "fast")}
+
+WHOLE_ROUNDS, MOST_ROWS = (400,), 600
+"""Digits and rows to which a scene is followed where it must be told to its end."""
+
+LOOSE = 1e-3
+"""What is right for contacts that floats do not determine, where they must be told all the same: their order, roughly when."""
 
 WORDS = (RIGHT, REFUSED, WRONG, UNJUDGED)
 
@@ -58,7 +75,11 @@ HEAD = (
 
 def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
     """The oracle's verdict on one case: the worst that it gives to one of the engines."""
-    told = story(case.scene, kicks=case.kicks)
+    try:
+        told = story(case.scene, kicks=case.kicks)
+        whole = whole_story(case) if case.to_the_end else None
+    except (ArithmeticError, AssertionError, NotImplementedError) as error:
+        return Verdict(UNJUDGED, f"the oracle failed: {error!r}", -1, 0, 0)
     verdicts: list[Verdict] = []
     seen: list[Seen] = []
     for engine in engines:
@@ -68,9 +89,11 @@ def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
             verdicts.append(Verdict(REFUSED, str(error), -1, 0, 0))
             continue
         seen.append(one)
-        verdict = judge(told, one)
+        verdict = judge(told, one, case.close)
         if verdict.word != WRONG and case.inside is not None:
             verdict = _kept_inside(case.inside, one, verdict)
+        if whole is not None and verdict.word in (RIGHT, UNJUDGED) and one.stopped not in STOPS:
+            verdict = _at_the_end(whole, one, verdict)
         verdicts.append(verdict)
     if len(seen) == 2 and not is_same(*seen):
         verdicts.append(Verdict(WRONG, "the engines differ", -1, 0, 0))
@@ -85,6 +108,34 @@ def is_same(one: Seen, other: Seen) -> bool:
         np.array_equal(one.rows[name], other.rows[name], equal_nan=one.rows[name].dtype.kind == "f")
         for name in one.rows.dtype.names
     )
+
+
+def whole_story(case: Case) -> Story | None:
+    """All contacts of a scene, whether floats determine them or not; None where they are too many or their digits too."""
+    try:
+        return story(case.scene, events=MOST_ROWS, rounds=WHOLE_ROUNDS, judged=False)
+    except TooFewDigitsError:
+        return None
+
+
+def _at_the_end(whole: Story, seen: Seen, verdict: Verdict) -> Verdict:
+    """Whether a run that went on to its end told all contacts, also those that floats do not determine, and no others."""
+    if whole.ending == "events":
+        return verdict
+    if whole.ending == "collapse":
+        return Verdict(
+            WRONG, f"went on behind a collapse at {float(whole.time):.9g}", -1, verdict.judged, verdict.total
+        )
+    last = judge(whole, seen, LOOSE)
+    if last.word == WRONG:
+        return Verdict(
+            WRONG,
+            f"a tail of rounding; true: {len(whole.rows)} rows; {last.why}",
+            last.row,
+            verdict.judged,
+            verdict.total,
+        )
+    return verdict
 
 
 def _kept_inside(inside: Any, seen: Seen, verdict: Verdict) -> Verdict:

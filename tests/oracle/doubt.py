@@ -51,8 +51,9 @@ class Doubt:
     def map(self, disks: Sequence[int], matrix: Floats) -> None:
         """Apply a linear map to the deviations of some disks."""
         rows = [4 * i + k for i in disks for k in range(4)]
-        self.p[rows] = matrix @ self.p[rows]
-        self.p[:, rows] = self.p[:, rows] @ matrix.T
+        with np.errstate(over="ignore", invalid="ignore"):  # what has grown so far ends the judging
+            self.p[rows] = matrix @ self.p[rows]
+            self.p[:, rows] = self.p[:, rows] @ matrix.T
 
     def spread(self, terms: Sequence[tuple[int, float, float, float]]) -> float:
         """The standard deviation of a sum of h.dx over (disk, delay since its flight began, hx, hy)."""
@@ -82,8 +83,18 @@ class Doubt:
 class NoDoubt(Doubt):
     """Puts doubt aside: nothing is rounded, nothing grows."""
 
+    def fly(self, i: int, delay: float) -> None:
+        """Nothing grows."""
+
     def round(self, i: int, sigma: Sequence[float]) -> None:
         """Nothing is rounded."""
+
+    def map(self, disks: Sequence[int], matrix: Floats) -> None:
+        """Nothing grows."""
+
+    def spread(self, terms: Sequence[tuple[int, float, float, float]]) -> float:
+        """Nothing is in doubt."""
+        return 0.0
 
 
 def contact_map(

@@ -161,15 +161,15 @@ class _MistakeError(Exception):
         self.row = row
 
 
-def judge(story: Story, seen: Seen) -> Verdict:
-    """The verdict on what an engine did."""
+def judge(story: Story, seen: Seen, close: float = CLOSE) -> Verdict:
+    """The verdict on what an engine did; close: what is right, in mean free times and the like."""
     with working_with(ROUNDS[0]):
-        return _Judge(story, seen).verdict()
+        return _Judge(story, seen, close).verdict()
 
 
 class _Judge:
-    def __init__(self, story: Story, seen: Seen) -> None:
-        self.story, self.seen = story, seen
+    def __init__(self, story: Story, seen: Seen, close: float) -> None:
+        self.story, self.seen, self.close = story, seen, close
         n = len(story.table.radius)
         self.mine: list[list[Row]] = [[] for _ in range(n)]
         for row in story.rows:
@@ -186,6 +186,8 @@ class _Judge:
         largest = max(float(r) for r in story.table.radius)
         self.length = largest if largest > SMALL * story.table.largest else story.table.largest
         self.free_time = self.length / self.speed if self.speed else 0.0
+        last = story.rows[-1:] + [rows[-1] for rows in self.mine if rows]
+        self.late = SAFE * max((row.time_error for row in last), default=0.0)
         if story.rows:
             self.free_time = min(story.free_time, FAR * self.free_time) or self.free_time
 
@@ -257,7 +259,7 @@ class _Judge:
         """Whether a row lies behind what the story tells."""
         story = self.story
         if story.ending == "beyond":
-            return time >= story.time - Decimal(self._slack_of_time(disks))
+            return time >= story.time - Decimal(max(self.late, self._slack_of_time(disks)))
         if story.ending == "events":
             return time >= story.time - Decimal(self._slack_of_time(disks))
         if story.ending == "collapse":
@@ -267,7 +269,7 @@ class _Judge:
         return False
 
     def _slack_of_time(self, disks: list[int]) -> float:
-        return CLOSE * self.free_time * max(1, *(self.counts[i] for i in disks), 1)
+        return self.close * self.free_time * max(1, *(self.counts[i] for i in disks), 1)
 
     def _is_tail(self, time: Decimal, i: int, wall: str) -> bool:
         """Whether a row is one of the last bounces on something round, too low for floats, before there is no answer
@@ -335,18 +337,19 @@ class _Judge:
         row = self.seen.rows[number]
         if int(row["kind"]) not in (0, 1):
             return False
+        momenta = []
         for name, i in zip("ab", disks, strict=False):
-            u, w = self.velocity[i]
-            if math.hypot(float(row[f"vx{name}"]) - u, float(row[f"vy{name}"]) - w) > NOTHING * math.hypot(u, w):
-                return False
-        # Under gravity the velocity before this row is not that of the row before.
-        return self.story.table.gravity is None
+            mass = self.story.table.mass[i]
+            momenta.append(
+                math.inf if mass is None else float(mass) * math.hypot(float(row[f"vx{name}"]), float(row[f"vy{name}"]))
+            )
+        return bool(row["impulse"] <= NOTHING * min(momenta))
 
     def _time(self, row: Any) -> Decimal:
         return Decimal(int(row["epoch"])) * exact(self.seen.epoch_length) + exact(float(row["remainder"]))
 
     def _time_slack(self, expected: Row, i: int) -> float:
-        slack = max(CLOSE * self.free_time * max(1, self.counts[i]), SAFE * expected.time_error)
+        slack = max(self.close * self.free_time * max(1, self.counts[i]), SAFE * expected.time_error)
         if expected.kind == REST:
             on_side = self.story.table.size is not None and expected.walls & {"left", "right", "bottom", "top"}
             slack = max(slack, (CLOSE if on_side else REST_CLOSE) * float(expected.time))
@@ -362,7 +365,7 @@ class _Judge:
             )
         after = (float(row[f"vx{name}"]), float(row[f"vy{name}"]))
         wrong = math.hypot(*(float(exact(v) - true) for v, true in zip(after, part.velocity, strict=True)))
-        slack = max(CLOSE * many * self.speed, SAFE * part.velocity_error)
+        slack = max(self.close * many * self.speed, SAFE * part.velocity_error)
         if expected.kind == REST:  # a slide that begins so much later is so much faster
             slack += self.pull * self._time_slack(expected, i)
         if not wrong <= slack:
@@ -373,7 +376,7 @@ class _Judge:
         at = (float(row[f"x{name}"]), float(row[f"y{name}"]))
         away = self._distance(at, part.place, self.seen.corner)
         speed = math.hypot(*_floats(part.velocity))
-        slack = max(CLOSE * many * self.length, SAFE * (part.place_error + expected.time_error * speed))
+        slack = max(self.close * many * self.length, SAFE * (part.place_error + expected.time_error * speed))
         if expected.kind == REST:
             slack += speed * self._time_slack(expected, i)
         if not away <= slack:
@@ -428,7 +431,7 @@ class _Judge:
                 f"missed: {_told(row)}; {seen.stopped} at {float(now):.12g}",
                 total,
             )
-        if story.ending == "collapse" and now > story.time + Decimal(1e3 * CLOSE * self.free_time):
+        if story.ending == "collapse" and now > story.time + Decimal(1e3 * self.close * self.free_time):
             raise _MistakeError(f"went on to {float(now):.9g} behind {story.why} at {float(story.time):.12g}", total)
         if story.ending in ("until", "quiet"):
             if seen.stopped != story.ending:
@@ -441,7 +444,7 @@ class _Judge:
         for part in self.story.state(exact(seen.time) - exact(seen.start_time)):
             i, many = part.disk, max(1, self.counts[part.disk])
             away = self._distance(tuple(seen.position[i]), part.place, (0.0, 0.0))
-            if not away <= max(CLOSE * many * self.length, SAFE * part.place_error):
+            if not away <= max(self.close * many * self.length, SAFE * part.place_error):
                 raise _MistakeError(
                     f"disk {i}: place {tuple(seen.position[i])} at the end, true {_floats(part.place)}, off by {away:.3g}",
                     total,
@@ -449,7 +452,7 @@ class _Judge:
             wrong = math.hypot(
                 *(float(exact(float(v)) - true) for v, true in zip(seen.velocity[i], part.velocity, strict=True))
             )
-            if not wrong <= max(CLOSE * many * self.speed, SAFE * part.velocity_error):
+            if not wrong <= max(self.close * many * self.speed, SAFE * part.velocity_error):
                 raise _MistakeError(
                     f"disk {i}: velocity {tuple(seen.velocity[i])} at the end, true {_floats(part.velocity)}, off by {wrong:.3g}",
                     total,

@@ -16,10 +16,23 @@ KNOWN = {
     "P3-approaching": "FAULTS A3",
     "P3-lone": "FAULTS A3",
     "P6-slides": "FAULTS A6",
+    "P7": "FAULTS A7",
+    "arcs": "FAULTS A1",
+    "kicks-at-walls": "FAULTS A1",
+    "P2-pairs": "FAULTS A2",
 }
 """Families in which version 0.1.0 is known to be wrong; who mends the fault takes the line out."""
 
-KNOWN_OF_MANY = {**KNOWN, "P5-segments": "FAULTS A5", "P5-vertices": "FAULTS A5", "P6-skims": "FAULTS A5"}
+KNOWN_OF_MANY = {
+    **KNOWN,
+    "P5-segments": "FAULTS A5",
+    "P5-vertices": "FAULTS A5",
+    "P6-skims": "FAULTS A5",
+    "slopes": "FAULTS A5",
+    "P2-walls": "FAULTS A2",
+    "P4-three": "FAULTS A4",
+    "P4-wall": "FAULTS A4",
+}
 """The same for 500 scenes."""
 
 FEW, SHORT = 6, 600

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from tests.oracle.families import chains, drops, gases, idle, points
+from tests.oracle.families import bows, chains, collapse, drops, gases, idle, kicks, mixtures, points, slopes, ties
 from tests.oracle.families.case import Case
 
 FAMILIES: Mapping[str, Callable[[np.random.Generator], Case]] = {
@@ -17,7 +17,13 @@ FAMILIES: Mapping[str, Callable[[np.random.Generator], Case]] = {
     **idle.FAMILIES,
     **drops.FAMILIES,
     **chains.FAMILIES,
+    **bows.FAMILIES,
     **gases.FAMILIES,
+    **mixtures.FAMILIES,
+    **slopes.FAMILIES,
+    **kicks.FAMILIES,
+    **ties.FAMILIES,
+    **collapse.FAMILIES,
 }
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 import eventsim as es
+from tests.oracle.judge import CLOSE
 from tests.oracle.loop import Kick
 
 Place = tuple[float, float]
@@ -17,11 +18,18 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Case:
-    """scene: with its stop.  inside(x, y): whether a disk may be there, with some tolerance; None: not asked."""
+    """scene: with its stop.  inside(x, y): whether a disk may be there, with some tolerance; None: not asked.
+
+    close: what is right, in mean free times and the like.
+    to_the_end: a run must tell all contacts, also those that floats do not determine, or stop with a reason, so that a tail
+    of rounding is no answer.
+    """
 
     scene: Any
     kicks: tuple[Kick, ...] = ()
     inside: Callable[[float, float], bool] | None = None
+    close: float = CLOSE
+    to_the_end: bool = False
 
 
 def scatter(

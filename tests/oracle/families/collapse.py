@@ -1,0 +1,55 @@
+"""P4: rounds of contacts that become shorter, near the restitution at which they never end."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import eventsim as es
+from tests.oracle.families.case import Case, scene
+
+THREE, WALL_AND_TWO = 7 - 4 * math.sqrt(3), 3 - 2 * math.sqrt(2)
+"""Critical restitutions of equal masses.  Source: McNamara and Young, Phys. Fluids A 4, 496 (1992), doi:10.1063/1.858323."""
+
+
+def _near(rng: np.random.Generator, critical: float) -> float:
+    return critical * (1 + float(rng.uniform(-0.1, 0.1)) * float(rng.choice([1.0, 0.1, 0.01])))
+
+
+def three(rng: np.random.Generator) -> Case:
+    """Three disks on a line, or slightly bent."""
+    bent = 0.0 if rng.random() < 0.5 else float(rng.choice([1e-3, 1e-6, 1e-2])) * float(rng.normal())
+    gap = (float(rng.uniform(0.3, 2.0)), float(rng.uniform(0.3, 2.0)))
+    made = scene(
+        position=[(0.0, 0.0), (1.0 + gap[0], bent), (2.0 + sum(gap), 0.0)],
+        velocity=[(1.0, 0.0), (0.0, 0.0), (-float(rng.uniform(0.5, 1.5)), 0.0)],
+        radius=0.5,
+        mass=1.0 if rng.random() < 0.7 else [1.0, float(rng.uniform(0.5, 2)), 1.0],
+        domain=es.Open(),
+        restitution=_near(rng, THREE),
+        until=1e4,
+        events=3000,
+    )
+    return Case(made, to_the_end=True)
+
+
+def wall_and_two(rng: np.random.Generator) -> Case:
+    """Two disks and a wall."""
+    bent = 0.0 if rng.random() < 0.6 else float(rng.choice([1e-3, 1e-6])) * float(rng.normal())
+    gap = (float(rng.uniform(0.2, 2.0)), float(rng.uniform(0.3, 2.0)))
+    made = scene(
+        position=[(0.5 + gap[0], 0.0), (1.5 + sum(gap), bent)],
+        velocity=[(0.0, 0.0), (-1.0, 0.0)],
+        radius=0.5,
+        mass=1.0 if rng.random() < 0.7 else [1.0, float(rng.uniform(0.5, 2))],
+        domain=es.Open(),
+        walls=[es.Segment((0.0, -9.0), (0.0, 9.0))],
+        restitution=_near(rng, WALL_AND_TWO),
+        until=1e4,
+        events=3000,
+    )
+    return Case(made, to_the_end=True)
+
+
+FAMILIES = {"P4-three": three, "P4-wall": wall_and_two}
