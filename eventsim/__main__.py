@@ -4,7 +4,7 @@ import os
 import sys
 
 INTERRUPTED = 130
-"""As `cli.exits` has it, which is not imported yet."""
+"""As `cli.output` has it, which is not imported yet."""
 
 
 def main() -> None:

@@ -20,9 +20,8 @@ from eventsim.replay.expand import expand_rows
 from eventsim.replay.log import EventLog
 from eventsim.run import Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
-from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.loop import run_scene
-from eventsim.runner.options import OnEvent, Progress, RunOptions, stop_of
+from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions, stop_of
 from eventsim.runner.outcome import diagnosed, provenance_of, state_of
 from eventsim.runner.recording import MemorySink
 from eventsim.scene import Scene

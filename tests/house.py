@@ -20,6 +20,9 @@ ROOT = Path(__file__).parent.parent
 EMPTY = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENCODING}
 
 
+DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+
+
 class Size(NamedTuple):
     """Of a file, or of several."""
 
@@ -38,7 +41,7 @@ def size_of(text: str) -> Size:
     tree = ast.parse(text)
     told: set[int] = set()
     for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node) is not None:
+        if isinstance(node, DOCUMENTED) and ast.get_docstring(node) is not None:
             docstring = node.body[0]
             told.update(range(docstring.lineno, (docstring.end_lineno or docstring.lineno) + 1))
     code = {
@@ -92,7 +95,8 @@ def table(revisions: list[str | None]) -> str:
     columns = [sizes(revision) for revision in revisions]
     names = sorted({name for column in columns for name in column}, key=lambda name: (name == "eventsim", name.strip()))
     titles = [f"{revision or 'now':>31}" for revision in revisions]
-    lines = [f"{'':<22}{'  '.join(titles)}", f"{'':<22}" + "  ".join([f"{'files':>5}{'code':>8}{'imports':>8}{'stmts':>10}"] * len(columns))]
+    head = f"{'files':>5}{'code':>8}{'imports':>8}{'stmts':>10}"
+    lines = [f"{'':<22}{'  '.join(titles)}", f"{'':<22}{'  '.join([head] * len(columns))}"]
     for name in names:
         cells = [column.get(name, Size()) for column in columns]
         told = [f"{size.files:>5}{size.code:>8}{size.imports:>8}{size.statements:>10}" for size in cells]

@@ -7,10 +7,9 @@ import re
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.options import json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import say
 from eventsim.cli.source import stop_options
-from eventsim.cli.target import writable
 
 COLORS = ("mass", "speed", "species", "contacts", "index")
 

@@ -8,14 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
-from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
-from eventsim.cli.output import say
-from eventsim.cli.target import writable
+from eventsim.cli.options import Whole, json_option, quiet_option, scene_options, writable
+from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say
 
 if TYPE_CHECKING:
-    from eventsim.validate.proof import Proof
-    from eventsim.validate.rounded import Rounded
+    from eventsim.validate.proof import Proof, Rounded
 
 DISKS_SHOWN = 8
 USUAL_EVENTS = 1000
@@ -84,9 +81,9 @@ def command(
     if most_bits < bits:
         raise click.UsageError(f"--most-bits {most_bits}: the last attempt cannot have fewer bits than the first, --bits {bits}")
 
-    from eventsim.cli.choose import chosen_scene
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.signals import interruptible
+    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
     from eventsim.engines import ENGINES
     from eventsim.engines.base import Stop

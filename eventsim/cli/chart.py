@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.options import json_option, quiet_option, writable
 from eventsim.cli.output import say
-from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
     from eventsim.validate.chart import Chart
@@ -66,8 +65,8 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
 
     from dataclasses import asdict
 
-    from eventsim.cli.choose import chosen_scene
-    from eventsim.cli.telling import telling
+    from eventsim.cli.progress import status_line
+    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
     from eventsim.show.versus.precision import write_chart
     from eventsim.validate.advantages import advantages
@@ -75,7 +74,7 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
     from eventsim.validate.conclusions import conclusions
     from eventsim.validate.table import chart_rows, provenance_lines, write_csv
 
-    with telling(quiet or as_json) as tell:
+    with status_line(quiet or as_json) as tell:
         tasks = [task_of(chosen_scene(name, (), None), name) for name in scenes] if scenes else default_tasks()
         chart = chart_of(tasks, patience, further=not scenes, tell=tell)
     names = [task.name for task in tasks]

@@ -60,9 +60,9 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
     """
     from dataclasses import asdict
 
-    from eventsim.cli.choose import chosen_scene
     from eventsim.cli.explain import explanation, page
     from eventsim.cli.needs import needs_of
+    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
 
     chosen = chosen_scene(scene, settings, seed)

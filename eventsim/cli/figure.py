@@ -5,10 +5,9 @@ from __future__ import annotations
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.options import json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import say
 from eventsim.cli.source import stop_options
-from eventsim.cli.target import writable
 from eventsim.show.figures import TITLES
 
 HELP = """Draw a figure of the run that LOG tells, or of SCENE, simulated now.

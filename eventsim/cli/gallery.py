@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import SEED_HELP, SET_HELP, json_option, quiet_option
+from eventsim.cli.options import SEED_HELP, SET_HELP, json_option, quiet_option, writable
 from eventsim.cli.output import say
-from eventsim.cli.target import writable
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
@@ -76,7 +75,7 @@ def _list(as_json: bool, quiet: bool) -> None:
 
 def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool) -> None:
     """Print the story of one scene, or copy it into a file."""
-    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import aligned, as_json_text
     from eventsim.scene.gallery import describe
 

@@ -54,7 +54,7 @@ def command(
     import asyncio
     import webbrowser
 
-    from eventsim.cli.choose import chosen_scene
+    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
 
     if scene is None and (settings or seed is not None):

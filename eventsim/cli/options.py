@@ -1,12 +1,17 @@
-"""The arguments and options that several verbs share."""
+"""The arguments and options that several verbs share, those of engines, and the files that a verb is to write."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from decimal import Decimal, InvalidOperation
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
 
 import click
+
+from eventsim.engines import ENGINES, STEPPED, TABLE, engine_named
+from eventsim.engines.options import read_option, words_of
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 
@@ -52,3 +57,70 @@ SET_HELP = (
     "(mass_ratio=10000). May be given several times."
 )
 SEED_HELP = "Seed chance: the i-th table that draws random numbers is seeded from (S, i)."
+
+
+class Files(NamedTuple):
+    """What a run writes; None: that is not wanted."""
+
+    log: Path | None
+    state: Path | None
+    checkpoint: Path | None
+
+
+def writable(path: str | None, option: str, suffixes: Sequence[str] | None, source: str | None = None) -> Path | None:
+    """Return `path` as one that can be written, None if there is none.  source: a file that is read, and must stay.
+    suffixes: None where any will do.
+
+    Raises:
+        click.UsageError: naming the option, the path and what is wrong with it.
+    """
+    if path is None:
+        return None
+    target = Path(path)
+    if suffixes is not None and target.suffix.lower() not in suffixes:
+        raise click.UsageError(f"{option} {path}: the file's name must end in {', '.join(suffixes)}")
+    if source is not None and target.exists() and Path(source).exists() and target.samefile(source):
+        raise click.UsageError(f"{option} {path}: this is the file that is read; write to another one")
+    if target.is_dir():
+        raise click.UsageError(f"{option} {path}: is a directory")
+    if not target.parent.is_dir():
+        raise click.UsageError(f"{option} {path}: there is no directory {target.parent}")
+    if not os.access(target.parent, os.W_OK) or (target.exists() and not os.access(target, os.W_OK)):
+        raise click.UsageError(f"{option} {path}: no permission to write there")
+    return target
+
+
+EXACT = [name for name, engine in TABLE.items() if not engine.stepped]
+ENGINE_HELP = f"Which engine simulates: {', '.join(EXACT)}; with time steps: {', '.join(STEPPED)}."
+DT_HELP = (
+    "Step of a time-stepped engine. Default: 1/60 (frames); else a twentieth of the time in which a typical disk flies, "
+    "or falls, its radius."
+)
+OPTION_HELP = (
+    "An option of an engine: "
+    + "; ".join(f"{name}: {', '.join(words)}" for name in ENGINES if (words := words_of(ENGINES[name].options)))
+    + "."
+)
+
+
+def engine_options(engine: str, dt: float | None, given: Sequence[str]) -> dict[str, Any]:
+    """The options for `simulate`; click.UsageError for what the engine does not have or what cannot be read."""
+    texts = {} if dt is None else {"dt": repr(dt)}
+    for setting in given:
+        key, equals, text = setting.partition("=")
+        if not equals:
+            raise click.UsageError(f"--option {setting!r}: must be KEY=VALUE, like memory=frame")
+        texts[key.strip()] = text.strip()
+    if not texts:
+        return {}
+    row = engine_named(engine)
+    words = words_of(row.options)
+    read = {}
+    for key, text in texts.items():
+        if key not in words:
+            raise click.UsageError(row.without(key))
+        try:
+            read[key] = read_option(row.options, key, text)
+        except ValueError:
+            raise click.UsageError(f"--option {key}={text}: must be {words[key]}") from None
+    return read

@@ -1,4 +1,4 @@
-"""What the command line prints: names and paths come from others, so no character of theirs controls the terminal."""
+"""What the command line prints, and the codes that it exits with; no character of what others wrote controls the terminal."""
 
 from __future__ import annotations
 
@@ -35,3 +35,10 @@ def write_what_is_known() -> None:
         reconfigure = getattr(stream, "reconfigure", None)  # a test may have put another stream there
         if reconfigure is not None:
             reconfigure(errors="backslashreplace")
+
+
+DONE = 0
+FAILED = 1
+BAD_INPUT = 2
+STOPPED_EARLY = 3
+INTERRUPTED = 130

@@ -11,8 +11,7 @@ from importlib import import_module
 import click
 
 from eventsim import __version__
-from eventsim.cli.exits import BAD_INPUT, DONE, INTERRUPTED
-from eventsim.cli.output import say, visible, write_what_is_known
+from eventsim.cli.output import BAD_INPUT, DONE, INTERRUPTED, say, visible, write_what_is_known
 from eventsim.cli.signals import terminable
 from eventsim.errors import EventsimError, LogWarning, SceneError, did_you_mean
 

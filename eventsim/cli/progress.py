@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from time import perf_counter
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from eventsim.cli.output import visible
+
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
+
 
 PATIENCE = 0.5
 """Seconds of work before a bar appears: short work shows none and does not pay for importing one."""
@@ -93,3 +98,24 @@ class TaskBar:
     ) -> None:
         """Take the bar away."""
         self._bar.__exit__(kind, error, trace)
+
+
+CLEAR = "\r\x1b[K"
+
+
+@contextmanager
+def status_line(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Give a function that shows a line; it shows nothing where stderr is not a terminal."""
+    wanted = not quiet and sys.stderr.isatty()
+
+    def tell(text: str) -> None:
+        if wanted:
+            sys.stderr.write(f"{CLEAR}{visible(text)[:100]}")
+            sys.stderr.flush()
+
+    try:
+        yield tell
+    finally:
+        if wanted:
+            sys.stderr.write(CLEAR)
+            sys.stderr.flush()

@@ -8,11 +8,19 @@ from typing import Any
 import click
 
 from eventsim import suffixes
-from eventsim.cli.engine_options import DT_HELP, ENGINE_HELP, OPTION_HELP, engine_options
-from eventsim.cli.exits import INTERRUPTED, STOPPED_EARLY
-from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
-from eventsim.cli.output import say
-from eventsim.cli.target import Files, writable
+from eventsim.cli.options import (
+    DT_HELP,
+    ENGINE_HELP,
+    OPTION_HELP,
+    Files,
+    Whole,
+    engine_options,
+    json_option,
+    quiet_option,
+    scene_options,
+    writable,
+)
+from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say
 from eventsim.engines import STEPPED
 
 FIRST_SCENE = "break"
@@ -138,9 +146,9 @@ def command(
         raise click.UsageError("--dt and --option: what an engine was told is not in a checkpoint")
 
     from eventsim import simulation
-    from eventsim.cli.choose import chosen_scene
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.signals import interruptible
+    from eventsim.cli.source import chosen_scene
     from eventsim.cli.summary import summary_data, summary_text
     from eventsim.cli.words import as_json_text
 

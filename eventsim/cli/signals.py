@@ -12,7 +12,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
-    from eventsim.runner.interrupt import Interrupt
+    from eventsim.runner.options import Interrupt
 
 Handler: TypeAlias = Callable[[int, FrameType | None], Any]
 
@@ -36,7 +36,7 @@ def interruptible() -> Iterator[Interrupt]:
 
     While the engine only prepares itself (loads a compiler, compiles), which takes long, the first one breaks in.
     """
-    from eventsim.runner.interrupt import Interrupt
+    from eventsim.runner.options import Interrupt
 
     interrupt = Interrupt()
     with _handled((signal.SIGINT, *ENDING), lambda number, frame: interrupt.break_in()):

@@ -7,9 +7,8 @@ import sys
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.options import json_option, quiet_option, writable
 from eventsim.cli.output import say
-from eventsim.cli.target import writable
 
 
 class ManyTimes(click.Command):

@@ -11,7 +11,7 @@ from eventsim.cli.words import aligned, scene_line, short, title
 from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
-    from eventsim.cli.target import Files
+    from eventsim.cli.options import Files
     from eventsim.runner.outcome import Outcome
     from eventsim.validate.horizon import Horizon
 

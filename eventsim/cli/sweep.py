@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.exits import BAD_INPUT, INTERRUPTED
-from eventsim.cli.options import Whole, json_option, quiet_option
-from eventsim.cli.output import say
-from eventsim.cli.target import writable
+from eventsim.cli.options import Whole, json_option, quiet_option, writable
+from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
@@ -132,6 +130,6 @@ def command(
 
 def _scene(scene: str, settings: tuple[str, ...], seed: int | None) -> Scene:
     """The scene of a task, in whichever process."""
-    from eventsim.cli.choose import seeded_scene
+    from eventsim.cli.source import seeded_scene
 
     return seeded_scene(scene, settings, seed)

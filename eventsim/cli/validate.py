@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.exits import FAILED
-from eventsim.cli.options import json_option, quiet_option, scene_options
-from eventsim.cli.output import say
-from eventsim.cli.target import writable
+from eventsim.cli.options import json_option, quiet_option, scene_options, writable
+from eventsim.cli.output import FAILED, say
 
 if TYPE_CHECKING:
     from eventsim.validate.compare import Comparison, Line
@@ -91,18 +89,18 @@ def command(
         if not 0.0 < step < math.inf:
             raise click.UsageError(f"--dt {step!r}: a step must be a finite time above 0")
 
-    from eventsim.cli.choose import chosen_scene
-    from eventsim.cli.telling import telling
+    from eventsim.cli.progress import status_line
+    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
     from eventsim.validate.compare import compare
-    from eventsim.validate.entrants import chosen_entrants
+    from eventsim.validate.competitors import chosen_competitors
     from eventsim.validate.table import comparison_rows, provenance_lines, write_csv
     from eventsim.validate.verdict import verdict
 
-    entrants = chosen_entrants(against)
+    competitors = chosen_competitors(against)
     chosen = chosen_scene(scene, settings, seed)
-    with telling(quiet or as_json) as tell:
-        comparison = compare(chosen, entrants, steps or None, until, patience, tell)
+    with status_line(quiet or as_json) as tell:
+        comparison = compare(chosen, competitors, steps or None, until, patience, tell)
     if csv_path is not None:
         facts = {"scene": scene, "checks": comparison.checks, "engine": comparison.engine}
         lines = provenance_lines(click.get_current_context().obj, facts)

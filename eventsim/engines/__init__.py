@@ -12,11 +12,11 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from eventsim.compiler import SWITCH, is_switched_off
-from eventsim.engines.certified.options import CertifiedOptions
-from eventsim.engines.fast.options import FastOptions
+from eventsim.engines.certified import CertifiedOptions
+from eventsim.engines.fast import FastOptions
 from eventsim.engines.options import Options, names_of, wrong_value
-from eventsim.engines.reference.options import AutoOptions, ReferenceOptions
-from eventsim.engines.stepped.options import ChipmunkOptions, FixedStepOptions, FramesOptions, PenaltyOptions
+from eventsim.engines.reference import AutoOptions, ReferenceOptions
+from eventsim.engines.stepped import ChipmunkOptions, FixedStepOptions, FramesOptions, PenaltyOptions
 from eventsim.errors import EventsimError, did_you_mean
 
 if TYPE_CHECKING:

@@ -24,8 +24,7 @@ from eventsim.reading import Npz, reading
 from eventsim.record.events import ROW, Kind, Rows
 from eventsim.record.files import Mark
 from eventsim.record.provenance import Provenance, provenance_from_text
-from eventsim.runner.checking import demand_fit
-from eventsim.runner.snapshots import Arrays, packed, unpacked
+from eventsim.runner.snapshots import Arrays, demand_fit, packed, unpacked
 from eventsim.scene.stage import stage_of
 
 FORMAT = 1

@@ -15,8 +15,7 @@ from eventsim.errors import EventsimError
 from eventsim.formulas.clock import MOST_EPOCHS, clock_time
 from eventsim.record.events import Rows, blank_rows, unchangeable
 from eventsim.runner.checkpoint_writer import CheckpointWriter
-from eventsim.runner.interrupt import Interrupt
-from eventsim.runner.options import OnEvent, Progress, RunOptions
+from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions
 from eventsim.runner.outcome import Outcome, diagnosed, provenance_of, state_of
 from eventsim.runner.recording import Recording
 from eventsim.runner.residuals import residuals_of

@@ -9,13 +9,12 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from eventsim.engines.base import Stop
+from eventsim.engines.base import BrokenOffError, Session, Stop
 from eventsim.errors import SceneError
 from eventsim.record.events import Rows
 from eventsim.record.provenance import Provenance
 from eventsim.runner.checkpoint import Checkpoint, Every
 from eventsim.runner.checkpoint_writer import USUALLY
-from eventsim.runner.interrupt import Interrupt
 from eventsim.scene import Scene
 from eventsim.scene.numbers import optional_number, optional_whole
 
@@ -80,3 +79,29 @@ def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:
     if events is not None and events < 0:
         raise SceneError(f"events = {events}: must be at least 0")
     return Stop(until, events)
+
+
+class Interrupt:
+    """Asks a run to end; it does so between two stints of its engine, and its outcome says `interrupted`.
+
+    asked: whether it has been asked.  session: the one that is at work, None before and after.
+    """
+
+    def __init__(self) -> None:
+        self.asked = False
+        self.session: Session | None = None
+
+    def ask(self) -> None:
+        """Ask the run to end, from wherever."""
+        self.asked = True
+
+    def break_in(self) -> None:
+        """Ask from a signal handler: what only prepares itself is broken off at once, and so is all by a second call.
+
+        Raises KeyboardInterrupt, or BrokenOffError into a session that prepares itself.
+        """
+        again, self.asked = self.asked, True
+        if again or self.session is None:
+            raise KeyboardInterrupt
+        if self.session.prepares:
+            raise BrokenOffError

@@ -1,7 +1,7 @@
 """ENGINES AGAINST EACH OTHER AND AGAINST THEORY.
 
     truth        the event-driven run, and until when it can be believed
-    entrants     the stepped engines that take part, under their names
+    competitors     the stepped engines that take part, under their names
     contacts     contact by contact: found, missed, doubled, spurious
     compare      one scene, all engines, all steps          verdict   what it comes to, in sentences
     precision    error against elapsed time                 chart     all scenes of a chart

@@ -20,7 +20,7 @@ from eventsim.scene.gallery import gallery
 from eventsim.scene.pace import typical_speed
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validate.compare import Comparison, Tell, compare, truth_to_compare
-from eventsim.validate.entrants import ENTRANTS, Entrant
+from eventsim.validate.competitors import COMPETITORS, Competitor
 from eventsim.validate.follow import follow, position_errors
 from eventsim.validate.pile import pile
 from eventsim.validate.precision import REPEATS, SHORT_S, Curves, Task, curves
@@ -96,10 +96,10 @@ def chart_of(
     tasks: Sequence[Task], patience_s: float, further: bool = True, tell: Tell = lambda _: None
 ) -> Chart:
     """Measure all tasks; further: also losses, chaos and rates, on the gas."""
-    entrants = list(ENTRANTS.values())
-    chart = Chart([curves(task, entrants, patience_s, tell) for task in tasks])
+    competitors = list(COMPETITORS.values())
+    chart = Chart([curves(task, competitors, patience_s, tell) for task in tasks])
     if further:
-        chart.losses = compare(gallery("gas"), entrants, until=LOSSES_UNTIL, patience_s=patience_s, tell=tell)
+        chart.losses = compare(gallery("gas"), competitors, until=LOSSES_UNTIL, patience_s=patience_s, tell=tell)
         tell("chaos")
         chart.chaos = chaos()
         chart.rates = rates(patience_s, tell)
@@ -113,11 +113,11 @@ def chaos(n: int = 100) -> Chaos:
     contacts = np.arange(1.0, CHAOS_CONTACTS + 1.0)
     truth = truth_of(scene, (contacts * free).tolist())
     errors = {"event-driven": truth.uncertainty}
-    entrant = ENTRANTS["stepped-located"]
+    competitor = COMPETITORS["stepped-located"]
     for step in CHAOS_STEPS:
         dt = step * truth.radius / truth.speed
-        run = follow(STEPPED[entrant.engine].open(truth.stage, options=entrant.at(dt)), truth.times.tolist())
-        errors[f"{entrant.label}, {step:g} radii a step"] = position_errors(truth.stage, run, truth.run)
+        run = follow(STEPPED[competitor.engine].open(truth.stage, options=competitor.at(dt)), truth.times.tolist())
+        errors[f"{competitor.label}, {step:g} radii a step"] = position_errors(truth.stage, run, truth.run)
     growing = (truth.uncertainty > 1e-13) & (truth.uncertainty < 1e-3)
     slope = float(np.polyfit(contacts[growing], np.log2(truth.uncertainty[growing]), 1)[0]) if growing.sum() > 2 else math.nan
     return Chaos(contacts, errors, slope, (truth.horizon - scene.start_time) / free)
@@ -158,8 +158,8 @@ def _contestants(dt: float) -> list[tuple[str, Callable[[Stage], Session]]]:
     def event_driven(name: str) -> Callable[[Stage], Session]:
         return lambda stage: ENGINES[name].open(stage, keep_rows=True)
 
-    def stepped(entrant: Entrant) -> Callable[[Stage], Session]:
-        return lambda stage: STEPPED[entrant.engine].open(stage, options=entrant.at(dt))
+    def stepped(competitor: Competitor) -> Callable[[Stage], Session]:
+        return lambda stage: STEPPED[competitor.engine].open(stage, options=competitor.at(dt))
 
     named = [(name, event_driven(name)) for name in ("reference", "fast")]
-    return named + [(label, stepped(ENTRANTS[label])) for label in ("stepped", "frames", "pymunk")]
+    return named + [(label, stepped(COMPETITORS[label])) for label in ("stepped", "frames", "pymunk")]

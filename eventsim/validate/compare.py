@@ -16,11 +16,10 @@ from eventsim.record.events import Rows
 from eventsim.runner.outcome import state_of
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
+from eventsim.validate.averages import collision_rate, kinetic_energy, virial_pressure
+from eventsim.validate.competitors import Competitor, able
 from eventsim.validate.contacts import RESTARTS, Census, census, longest_stuck
-from eventsim.validate.entrants import Entrant, able
 from eventsim.validate.follow import Followed, advanced, follow, position_errors
-from eventsim.validate.gauges import collision_rate, kinetic_energy, virial_pressure
-from eventsim.validate.order import fitted_order
 from eventsim.validate.truth import Truth, best_engine, truth_of
 
 USUAL_STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
@@ -92,7 +91,7 @@ class Comparison:
 
 def compare(
     scene: Scene,
-    entrants: Sequence[Entrant],
+    competitors: Sequence[Competitor],
     steps: Sequence[float] | None = None,
     until: float | None = None,
     patience_s: float = PATIENCE_S,
@@ -104,7 +103,7 @@ def compare(
     """
     tell("event-driven run")
     truth, checks, engine, whole = truth_to_compare(scene, until, TRUTH_SHARE * patience_s)
-    ready, left_out = able(entrants, truth.stage)
+    ready, left_out = able(competitors, truth.stage)
     if not whole:
         spent, end = f"{TRUTH_SHARE * patience_s:g} s", f"t = {truth.times[-1]:g}"
         left_out.append(f"what comes after {end} is left out: the event-driven run took {spent} until there")
@@ -112,27 +111,28 @@ def compare(
     sizes = sorted({step * flight for step in USUAL_STEPS} if steps is None else set(steps), reverse=True)
     exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks)
     lines = []
-    for entrant in ready:
+    for competitor in ready:
         taken = 0.0
         for place, dt in enumerate(sizes):
             if place and taken * sizes[place - 1] / dt > patience_s:
-                left_out.append(f"{entrant.label} with steps below {sizes[place - 1]:.3g} would take more than {patience_s:g} s")
+                what = f"{competitor.label} with steps below {sizes[place - 1]:.3g}"
+                left_out.append(f"{what} would take more than {patience_s:g} s")
                 break
-            tell(f"{entrant.label}, dt = {dt:.3g}")
-            session = STEPPED[entrant.engine].open(truth.stage, options=entrant.at(dt))
+            tell(f"{competitor.label}, dt = {dt:.3g}")
+            session = STEPPED[competitor.engine].open(truth.stage, options=competitor.at(dt))
             run = follow(session, truth.times.tolist(), patience_s)
             taken = run.elapsed_s
             if run.stopped is not None:
-                left_out.append(f"{entrant.label} with dt = {dt:.3g} was stopped after {patience_s:g} s")
+                left_out.append(f"{competitor.label} with dt = {dt:.3g} was stopped after {patience_s:g} s")
                 break
-            found = census(truth, STEPPED[entrant.engine], entrant.at(dt), dt, entrant.late)
-            lines.append(_line(truth, entrant.label, dt, run, found, checks))
+            found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt, competitor.late)
+            lines.append(_line(truth, competitor.label, dt, run, found, checks))
     orders = {
-        entrant.label: fitted_order(
-            [line.dt for line in lines if line.label == entrant.label],
-            [line.errors[min(FITTED, len(checks) - 1)] for line in lines if line.label == entrant.label],
+        competitor.label: fitted_order(
+            [line.dt for line in lines if line.label == competitor.label],
+            [line.errors[min(FITTED, len(checks) - 1)] for line in lines if line.label == competitor.label],
         )
-        for entrant in ready
+        for competitor in ready
     }
     return Comparison(scene.name or "this scene", truth, engine, checks, exact, lines, left_out, orders, engines_agree(truth))
 
@@ -214,3 +214,23 @@ def _line(truth: Truth, label: str, dt: float, run: Followed, found: Census, che
         steps=run.counters.steps,
         pair_tests=run.counters.pair_tests,
     )
+
+
+SATURATED = 0.3
+"""In diameters: errors above are those of a run that has lost its way, and say nothing about the step."""
+
+ROUNDING = 1e-11
+"""In diameters: errors below are rounding."""
+
+
+def fitted_order(steps: Sequence[float], errors: Sequence[float]) -> float:
+    """The slope of a log-log fit, from at least two points that are neither saturated nor rounding; nan without."""
+    points = [
+        (math.log(step), math.log(error))
+        for step, error in zip(steps, errors, strict=True)
+        if math.isfinite(error) and ROUNDING < error < SATURATED
+    ]
+    if len(points) < 2:
+        return math.nan
+    x, y = np.array(points).T
+    return float(np.polyfit(x, y, 1)[0])

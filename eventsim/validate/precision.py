@@ -18,16 +18,18 @@ import numpy as np
 
 from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Counters, Session
-from eventsim.engines.certified.options import CertifiedOptions
+from eventsim.engines.certified import CertifiedOptions
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.reference.predict import Predictor
 from eventsim.errors import EventsimError
+from eventsim.formulas.contact import pair_delay
 from eventsim.formulas.laws import TimeOfContact
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
-from eventsim.validate.entrants import Entrant, able
+from eventsim.validate.averages import kinetic_energy, virial_pressure
+from eventsim.validate.competitors import Competitor, able
 from eventsim.validate.follow import Followed, follow, position_errors
-from eventsim.validate.gauges import kinetic_energy, virial_pressure
 from eventsim.validate.pile import unrest
-from eventsim.validate.plain import PlainSession
 from eventsim.validate.truth import Truth, best_engine, neighbouring, truth_of
 
 STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
@@ -113,12 +115,12 @@ class _Runner:
     error: ErrorOf
 
 
-def curves(task: Task, entrants: Sequence[Entrant], patience_s: float, tell: Tell = lambda _: None) -> Curves:
+def curves(task: Task, competitors: Sequence[Competitor], patience_s: float, tell: Tell = lambda _: None) -> Curves:
     """Run every engine over its parameter, engines in turn; a run that would take longer than `patience_s` is left out."""
     tell(f"{task.name}: event-driven run")
     result = Curves(task)
     stage = stage_of(task.scene)
-    ready, result.left_out = able(entrants, stage)
+    ready, result.left_out = able(competitors, stage)
     if task.measure == "unrest":
         runners = [[_rest(task, duration) for duration in DURATIONS]]
         speed = float(np.hypot(*(stage.gravity or (1.0, 0.0)))) ** 0.5
@@ -140,8 +142,8 @@ def curves(task: Task, entrants: Sequence[Entrant], patience_s: float, tell: Tel
                 runners.append([_plain(stage, error)])
                 runners.append([_balls(stage, bits) for bits in BITS])
     radius = float(np.median(stage.radius)) or 1.0
-    for entrant in ready:
-        runners.append([_step_of(stage, entrant, step * radius / speed, error) for step in STEPS])
+    for competitor in ready:
+        runners.append([_step_of(stage, competitor, step * radius / speed, error) for step in STEPS])
     begin = task.scene.start_time
     for runner_list in runners:
         _run_list(result, runner_list, task.until, task.until - begin, patience_s, tell)
@@ -213,9 +215,9 @@ def _plain(stage: Stage, error: ErrorOf) -> _Runner:
     return _Runner("plain", "bits", 53.0, lambda: PlainSession(stage), error)
 
 
-def _step_of(stage: Stage, entrant: Entrant, dt: float, error: ErrorOf) -> _Runner:
-    engine = STEPPED[entrant.engine]
-    return _Runner(entrant.label, "dt", dt, lambda: engine.open(stage, options=entrant.at(dt)), error)
+def _step_of(stage: Stage, competitor: Competitor, dt: float, error: ErrorOf) -> _Runner:
+    engine = STEPPED[competitor.engine]
+    return _Runner(competitor.label, "dt", dt, lambda: engine.open(stage, options=competitor.at(dt)), error)
 
 
 def _rest(task: Task, duration: float) -> _Runner:
@@ -277,3 +279,16 @@ def _chance(truth: Truth, error: ErrorOf) -> float:
         session = engine.open(neighbouring(truth.stage, bits), keep_rows=True)
         errors.append(error(follow(session, truth.times.tolist()), session))
     return float(np.sqrt(np.mean(np.square(errors))))
+
+
+class PlainPredictor(Predictor):
+    """Predicts contacts of disks by `pair_delay`, whose c and D cancel near contact and at a graze."""
+
+    straight_delay = staticmethod(pair_delay)
+
+
+class PlainSession(ReferenceSession):
+    """The reference engine in the middle of a run, without careful contact times of pairs."""
+
+    name = "plain"
+    predictor = PlainPredictor

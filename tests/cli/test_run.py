@@ -12,8 +12,8 @@ import pytest
 
 import eventsim as es
 from eventsim import gallery, load_log, simulate
+from eventsim.cli.options import Files
 from eventsim.cli.summary import summary_text
-from eventsim.cli.target import Files
 
 JSON_KEYS = {
     "scene", "engine", "time", "events", "pair_contacts", "wall_contacts", "elapsed_s", "compile_s", "write_s",

@@ -4,7 +4,7 @@ import numpy as np
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.certified.options import CertifiedOptions
+from eventsim.engines.certified import CertifiedOptions
 from eventsim.engines.certified.session import CertifiedSession
 from eventsim.scene.stage import stage_of
 

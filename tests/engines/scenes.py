@@ -7,8 +7,8 @@ import numpy as np
 
 import eventsim as es
 from eventsim.engines.base import Stop
+from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.record.events import Rows
 from eventsim.scene.stage import stage_of
 

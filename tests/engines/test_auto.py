@@ -6,10 +6,9 @@ import pytest
 
 import eventsim as es
 from eventsim.engines import auto
-from eventsim.engines.auto import COLD, LARGE, SURE, AutoSession, first_engine
+from eventsim.engines.auto import COLD, LARGE, SURE, AutoSession, contact_rate, first_engine, reference_seconds
 from eventsim.engines.base import Stop
-from eventsim.engines.forecast import contact_rate, reference_seconds
-from eventsim.engines.reference.options import AutoOptions
+from eventsim.engines.reference import AutoOptions
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
 

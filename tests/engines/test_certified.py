@@ -10,13 +10,12 @@ import pytest
 import eventsim as es
 from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
-from eventsim.engines.certified.options import CertifiedOptions
+from eventsim.engines.certified import CertifiedOptions
 from eventsim.engines.certified.session import CertifiedSession
 from eventsim.errors import EventsimError
 from eventsim.record.compare import agreement, deviations
-from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.loop import run_session
-from eventsim.runner.options import RunOptions
+from eventsim.runner.options import Interrupt, RunOptions
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
 from eventsim.validate.proof import prove

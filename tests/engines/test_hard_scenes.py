@@ -8,8 +8,8 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
+from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.scene.stage import stage_of
 from eventsim.validate.stress.catalogue.long_runs import crystal
 from eventsim.validate.stress.catalogue.scenes import on_plane

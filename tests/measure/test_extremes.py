@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.cli.measured import measures_text
+from eventsim.cli.measure import measures_text
 from eventsim.measure import measure
 
 pytestmark = pytest.mark.filterwarnings("error")

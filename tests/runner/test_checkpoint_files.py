@@ -17,9 +17,8 @@ from eventsim.engines import ENGINES
 from eventsim.engines.base import Snapshot, Stop
 from eventsim.formulas.rest import SUPPORTED
 from eventsim.record.events import blank_rows
-from eventsim.runner.checking import demand_fit
 from eventsim.runner.checkpoint import load_checkpoint
-from eventsim.runner.snapshots import packed, unpacked
+from eventsim.runner.snapshots import demand_fit, packed, unpacked
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas, session_of
 from tests.engines.test_purity import SCENES

@@ -16,9 +16,8 @@ from eventsim.engines import auto, engine_named
 from eventsim.engines.auto import AutoSession
 from eventsim.engines.base import BrokenOffError, Stop
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.runner.interrupt import Interrupt
 from eventsim.runner.loop import run_session
-from eventsim.runner.options import RunOptions
+from eventsim.runner.options import Interrupt, RunOptions
 from eventsim.scene.stage import stage_of
 from eventsim.suffixes import LOGS
 from tests.engines.scenes import lattice_gas

@@ -12,7 +12,7 @@ from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.events import blank_rows
 from eventsim.runner.loop import run_session
 from eventsim.runner.options import RunOptions
-from eventsim.runner.writer import MANY_ROWS, WAITING, Writer
+from eventsim.runner.recording import MANY_ROWS, WAITING, Writer
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
 
@@ -80,7 +80,7 @@ def test_a_log_is_the_same_beside_the_engine_and_in_line(tmp_path, monkeypatch):
     pytest.importorskip("numba")
     scene, stop = lattice_gas(40, 0.3, es.Periodic), 30_000
     beside = es.simulate(scene, events=stop, engine="fast", log=tmp_path / "a.npz")
-    monkeypatch.setattr("eventsim.runner.writer.MANY_ROWS", 1 << 60)
+    monkeypatch.setattr("eventsim.runner.recording.MANY_ROWS", 1 << 60)
     in_line = es.simulate(scene, events=stop, engine="fast", log=tmp_path / "b.npz")
     assert beside.digest == in_line.digest == es.load_log(tmp_path / "a.npz").digest()
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()

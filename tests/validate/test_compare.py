@@ -18,8 +18,8 @@ from eventsim.show.versus.losses import NONE, draw_missed
 from eventsim.validate.advantages import Advantage, advantages, cell, table
 from eventsim.validate.chart import Chaos, Chart
 from eventsim.validate.compare import compare
+from eventsim.validate.competitors import COMPETITORS, able, chosen_competitors
 from eventsim.validate.conclusions import conclusions
-from eventsim.validate.entrants import ENTRANTS, able, chosen_entrants
 from eventsim.validate.pile import pile, unrest
 from eventsim.validate.precision import Curves, Point, Task, curves
 from eventsim.validate.table import chart_rows, comparison_rows, write_csv
@@ -39,7 +39,7 @@ def no_compiler():
 def gas(no_compiler):
     scene = es.gallery("gas", n=60)
     return compare(
-        scene, chosen_entrants(["frames", "stepped", "stepped-located"]), steps=(0.02, 0.002, 0.0005), until=0.4
+        scene, chosen_competitors(["frames", "stepped", "stepped-located"]), steps=(0.02, 0.002, 0.0005), until=0.4
     )
 
 
@@ -80,9 +80,9 @@ def test_the_table_has_a_row_for_each_run_and_plain_numbers(gas, tmp_path):
 def test_patience_bounds_the_event_driven_run_too():
     """A scene of years: what comes after the first seconds of computing is left out, and said to be."""
     scene = es.gallery("gas", n=60)
-    whole = compare(scene, chosen_entrants(["stepped"]), steps=(0.02,), until=0.05)
+    whole = compare(scene, chosen_competitors(["stepped"]), steps=(0.02,), until=0.05)
     assert not any("event-driven" in sentence for sentence in whole.left_out)
-    cut = compare(scene, chosen_entrants(["stepped"]), steps=(0.02,), until=1e9, patience_s=0.01)
+    cut = compare(scene, chosen_competitors(["stepped"]), steps=(0.02,), until=1e9, patience_s=0.01)
     assert cut.truth.times[-1] < 1e3
     assert (
         f"what comes after t = {cut.truth.times[-1]:g} is left out: the event-driven run took 0.1 s" in cut.left_out[0]
@@ -91,19 +91,19 @@ def test_patience_bounds_the_event_driven_run_too():
 
 def test_an_unknown_engine_is_named_with_those_that_there_are():
     with pytest.raises(es.EventsimError, match="no engine 'step' to compare with; there are frames"):
-        chosen_entrants(["step"])
+        chosen_competitors(["step"])
 
 
 def test_who_cannot_take_part_is_left_out_with_one_sentence():
-    ready, sentences = able(list(ENTRANTS.values()), stage_of(es.gallery("periodic-fluid", n=16)))
-    assert "frames" not in [entrant.label for entrant in ready]
+    ready, sentences = able(list(COMPETITORS.values()), stage_of(es.gallery("periodic-fluid", n=16)))
+    assert "frames" not in [competitor.label for competitor in ready]
     assert len([text for text in sentences if "frames" in text]) == 1
 
 
 def test_a_scene_without_contacts_has_nothing_to_compare():
     scene = es.Scene(es.Disks([(0, 0)], [(1, 0)], radius=1.0), es.Open(), until=1.0)
     with pytest.raises(es.EventsimError, match="there is nothing to compare"):
-        compare(scene, chosen_entrants(["stepped"]))
+        compare(scene, chosen_competitors(["stepped"]))
 
 
 def test_a_pile_at_rest_has_no_unrest():
@@ -116,7 +116,7 @@ def test_a_pile_at_rest_has_no_unrest():
 def test_the_truth_of_a_chart_is_certified_where_it_can_be():
     pytest.importorskip("flint")
     task = Task("two", es.gallery("two-disks", mass_ratio=3.0), "trajectory", 6.0)
-    found = curves(task, [ENTRANTS["stepped"]], patience_s=0.3)
+    found = curves(task, [COMPETITORS["stepped"]], patience_s=0.3)
     assert {"reference", "certified", "stepped"} <= set(found.labels)
     assert all(point.error < 1e-12 for point in found.of("reference"))
     stepped = found.of("stepped")
@@ -129,14 +129,14 @@ def test_without_flint_its_curve_is_left_out_with_one_sentence(monkeypatch):
     for name in [name for name in __import__("sys").modules if name.startswith("eventsim.engines.certified")]:
         monkeypatch.delitem(__import__("sys").modules, name)
     task = Task("two", es.gallery("two-disks", mass_ratio=3.0), "trajectory", 6.0)
-    found = curves(task, [ENTRANTS["stepped"]], patience_s=0.1)
+    found = curves(task, [COMPETITORS["stepped"]], patience_s=0.1)
     assert "certified" not in found.labels
     assert len([text for text in found.left_out if "certify" in text]) == 1
 
 
 def test_without_pymunk_its_curve_is_left_out_with_one_sentence(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pymunk", None)
-    found = curves(Task("two", es.gallery("two-disks"), "trajectory", 6.0), [ENTRANTS["pymunk"]], patience_s=0.01)
+    found = curves(Task("two", es.gallery("two-disks"), "trajectory", 6.0), [COMPETITORS["pymunk"]], patience_s=0.01)
     assert "reference" in found.labels
     assert "pymunk" not in found.labels
     assert [text for text in found.left_out if "pymunk" in text] == [
@@ -247,7 +247,7 @@ def test_labels_of_steps_that_are_close_do_not_run_into_each_other(gas):
 def test_a_comparison_without_pairs_is_drawn(tmp_path):
     from eventsim.show.versus.comparison import write_comparison
 
-    alone = compare(es.gallery("corner"), chosen_entrants(["stepped"]), steps=(0.1, 0.01), until=20.0)
+    alone = compare(es.gallery("corner"), chosen_competitors(["stepped"]), steps=(0.1, 0.01), until=20.0)
     write_comparison(alone, tmp_path / "alone.png")
     assert (tmp_path / "alone.png").stat().st_size > 10_000
 

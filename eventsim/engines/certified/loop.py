@@ -12,10 +12,10 @@ from eventsim.engines.certified.ball import Ball, deviation, radius_of
 from eventsim.engines.certified.calendar import CertifiedCalendar
 from eventsim.engines.certified.predict import CertifiedPredictor
 from eventsim.engines.certified.resolve import CertifiedResolver
+from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.generation import row_order
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from eventsim.engines.base import Motion, Session, Snapshot, Stop
+from eventsim.engines.certified import CertifiedOptions
 from eventsim.engines.certified.ball import Undecided, ball, traced, working_precision
 from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
-from eventsim.engines.certified.options import CertifiedOptions
 from eventsim.errors import EventsimError
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.scene.names import plural

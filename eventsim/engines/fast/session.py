@@ -10,10 +10,9 @@ import numpy as np
 from eventsim.engines.base import Motion, Session, Snapshot, Stop
 from eventsim.engines.clock_end import at_the_last_epoch
 from eventsim.engines.drift import only_wraps
-from eventsim.engines.fast import layout, tally
+from eventsim.engines.fast import FastOptions, layout, tally
 from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
 from eventsim.engines.fast.machine import FOREVER, Machine
-from eventsim.engines.fast.options import FastOptions
 from eventsim.engines.fast.rules import kind_of
 from eventsim.engines.fast.rulings import Rulings
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, remainder_since, window_length

@@ -11,12 +11,12 @@ from eventsim.engines.base import Motion, Session, Snapshot, Stop, rows_from
 from eventsim.engines.clock_end import at_the_last_epoch
 from eventsim.engines.collapse import LIES_STILL, named
 from eventsim.engines.drift import only_wraps
+from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
 from eventsim.engines.reference.generation import Ties, components
 from eventsim.engines.reference.invariants import check_invariants
-from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError

@@ -7,3 +7,61 @@
 
 All keep the contract of `engines.base`. They are what event-driven runs are validated against: see `validate`.
 """
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from eventsim.engines.options import Options, option
+
+
+@dataclass(frozen=True, slots=True)
+class StepOptions(Options):
+    """What all stepped engines can be told.
+
+    dt: the step, time; left out, a twentieth of the time in which a typical disk flies its radius.
+    """
+
+    dt: float | None = option(None, "a time")
+
+
+@dataclass(frozen=True, slots=True)
+class FramesOptions(StepOptions):
+    """What `frames` can be told.
+
+    memory: when a pair leaves the memory: once its circles are apart, or at the end of the frame.
+    """
+
+    memory: Literal["apart", "frame"] = option("apart", "apart or frame")
+
+
+@dataclass(frozen=True, slots=True)
+class FixedStepOptions(StepOptions):
+    """What `stepped` can be told.
+
+    locate: look for the time of impact within the step.
+    """
+
+    locate: bool = option(False, "true or false")
+
+
+@dataclass(frozen=True, slots=True)
+class PenaltyOptions(StepOptions):
+    """What `penalty` can be told.
+
+    stiffness: of the springs, force / length; left out: from the step.
+    """
+
+    stiffness: float | None = option(None, "a number, force / length")
+
+
+@dataclass(frozen=True, slots=True)
+class ChipmunkOptions(StepOptions):
+    """What `pymunk` can be told.
+
+    iterations: of its solver in each step.  slop: an overlap that it leaves, length; left out: a part of the least radius.
+    """
+
+    iterations: int = option(10, "a whole number")
+    slop: float | None = option(None, "a length")

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 import pymunk
 
+from eventsim.engines.stepped import ChipmunkOptions
 from eventsim.engines.stepped.found import DEEPEST, EVENTS, OUTER_X, OUTER_Y, note_pair, note_wall
-from eventsim.engines.stepped.options import ChipmunkOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
 from eventsim.formulas.walls.boundary import Boundary

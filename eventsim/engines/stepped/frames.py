@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines.stepped import FramesOptions
 from eventsim.engines.stepped.compiled import kernel, part
 from eventsim.engines.stepped.disks import Moving
 from eventsim.engines.stepped.found import (
@@ -38,7 +39,6 @@ from eventsim.engines.stepped.found import (
     note_wall,
 )
 from eventsim.engines.stepped.ground import POST, Ground, nearest
-from eventsim.engines.stepped.options import FramesOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
 from eventsim.formulas.walls.face import Face

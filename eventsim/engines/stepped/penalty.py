@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines.stepped import PenaltyOptions
 from eventsim.engines.stepped.compiled import kernel, part
 from eventsim.engines.stepped.disks import Moving, fastest, shortest, wrap
 from eventsim.engines.stepped.found import (
@@ -37,7 +38,6 @@ from eventsim.engines.stepped.found import (
 )
 from eventsim.engines.stepped.ground import Ground, nearest
 from eventsim.engines.stepped.neighbours import Neighbours
-from eventsim.engines.stepped.options import PenaltyOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats

@@ -18,6 +18,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines.stepped import FixedStepOptions
 from eventsim.engines.stepped.compiled import kernel, part
 from eventsim.engines.stepped.disks import Moving, fastest, fly, shortest, wrap
 from eventsim.engines.stepped.found import (
@@ -35,7 +36,6 @@ from eventsim.engines.stepped.found import (
 )
 from eventsim.engines.stepped.ground import Ground, nearest
 from eventsim.engines.stepped.neighbours import Neighbours
-from eventsim.engines.stepped.options import FixedStepOptions
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.formulas.impulse import mass_fractions, pair_update, wall_update
 from eventsim.record.events import Floats

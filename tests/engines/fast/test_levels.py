@@ -7,7 +7,7 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
-from eventsim.engines.fast.options import FastOptions
+from eventsim.engines.fast import FastOptions
 from eventsim.engines.fast.plan import Sizes, classes_of, levels_of
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 import eventsim as es
 from eventsim.engines.base import Session, Stop
-from eventsim.engines.fast import grids, plan
-from eventsim.engines.fast.options import FastOptions
+from eventsim.engines.fast import FastOptions, grids, plan
 from eventsim.engines.fast.plan import Sizes
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession

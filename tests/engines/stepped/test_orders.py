@@ -7,8 +7,8 @@ import eventsim as es
 from eventsim.engines import STEPPED
 from eventsim.measure.theory import compressibility_factor
 from eventsim.scene.stage import stage_of
+from eventsim.validate.averages import kinetic_energy, virial_pressure
 from eventsim.validate.follow import follow
-from eventsim.validate.gauges import kinetic_energy, virial_pressure
 
 
 def slope(steps, errors):

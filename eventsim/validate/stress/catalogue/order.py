@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eventsim.engines.base import Stop
+from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.engines.reference.options import ReferenceOptions
 from eventsim.scene import Box, Disks, Open, Periodic, Scene
 from eventsim.scene.stage import stage_of
 from eventsim.validate.stress.case import Bench, Case, off
