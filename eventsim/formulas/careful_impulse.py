@@ -103,7 +103,8 @@ def _excess(px: float, py: float, u: float, w: float, e: float, f: float) -> flo
     along_y, fine_y = two_product(py, y)
     along, fine = two_sum(along_x, along_y)
     fine = fine + ((fine_x + fine_y) + (px * (x_rest + 2.0 * e) + py * (y_rest + 2.0 * f)))
-    return (along + fine) / square
+    share: float = (along + fine) / square
+    return share
 
 
 def _lighter_share(lighter: float, heavier: float) -> tuple[float, float]:

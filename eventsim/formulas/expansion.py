@@ -7,12 +7,16 @@ Source: J. R. Shewchuk, Discrete Comput. Geom. 18, 305 (1997), doi:10.1007/PL000
 T. J. Dekker, Numer. Math. 18, 224 (1971), doi:10.1007/BF01397083.
 """
 
+from typing import Any, TypeVar
+
+Number = TypeVar("Number", float, Any)
+
 SPLITTER = 134217729.0
 """2**27 + 1: cuts a float into two halves whose products are exact (Veltkamp)."""
 
 
-def two_sum(a: float, b: float) -> tuple[float, float]:
-    """(s, e) with s = fl(a + b) and s + e = a + b exactly; exchange of a and b changes no bit."""
+def two_sum(a: Number, b: Number | float) -> tuple[Number, Number]:
+    """(s, e), floats or arrays, with s = fl(a + b) and s + e = a + b exactly; exchange of a and b changes no bit."""
     s = a + b
     bb = s - a
     return s, (a - (s - bb)) + (b - bb)

@@ -197,7 +197,7 @@ def _around(wall: Part, r: float, shift: Floats) -> Iterator[_Piece]:
         yield _Line(ax + nx, ay + ny, bx + nx, by + ny, hard=True)
         yield _Line(bx - nx, by - ny, ax - nx, ay - ny, hard=True)
     else:
-        x, y, radius, start, turn = circle_through(wall)
+        (x, y), radius, start, turn = wall.sweep()
         if radius > r:
             bow = _Bow(x + sx, y + sy, radius - r, start, turn)
             yield bow if turn > 0.0 else bow.cut(1.0, 0.0)
@@ -212,19 +212,6 @@ def _chords(wall: Part) -> list[Segment]:
     """A wall of another kind, as the line that is drawn of it: good to some 1e-4 of its area."""
     points = [(float(x), float(y)) for x, y in wall.outline()]
     return [Segment(p, q) for p, q in pairwise(points) if p != q]
-
-
-def circle_through(wall: Arc) -> tuple[float, float, float, float, float]:
-    """(x, y, radius, angle of the start, turn) of an arc; turn > 0: counter-clockwise."""
-    (ax, ay), (mx, my), (bx, by) = wall.start, wall.through, wall.end
-    px, py, qx, qy = mx - ax, my - ay, bx - ax, by - ay
-    cross = px * qy - py * qx
-    p2, q2 = px * px + py * py, qx * qx + qy * qy
-    ux, uy = (qy * p2 - py * q2) / (2.0 * cross), (px * q2 - qx * p2) / (2.0 * cross)
-    start = math.atan2(-uy, -ux)
-    turn = (math.atan2(qy - uy, qx - ux) - start) % (2.0 * math.pi)
-    # a positive cross product: start, through, end go round counter-clockwise
-    return ax + ux, ay + uy, math.hypot(ux, uy), start, turn if cross > 0.0 else turn - 2.0 * math.pi
 
 
 class _Reach:
@@ -290,7 +277,7 @@ def _distance(wall: Segment | Arc, x: float, y: float) -> float:
             px, py = line.at(share)
             return math.hypot(x - px, y - py)
         return ends
-    cx, cy, radius, start, turn = circle_through(wall)
+    (cx, cy), radius, start, turn = wall.sweep()
     if _Bow(cx, cy, radius, start, turn).share_of(x, y) <= 1.0:
         return min(ends, abs(math.hypot(x - cx, y - cy) - radius))
     return ends

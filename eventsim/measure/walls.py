@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from eventsim.measure import sums
-from eventsim.measure.billiard_table import circle_through
 from eventsim.measure.ensemble import Ensemble
 from eventsim.record.events import Floats
 from eventsim.scene.scene import Scene
@@ -39,8 +37,7 @@ def described_walls(scene: Scene, stage: Stage, ensemble: Ensemble) -> Floats:
             if ensemble.circle is not None:
                 mine[sums.LEVER], mine[sums.INSET] = wall.radius, 1.0
         elif isinstance(wall, Arc):
-            x, y, mine[sums.BEND], *_ = circle_through(wall)
-            place = x, y
+            place, mine[sums.BEND], *_ = wall.sweep()
         elif not isinstance(wall, Segment):
             continue  # of another kind: its sides are not told apart
         else:
@@ -59,15 +56,4 @@ def sides_of(scene: Scene, stage: Stage) -> tuple[Sides, ...]:
     for boundary in stage.boundaries:
         assert stage.size is not None
         found.append(Sides(stage.size[1 - boundary.axis], ("", "")))
-    for wall in parts_of(scene.walls):
-        if isinstance(wall, Circle):
-            found.append(Sides(2.0 * math.pi * wall.radius, ("", "")))
-        elif isinstance(wall, Arc):
-            _, _, radius, _, turn = circle_through(wall)
-            found.append(Sides(radius * abs(turn), ("inside", "outside")))
-        elif isinstance(wall, Segment):
-            found.append(Sides(math.dist(wall.start, wall.end), ("left", "right")))
-        else:
-            steps = np.diff(wall.outline(), axis=0)
-            found.append(Sides(float(np.hypot(steps[:, 0], steps[:, 1]).sum()), ("", "")))
-    return tuple(found)
+    return (*found, *(Sides(part.length(), part.sides) for part in parts_of(scene.walls)))

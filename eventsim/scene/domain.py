@@ -14,10 +14,17 @@ class _Rectangle:
 
     size: Point
     origin: Point = (0.0, 0.0)
+    periodic: ClassVar[tuple[bool, bool]]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "size", point(self.size, "domain.size"))
         object.__setattr__(self, "origin", point(self.origin, "domain.origin"))
+
+    @property
+    def period(self) -> tuple[float | None, float | None]:
+        """The period along x and y; None along an axis without one."""
+        (width, height), (along_x, along_y) = self.size, self.periodic
+        return (width if along_x else None), (height if along_y else None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +57,7 @@ class Open:
 
     kind: ClassVar[str] = "open"
     periodic: ClassVar[tuple[bool, bool]] = (False, False)
+    period: ClassVar[tuple[None, None]] = (None, None)
     size: ClassVar[None] = None
     origin: ClassVar[Point] = (0.0, 0.0)
 

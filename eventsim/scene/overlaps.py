@@ -55,10 +55,8 @@ class Found:
 
 def period_of(domain: Domain) -> Point:
     """The period of a domain along x and y; inf where there is none."""
-    if domain.size is None:
-        return math.inf, math.inf
-    (width, height), (along_x, along_y) = domain.size, domain.periodic
-    return (width if along_x else math.inf), (height if along_y else math.inf)
+    along_x, along_y = domain.period
+    return math.inf if along_x is None else along_x, math.inf if along_y is None else along_y
 
 
 def pair_overlaps(disks: Disks, domain: Domain) -> Found:

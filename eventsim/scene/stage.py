@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eventsim.formulas.laws import Law, law_of
 from eventsim.formulas.low_place import Low
@@ -20,13 +18,12 @@ from eventsim.formulas.real import Real
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.shape import seen
-from eventsim.scene.domain import Channel, Open, Periodic
+from eventsim.scene.disks import Floats
+from eventsim.scene.domain import Open
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of
 from eventsim.scene.walls import feature_names
-
-Floats: TypeAlias = NDArray[np.float64]
 
 WIDE = 2.0**16
 """Diameters of the largest disk across a domain from which on places carry their low parts: a coordinate there has lost 16 of the
@@ -144,14 +141,12 @@ def stage_of(scene: Scene) -> Stage:
     corner = _corner(scene)
     x, y = disks.position[:, 0] - corner[0], disks.position[:, 1] - corner[1]
     vx, vy = disks.velocity[:, 0].copy(), disks.velocity[:, 1].copy()
-    size = None if isinstance(domain, Open) else domain.size
-    along_x = size[0] if size is not None and isinstance(domain, Periodic | Channel) else None
-    along_y = size[1] if size is not None and isinstance(domain, Periodic) else None
+    size = domain.size
     boundaries, names = boundaries_of(domain)
-    features = features_of(scene.walls, float(disks.radius.max()), corner, (along_x, along_y), len(names))
+    features = features_of(scene.walls, float(disks.radius.max()), corner, domain.period, len(names))
     restitution = scene.restitution
     law = law_of(None if restitution is None else (restitution.pair, restitution.wall), scene.contact_duration)
-    periodic = along_x is not None
+    periodic = domain.period[0] is not None
     moves = bool(np.any(disks.velocity != 0.0))
     lightest, heaviest = _extreme_masses(disks.mass)
     epoch_length = _epoch_length(x, y, vx, vy, disks.radius, size, scene.gravity)
@@ -182,7 +177,7 @@ def stage_of(scene: Scene) -> Stage:
         low_places=low_places,
         gravity=scene.gravity,
         law=law,
-        period=(along_x, along_y),
+        period=domain.period,
         size=size,
         boundaries=boundaries,
         features=features,

@@ -185,7 +185,7 @@ def number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) ->
         broken = np.flatnonzero(~kept)
         value = getattr(disks, key)
         problems += [f"{names.key(int(i), key)} = {value[i].tolist()}: {rule}" for i in broken[: _written(len(broken))]]
-        problems += _rest(len(broken), f"disks whose {key} {rule}")
+        problems += _uncounted(len(broken), f"disks whose {key} {rule}")
     return problems
 
 
@@ -240,7 +240,7 @@ def _room_problems(disks: Disks, domain: Domain, names: DiskNames) -> list[str]:
             " walls at every instant; give it room, or no velocity along there"
             for i in caught[: _written(len(caught))]
         ]
-        problems += _rest(len(caught), f"disks without room in {letter}")
+        problems += _uncounted(len(caught), f"disks without room in {letter}")
     return problems
 
 
@@ -261,13 +261,13 @@ def _periodic_problems(disks: Disks, domain: Domain, names: DiskNames) -> tuple[
             f" and below {domain.origin[axis] + length} (the {domain.kind} domain repeats there)"
             for i in np.flatnonzero(out)[: _written(int(out.sum()))]
         ]
-        problems += _rest(int(out.sum()), f"disks whose center is outside the domain in {letter}")
+        problems += _uncounted(int(out.sum()), f"disks whose center is outside the domain in {letter}")
         problems += [
             f"{names.key(int(i), 'radius')} = {disks.radius[i]}: the diameter must be at most the period {length},"
             " or the disk overlaps its own image"
             for i in wide[: _written(len(wide))]
         ]
-        problems += _rest(len(wide), "disks that are wider than the period")
+        problems += _uncounted(len(wide), "disks that are wider than the period")
     return outside, problems
 
 
@@ -275,10 +275,10 @@ def _summary(found: Found, kind: str, sentence: Callable[[int, int, float], str]
     """The first overlaps as sentences, the others counted."""
     columns = zip(found.disk.tolist(), found.other.tolist(), found.depth.tolist(), strict=True)
     written = [sentence(*overlap) for overlap in islice(columns, _written(len(found)))]
-    return written + _rest(len(found), kind)
+    return written + _uncounted(len(found), kind)
 
 
-def _rest(count: int, kind: str) -> list[str]:
+def _uncounted(count: int, kind: str) -> list[str]:
     """The line that counts what is not written out, if anything."""
     more = "at least " if count >= ENOUGH else ""
     left = count - _written(count)

@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
 from eventsim.scene import Scene
-from eventsim.show.outlines import period_of
 
 
 def disks_with_images(position: Floats, radius: Floats, scene: Scene) -> tuple[Floats, NDArray[np.int64]]:
     """Return the places (M, 2) where disks are seen, and which disk (M,) each is: those across a boundary repeated."""
     disk = np.arange(len(position))
-    for axis, period in enumerate(period_of(scene)):
+    for axis, period in enumerate(scene.domain.period):
         if period is None:
             continue
         corner = scene.domain.origin[axis]
@@ -32,7 +31,7 @@ def disks_with_images(position: Floats, radius: Floats, scene: Scene) -> tuple[F
 def lines_with_images(lines: Sequence[Floats], scene: Scene) -> list[Floats]:
     """Return lines of points (K, 2) and those of their images that reach into a periodic domain."""
     seen = [np.asarray(line) for line in lines]
-    for axis, period in enumerate(period_of(scene)):
+    for axis, period in enumerate(scene.domain.period):
         if period is None:
             continue
         step = np.zeros(2)

@@ -43,14 +43,6 @@ def boundary_lines(scene: Scene) -> tuple[list[Floats], list[Floats]]:
     return hard, open_
 
 
-def period_of(scene: Scene) -> tuple[float | None, float | None]:
-    """Return the period along x and y, None along an axis without one."""
-    size, periodic = scene.domain.size, scene.domain.periodic
-    if size is None:
-        return None, None
-    return size[0] if periodic[0] else None, size[1] if periodic[1] else None
-
-
 def shown_rectangle(log: EventLog, corner: tuple[float, float], visited: Floats) -> Rectangle:
     """Return what a picture shows: the domain; where it is open, walls, contacts and the visited places (K, 2).
 

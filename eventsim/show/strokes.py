@@ -13,7 +13,6 @@ from eventsim.replay.flights import flights_between
 from eventsim.replay.replay import Replay
 from eventsim.show.frames import Frame
 from eventsim.show.images import wrapped_pieces
-from eventsim.show.outlines import period_of
 
 HEAD = 0.3
 """Length of an arrow's head, a share of the arrow."""
@@ -70,4 +69,4 @@ class Trails:
         scene = self._replay.log.scene
         table = flights_between(self._replay, before, frame.recent, frame.state.time)
         _, ends, disk = table.pieces(PARABOLA_PIECES)
-        return wrapped_pieces(ends, disk, period_of(scene), scene.domain.origin)[0]
+        return wrapped_pieces(ends, disk, scene.domain.period, scene.domain.origin)[0]

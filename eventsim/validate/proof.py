@@ -13,9 +13,9 @@ from eventsim.engines.certified import FIRST_BITS, MOST_BITS, CertifiedOptions
 from eventsim.engines.certified.session import Attempt, CertifiedSession
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.formulas.clock import clock_time
+from eventsim.formulas.expansion import two_sum
 from eventsim.record.compare import VELOCITIES, agreement, deviations
 from eventsim.record.events import ROW, Floats, Rows
-from eventsim.record.times import two_sum
 from eventsim.replay.past import PastRun
 from eventsim.runner.loop import run_session
 from eventsim.runner.options import Interrupt, Progress, RunOptions

@@ -19,8 +19,8 @@ from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortes
 from eventsim.engines.fast.rules import features_of, rules_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.clock import next_window, window_length
+from eventsim.formulas.expansion import two_sum
 from eventsim.record.events import ROW, Floats, Rows
-from eventsim.record.times import two_sum
 from eventsim.scene.stage import Stage
 
 FOREVER = 1 << 60

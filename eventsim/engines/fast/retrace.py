@@ -42,9 +42,9 @@ from eventsim.engines.fast.rules import features_of, rules_of
 from eventsim.engines.fast.shapes import WIDTH
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.real import NEVER
 from eventsim.record.events import Floats, Kind, Rows
-from eventsim.record.times import two_sum
 from eventsim.scene.stage import Stage
 
 PAIR_ROW, WALL_ROW = int(Kind.PAIR), int(Kind.WALL)

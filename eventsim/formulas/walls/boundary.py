@@ -24,7 +24,8 @@ class Boundary(NamedTuple):
 
     def left_over(self, radius: float) -> float:
         """What rounding leaves of that coordinate."""
-        return two_sum(self.position, self.side * radius)[1]
+        left: float = two_sum(self.position, self.side * radius)[1]
+        return left
 
     def touching(self, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
         """The place of a disk, set exactly onto the wall."""

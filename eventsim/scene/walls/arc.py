@@ -30,6 +30,7 @@ class Arc(Part):
     name: str | None = None
     kind: ClassVar[str] = "arc"
     made_of: ClassVar[tuple[type[Shape], ...]] = (numbers.Arc, Post)
+    sides: ClassVar[tuple[str, str]] = ("inside", "outside")
 
     def parts(self, name: str) -> tuple[Arc, ...]:
         """The arc itself, with its name."""
@@ -78,6 +79,15 @@ class Arc(Part):
 
     def outline(self) -> Floats:
         """A line of points along it."""
+        return circle_points(*self.sweep())
+
+    def length(self) -> float:
+        """The length of the arc."""
+        _, radius, _, turn = self.sweep()
+        return radius * abs(turn)
+
+    def sweep(self) -> tuple[Point, float, float, float]:
+        """(centre, radius, angle of the start, turn); turn > 0: counter-clockwise."""
         center, radius = circle_through(self.start, self.through, self.end)
         begin, middle, end = (
             math.atan2(p[1] - center[1], p[0] - center[0]) for p in (self.start, self.through, self.end)
@@ -85,7 +95,7 @@ class Arc(Part):
         turn = (end - begin) % (2.0 * math.pi)
         if (middle - begin) % (2.0 * math.pi) > turn:  # `through` is passed on the way round the other side
             turn -= 2.0 * math.pi
-        return circle_points(center, radius, begin, turn)
+        return center, radius, begin, turn
 
 
 def circle_through(start: Point, through: Point, end: Point) -> tuple[Point, float]:

@@ -57,6 +57,10 @@ class Circle(Part):
         """How far disks at `position` (M, 2) of a `radius` reach out of it, (M,)."""
         return distances(position, self.center) + radius - self.radius
 
+    def length(self) -> float:
+        """The length of the circle."""
+        return 2.0 * math.pi * self.radius
+
     def outline(self) -> Floats:
         """A line of points around it."""
         return circle_points(self.center, self.radius, 0.0, 2.0 * math.pi)

@@ -27,6 +27,7 @@ class Segment(Part):
     name: str | None = None
     kind: ClassVar[str] = "segment"
     made_of: ClassVar[tuple[type[Shape], ...]] = (Face, Post)
+    sides: ClassVar[tuple[str, str]] = ("left", "right")
 
     def parts(self, name: str) -> tuple[Segment, ...]:
         """The segment itself, with its name."""
@@ -59,6 +60,10 @@ class Segment(Part):
         beside = np.abs(tx * py - ty * px)
         ends = np.minimum(distances(position, self.start), distances(position, self.end))
         return radius - np.where((along >= 0.0) & (along <= length), beside, ends)
+
+    def length(self) -> float:
+        """The distance of its ends."""
+        return math.dist(self.start, self.end)
 
     def outline(self) -> Floats:
         """The line from start to end."""

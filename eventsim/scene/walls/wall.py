@@ -99,9 +99,13 @@ class Wall(ABC):
 
 
 class Part(Wall):
-    """A wall that is one piece, with one name in the log."""
+    """A wall that is one piece, with one name in the log.
+
+    sides: what its left or inner side and its right or outer side are called; empty where disks meet but one.
+    """
 
     __slots__ = ()
+    sides: ClassVar[tuple[str, str]] = ("", "")
 
     @abstractmethod
     def bounds(self) -> Bounds:
@@ -114,6 +118,11 @@ class Part(Wall):
     @abstractmethod
     def outline(self) -> Floats:
         """The piece as a line of points (K, 2)."""
+
+    def length(self) -> float:
+        """How long it is; here, as long as its outline."""
+        steps = np.diff(self.outline(), axis=0)
+        return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
 
     def curvature_radius(self) -> float:
         """The radius of what is round; 0 of what is straight."""

@@ -32,7 +32,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     axis = int(spread[1] > spread[0])
     time, ends, disk = table.pieces()
     lines = np.stack([time, ends[:, :, axis]], axis=2)
-    period = outlines.period_of(scene)[axis]
+    period = scene.domain.period[axis]
     lines, disk = wrapped_pieces(lines, disk, (None, period), (0.0, scene.domain.origin[axis]))
     axes = figure.add_subplot()
     axes.add_collection(

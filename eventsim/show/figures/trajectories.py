@@ -37,7 +37,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     table = flight_table(replay).of(disks)
     shades = shades_of(n)
     _, ends, disk = table.pieces()
-    ends, disk = wrapped_pieces(ends, disk, outlines.period_of(scene), scene.domain.origin)
+    ends, disk = wrapped_pieces(ends, disk, scene.domain.period, scene.domain.origin)
     shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
     figure.set_size_inches(*inches_for(shown))
     axes = figure.add_subplot(aspect="equal")
