@@ -2,16 +2,18 @@
 
 The story, and where each part of it lives::
 
-    scene      what exists: disks, walls, a domain            eventsim.scene
     formulas   the physics: when two disks meet, what then    eventsim.formulas
-    engines    how time passes: from event to event           eventsim.engines
+    scene      what exists: disks, walls, a domain            eventsim.scene
     record     what happened: the rows of a log, its files    eventsim.record
-    runner     what all runs share: loop, writer, checkpoint  eventsim.runner
+    engines    how time passes: from event to event           eventsim.engines
+    runner     what all runs share: loop, files, checkpoints  eventsim.runner
     replay     what follows from a log: states at any time    eventsim.replay
     measure    numbers from it, with error bars and theory    eventsim.measure
-    simulation the way in for Python users                    eventsim.simulation
+    validate   engines against each other, theory and proof   eventsim.validate
     sweep      many runs, one table                           eventsim.sweep
     show       pictures of what happened                      eventsim.show
+    simulation the way in for Python users                    eventsim.simulation
+    live       the view in the browser                        eventsim.live
     cli        the way in from a terminal                     eventsim.cli
 
 >>> import eventsim as es

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
-from eventsim.cli.output import INTERRUPTED, say
-from eventsim.cli.source import chosen_scene, is_log, log_of, stop_options
+from eventsim.cli.output import say
+from eventsim.cli.source import chosen_scene, is_log, log_of, run_of, stop_options
 from eventsim.cli.words import aligned, as_json_text, short
 from eventsim.scene.names import plural
 
@@ -100,23 +100,8 @@ def measured(
         log = log_of(source, settings, seed, until, events, quiet)
         return measure(log, discard), structure_of(log.scene, Replay(log).final()) if structure else None
 
-    from eventsim.cli.progress import ProgressBar
-    from eventsim.cli.signals import interruptible
-    from eventsim.simulation import simulate
-
     scene = chosen_scene(source, settings, seed)
-    if until is None and events is None and scene.until is None and scene.events is None:
-        raise click.UsageError(
-            f"nothing says when to stop {source}: give --until T or --events N, or a key until or events in the scene"
-        )
-    with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
-        keep = True if discard is None else discard
-        run = simulate(scene, until=until, events=events, measure=keep, progress=progress, interrupt=interrupt)
-    if run.stopped == "interrupted":
-        say("interrupted", err=True)
-        click.get_current_context().exit(INTERRUPTED)
-    if run.reason is not None and not quiet:
-        say(f"stopped early: {run.reason}", err=True)
+    run = run_of(scene, source, until, events, quiet, measure=True if discard is None else discard)
     if run.measures is None:
         raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
     return run.measures, structure_of(scene, run.state) if structure else None

@@ -148,16 +148,14 @@ def command(
     from eventsim import simulation
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.signals import interruptible
-    from eventsim.cli.source import chosen_scene
+    from eventsim.cli.source import chosen_scene, demand_stop
     from eventsim.cli.summary import summary_data, summary_text
     from eventsim.cli.words import as_json_text
 
     asked = scene or resume or FIRST_SCENE
     chosen = None if resume and scene is None else chosen_scene(asked, settings, seed)
-    if not resume and until is events is None and chosen and chosen.until is chosen.events is None:
-        raise click.UsageError(
-            f"nothing says when to stop {asked}: give --until T or --events N, or a key until or events in the scene"
-        )
+    if not resume and chosen is not None:
+        demand_stop(chosen, asked, until, events)
     wanted: dict[str, Any] = {"until": until, "events": events, "log": files.log, "digest": digest}
     wanted |= {"engine": engine, "checkpoint": files.checkpoint, "every": every}
     wanted = {name: value for name, value in wanted.items() if value is not None}

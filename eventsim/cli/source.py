@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from eventsim import suffixes
 from eventsim.cli.options import Verb, Whole
-from eventsim.cli.output import say
+from eventsim.cli.output import INTERRUPTED, say
 from eventsim.errors import SceneError, did_you_mean
 
 if TYPE_CHECKING:
     from eventsim.replay.log import EventLog
+    from eventsim.run import Run
     from eventsim.scene import Scene
 
 
@@ -62,26 +63,34 @@ def log_of(
 
         return load_log(source)
 
-    from eventsim.cli.output import INTERRUPTED
+    log = run_of(chosen_scene(source, settings, seed), source, until, events, quiet, log=True).log
+    assert log is not None
+    return log
+
+
+def run_of(scene: Scene, asked: str, until: float | None, events: int | None, quiet: bool, **wanted: Any) -> Run:
+    """Simulate a scene for what is wanted of it; ends the command where the run is interrupted."""
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.signals import interruptible
     from eventsim.simulation import simulate
 
-    chosen = chosen_scene(source, settings, seed)
-    if until is None and events is None and chosen.until is None and chosen.events is None:
-        raise click.UsageError(
-            f"nothing says when to stop {source}: give --until T or --events N, or a key until or events in the scene"
-        )
+    demand_stop(scene, asked, until, events)
     with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
-        run = simulate(chosen, until=until, events=events, log=True, progress=progress, interrupt=interrupt)
+        run = simulate(scene, until, events, progress=progress, interrupt=interrupt, **wanted)
     if run.stopped == "interrupted":
         say("interrupted", err=True)
         click.get_current_context().exit(INTERRUPTED)
     if run.reason is not None and not quiet:
         say(f"stopped early: {run.reason}", err=True)
-    log = run.log
-    assert log is not None
-    return log
+    return run
+
+
+def demand_stop(scene: Scene, asked: str, until: float | None, events: int | None) -> None:
+    """Raise click.UsageError where neither the command line nor the scene says when to stop."""
+    if until is events is None and scene.until is scene.events is None:
+        raise click.UsageError(
+            f"nothing says when to stop {asked}: give --until T or --events N, or a key until or events in the scene"
+        )
 
 
 def chosen_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene:

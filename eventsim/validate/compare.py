@@ -125,7 +125,7 @@ def compare(
             if run.stopped is not None:
                 left_out.append(f"{competitor.label} with dt = {dt:.3g} was stopped after {patience_s:g} s")
                 break
-            found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt, competitor.late)
+            found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt)
             lines.append(_line(truth, competitor.label, dt, run, found, checks))
     orders = {
         competitor.label: fitted_order(

@@ -6,49 +6,40 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from eventsim.engines import STEPPED
-from eventsim.engines.stepped import (
-    ChipmunkOptions,
-    FixedStepOptions,
-    FramesOptions,
-    PenaltyOptions,
-    StepOptions,
-)
+from eventsim.engines.stepped import FixedStepOptions, FramesOptions, StepOptions
 from eventsim.errors import EventsimError
 from eventsim.scene.stage import Stage
-
-PENALTY_LATE = 31.0
-"""Steps: a spring reports the end of a contact, which lasts 20 steps, with a wall or an immovable disk 20 sqrt 2."""
 
 
 @dataclass(frozen=True, slots=True)
 class Competitor:
-    """A stepped engine with options of its own: what it is called, and what that means in a few words.
-
-    late: steps by which its rows may come after the contact.
-    """
+    """A stepped engine with options of its own, and what it is called."""
 
     label: str
     engine: str
-    words: str
     options: StepOptions
-    late: float = 2.0
 
     def at(self, dt: float) -> StepOptions:
         """The options of a run with step dt."""
         return replace(self.options, dt=dt)
 
 
-COMPETITORS = {
-    competitor.label: competitor
-    for competitor in (
-        Competitor("frames", "frames", "per frame; pairs leave its memory when apart", FramesOptions(memory="apart")),
-        Competitor("frames-forget", "frames", "per frame; memory emptied each frame", FramesOptions(memory="frame")),
-        Competitor("stepped", "stepped", "fixed step, overlaps resolved after it", FixedStepOptions()),
-        Competitor("stepped-located", "stepped", "fixed step, impact located within it", FixedStepOptions(locate=True)),
-        Competitor("penalty", "penalty", "springs, 20 steps a contact", PenaltyOptions(), late=PENALTY_LATE),
-        Competitor("pymunk", "pymunk", "the Chipmunk engine", ChipmunkOptions()),
-    )
+def _variants(engine: str) -> list[Competitor]:
+    """An engine with its usual options, and with others that are worth a name."""
+    options = STEPPED[engine].options()
+    assert isinstance(options, StepOptions)
+    others = [Competitor(label, name, told) for label, (name, told) in VARIANTS.items() if name == engine]
+    return [Competitor(engine, engine, options), *others]
+
+
+VARIANTS = {
+    "frames-forget": ("frames", FramesOptions(memory="frame")),
+    "stepped-located": ("stepped", FixedStepOptions(locate=True)),
 }
+"""label -> (engine, options)."""
+
+COMPETITORS = {one.label: one for engine in STEPPED for one in _variants(engine)}
+"""label -> competitor: all stepped engines, a new one too."""
 
 
 def chosen_competitors(labels: Sequence[str]) -> list[Competitor]:

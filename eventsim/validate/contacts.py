@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventsim.engines import Engine
-from eventsim.engines.options import Options
+from eventsim.engines.stepped import StepOptions
 from eventsim.record.events import Kind, Rows
 from eventsim.validate.follow import follow
 from eventsim.validate.truth import Truth, contacts_of, restarted
@@ -23,9 +23,6 @@ RESTARTS = 12
 
 STRETCH = 0.5
 """Mean free times that it is followed for."""
-
-LATE = 2.0
-"""Steps by which a contact may be reported late: it counts although it falls just behind the end of a stretch."""
 
 FEW_STEPS = 3
 """Steps that a stretch has at least."""
@@ -59,11 +56,14 @@ class Census:
         return float(np.degrees(np.mean(self.angles))) if self.angles else float("nan")
 
 
-def census(truth: Truth, engine: Engine, options: Options, dt: float, late_steps: float = LATE) -> Census:
-    """Set an engine on exact states of the run and compare what it finds ahead; rows of the truth are the exact contacts."""
+def census(truth: Truth, engine: Engine, options: StepOptions, dt: float) -> Census:
+    """Set an engine on exact states of the run and compare what it finds ahead; rows of the truth are the exact contacts.
+
+    A contact that is reported late counts although it falls just behind the end of a stretch.
+    """
     total = Census()
     stretch = max(STRETCH * truth.mean_free_time, FEW_STEPS * dt)
-    late = late_steps * dt
+    late = options.late * dt
     exact = contacts_of(truth.run.rows)
     last = float(truth.times[-1])
     for place in _spread(len(truth.times), RESTARTS):

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from eventsim.engines.options import Options, option
 
+LEAST_BITS = 64
+"""Fewer prove next to nothing."""
+
 FIRST_BITS, MOST_BITS = 1024, 2**17
 """The precision of the first attempt; one beyond which no attempt is made."""
 

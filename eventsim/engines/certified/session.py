@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventsim.engines.base import Motion, Session, Snapshot, Stop
-from eventsim.engines.certified import CertifiedOptions
+from eventsim.engines.certified import LEAST_BITS, CertifiedOptions
 from eventsim.engines.certified.ball import Undecided, ball, traced, working_precision
 from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
@@ -54,6 +54,8 @@ class CertifiedSession(Session):
         # A disk at rest and one that falls would meet at a root of a quartic; without rest, a run ends with the bounces.
         super().__init__(stage if stage.n == 1 else replace(stage, supports=None))
         options = options or CertifiedOptions()
+        if not options.bits >= LEAST_BITS:
+            raise EventsimError(f"certified: bits = {options.bits!r}: must be at least {LEAST_BITS}")
         self.attempts: list[Attempt] = []
         self._keep_rows = keep_rows
         self._first_bits, self._most_bits = options.bits, max(options.bits, options.most_bits)

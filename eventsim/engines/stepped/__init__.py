@@ -11,7 +11,7 @@ All keep the contract of `engines.base`. They are what event-driven runs are val
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from eventsim.engines.options import Options, option
 
@@ -21,7 +21,10 @@ class StepOptions(Options):
     """What all stepped engines can be told.
 
     dt: the step, time; left out, a twentieth of the time in which a typical disk flies its radius.
+    late: steps by which rows may come after the contact.
     """
+
+    late: ClassVar[float] = 2.0
 
     dt: float | None = option(None, "a time")
 
@@ -51,7 +54,10 @@ class PenaltyOptions(StepOptions):
     """What `penalty` can be told.
 
     stiffness: of the springs, force / length; left out: from the step.
+    late: a spring reports the end of a contact, which lasts 20 steps, with a wall or an immovable disk 20 sqrt 2.
     """
+
+    late: ClassVar[float] = 31.0
 
     stiffness: float | None = option(None, "a number, force / length")
 

@@ -39,6 +39,10 @@ class ChipmunkSession(SteppedSession):
 
     def __init__(self, stage: Stage, keep_rows: bool = True, options: ChipmunkOptions | None = None) -> None:
         options = options or ChipmunkOptions()
+        if not options.iterations >= 1:
+            raise EventsimError(f"pymunk: iterations = {options.iterations!r}: must be at least 1")
+        if options.slop is not None and not 0.0 <= options.slop < math.inf:
+            raise EventsimError(f"pymunk: slop = {options.slop!r}: must be finite and at least 0")
         _demand_known(stage)
         super().__init__(stage, keep_rows, options.dt)
         space = self._space = pymunk.Space()

@@ -1,7 +1,7 @@
 """Log files: the format that a suffix names, its streaming writer and its readers.
 
 A format is a module with a sink and two readers, of a whole log and of one that grows as NAME.part.  They give the provenance
-and blocks of rows; a log is made of these in `record.log`.  pyarrow is imported only when a parquet file is written or read.
+and blocks of rows; a log is made of these in `replay.log`.  pyarrow is imported only when a parquet file is written or read.
 """
 
 from __future__ import annotations

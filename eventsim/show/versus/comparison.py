@@ -58,7 +58,8 @@ def _panel(
     """One measured number against the step, a curve for each engine; a panel without a number above 0 is not logarithmic."""
     for name in dict.fromkeys(line.label for line in comparison.lines):
         lines = [line for line in comparison.lines if line.label == name]
-        axes.plot([line.step for line in lines], [value(line) for line in lines], label=NAMES[name], **look(name).drawn(5.5))
+        steps, values = [line.step for line in lines], [value(line) for line in lines]
+        axes.plot(steps, values, label=NAMES.get(name, name), **look(name).drawn(5.5))
     scale_steps(axes, comparison)
     if log and any(value(line) > 0.0 for line in comparison.lines):
         axes.set_yscale("log", nonpositive="mask")

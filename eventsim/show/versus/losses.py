@@ -54,7 +54,7 @@ def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) ->
     for name in dict.fromkeys(line.label for line in comparison.lines):
         lines = [line for line in comparison.lines if line.label == name]
         style = look(name).drawn(5.5)
-        axes.plot([line.step for line in lines], [value(line) for line in lines], lw=1.3, label=NAMES[name], **style)
+        axes.plot([line.step for line in lines], [value(line) for line in lines], lw=1.3, label=NAMES.get(name, name), **style)
     scale_steps(axes, comparison)
     axes.set_yscale("log")
 

@@ -105,7 +105,7 @@ def draw_head(axes: Axes, chart: Chart, lines: list[tuple[str, str]], height: fl
         axes.text(0.0, y, question, fontsize=11, weight="bold", **above)
         axes.text(ANSWERS_AT, y, text, fontsize=11, **above)
     for name in present(chart):
-        axes.plot([], [], label=NAMES[name], **look(name).drawn(8))
+        axes.plot([], [], label=NAMES.get(name, name), **look(name).drawn(8))
     axes.legend(loc="lower left", ncols=COLUMNS, frameon=False, fontsize=10.5, borderaxespad=0.0, columnspacing=2.0)
 
 

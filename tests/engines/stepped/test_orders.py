@@ -5,6 +5,7 @@ import pytest
 
 import eventsim as es
 from eventsim.engines import STEPPED
+from eventsim.engines.stepped import ChipmunkOptions
 from eventsim.measure.theory import compressibility_factor
 from eventsim.scene.stage import stage_of
 from eventsim.validate.averages import kinetic_energy, virial_pressure
@@ -107,7 +108,7 @@ def test_chipmunk_misses_a_sixth_of_the_pressure():
     scene = es.gallery("gas", n=100, packing_fraction=0.3)
     stage, until = stage_of(scene), 4.0
     assert np.mean(stage.vx**2 + stage.vy**2) == pytest.approx(2.0)
-    run = follow(STEPPED["pymunk"].open(stage, dt=1.0 / 60.0), np.linspace(0.0, until, 61)[1:].tolist())
+    run = follow(STEPPED["pymunk"].open(stage, options=ChipmunkOptions(dt=1.0 / 60.0)), np.linspace(0.0, until, 61)[1:].tolist())
     energy = float(np.mean([kinetic_energy(stage, velocity) for velocity in run.velocity]))
     z = virial_pressure(stage, run.rows, energy, until)
     assert z / compressibility_factor(0.3) - 1.0 == pytest.approx(-0.17, abs=0.03)
