@@ -67,6 +67,8 @@ def command(
                                it stopped before (null: none)
       float64_stopped, float64_reason   why it did (collapse, digits, ...); null where it did not
       agreed                   events that float64 has in the same order
+      surplus                  events that float64 has beyond the last true one
+      time_deviation           its largest error of a time at the agreed contacts
       deviation                its largest error of a coordinate at these contacts, and
       deviation_share          the same as a part of the scene's largest length
       velocity_deviation       its largest error of a component of a velocity after them, and
@@ -136,6 +138,8 @@ def _data(asked: str, proof: Proof, log: Path | None) -> dict[str, object]:
         "float64_stopped": float64.stopped,
         "float64_reason": float64.reason,
         "agreed": float64.agreed,
+        "surplus": float64.surplus,
+        "time_deviation": float64.time_deviation,
         "deviation": float64.deviation,
         "deviation_share": float64.deviation_share,
         "velocity_deviation": float64.velocity_deviation,
@@ -186,7 +190,8 @@ def _float64(proof: Proof) -> str:
 
     float64 = proof.float64
     if float64.difference is None:
-        return f"has {plural(float64.agreed, 'event')} in the same order"
+        extra = f", and then {plural(float64.surplus, 'event')} that there are not" if float64.surplus else ""
+        return f"has {plural(float64.agreed, 'event')} in the same order{extra}"
     assert proof.difference_time is not None
     place = f"event {float64.difference}, t = {short(proof.difference_time)}"
     if float64.stopped is None:
@@ -197,12 +202,17 @@ def _float64(proof: Proof) -> str:
 
 def _errors(float64: Rounded) -> str:
     """How far float64 is off where it has the same contacts."""
-    if float64.deviation == float64.velocity_deviation == 0.0:
+    if float64.deviation == float64.velocity_deviation == float64.time_deviation == 0.0:
         return "none at these contacts: float64 is right to the last bit"
     places = f"{float64.deviation:.1e} in a coordinate ({float64.deviation_share:.1e} of the largest length)"
     velocities = f"{float64.velocity_deviation:.1e} in a velocity ({float64.velocity_deviation_share:.1e} of the fastest)"
-    parts = [text for error, text in ((float64.deviation, places), (float64.velocity_deviation, velocities)) if error]
-    return f"of float64 at these contacts: up to {' and '.join(parts)}"
+    times = f"{float64.time_deviation:.1e} in a time"
+    told = (
+        (float64.deviation, places),
+        (float64.velocity_deviation, velocities),
+        (float64.time_deviation, times),
+    )
+    return f"of float64 at these contacts: up to {', '.join(text for error, text in told if error)}"
 
 
 def _within(error: float, sign: str) -> str:

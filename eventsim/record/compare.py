@@ -21,11 +21,13 @@ class Agreement(NamedTuple):
     """Which rows of two logs are the same contact: row pairs[k, 0] of the one is row pairs[k, 1] of the other, (K, 2).
 
     difference: the first row of the one that is not what happens next in the other; None where no difference was seen, be
-    it that one of the logs ended.
+    it that one of the logs ended.  missing, surplus: rows of the one, and of the other, that have no partner.
     """
 
     pairs: NDArray[np.int64]
     difference: int | None
+    missing: int
+    surplus: int
 
 
 class Comparison:
@@ -64,9 +66,17 @@ class Comparison:
             else:
                 break
 
+    def end(self) -> None:
+        """Both logs are complete: the first row that only one of them has is a difference, be it behind the last of the first."""
+        if self.difference is None and (self._waiting[0] or self._rows[1] > len(self.pairs)):
+            mine = self._waiting[0]
+            self.difference = mine[0][0] if mine else self._rows[0]
+
     def agreement(self) -> Agreement:
         """What has been found so far."""
-        return Agreement(np.array(self.pairs, np.int64).reshape(-1, 2), self.difference)
+        found = len(self.pairs)
+        pairs = np.array(self.pairs, np.int64).reshape(-1, 2)
+        return Agreement(pairs, self.difference, self._rows[0] - found, self._rows[1] - found)
 
 
 def agreement(one: Rows, other: Rows) -> Agreement:
@@ -83,6 +93,14 @@ def deviations(
     mine, theirs = one[pairs[:, 0]], other[pairs[:, 1]]
     largest: Floats = np.fmax.reduce([np.abs(mine[name] - theirs[name]) for name in columns])
     return largest
+
+
+def time_differences(one: Rows, other: Rows, pairs: NDArray[np.int64], epoch_length: float) -> Floats:
+    """How far apart in time rows are that are the same contact, one a pair; time."""
+    mine, theirs = one[pairs[:, 0]], other[pairs[:, 1]]
+    epochs = (mine["epoch"] - theirs["epoch"]) * epoch_length
+    apart: Floats = np.abs(epochs + (mine["remainder"] - theirs["remainder"]))
+    return apart
 
 
 def _contacts(rows: Rows) -> list[Contact]:

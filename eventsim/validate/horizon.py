@@ -32,8 +32,8 @@ FARTHEST = 400
 class Horizon:
     """Where float64 stops being the true trajectory.
 
-    event, time: of the first row that differs in a shadow (time on the scene's clock); None where none differs in the
-    `events` rows that were compared, up to the time `until`.
+    event, time: of the first row that differs in a shadow, or that only one of both has (time on the scene's clock); None where
+    none differs in the `events` rows that were compared, up to the time `until`.
     """
 
     event: int | None
@@ -63,12 +63,15 @@ def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
         done += len(rows)
         seen.append(rows["time"])
         for shadow, comparison in zip(shadows, comparisons, strict=True):
-            _advance(shadow, stop.until, target)
+            ended = _advance(shadow, stop.until, target)
             comparison.add(rows, shadow.take_rows())
+            if stopped not in (None, "events") and ended not in (None, "events"):
+                comparison.end()
         found = [comparison.difference for comparison in comparisons if comparison.difference is not None]
         if found:
-            first = min(found)
-            return Horizon(first, float(np.concatenate(seen)[first]), done, float(rows["time"][-1]))
+            first, times = min(found), np.concatenate(seen)
+            at = float(times[min(first, len(times) - 1)]) if len(times) else time  # a surplus row comes behind the last one
+            return Horizon(first, at, done, float(times[-1]) if len(times) else time)
         time = float(rows["time"][-1]) if len(rows) else time
     return Horizon(None, None, done, time)
 

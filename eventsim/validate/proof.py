@@ -14,7 +14,7 @@ from eventsim.engines.certified.session import Attempt, CertifiedSession
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.formulas.clock import clock_time
 from eventsim.formulas.expansion import two_sum
-from eventsim.record.compare import VELOCITIES, agreement, deviations
+from eventsim.record.compare import VELOCITIES, agreement, deviations, time_differences
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.replay.past import PastRun
 from eventsim.runner.loop import run_session
@@ -67,7 +67,7 @@ def prove(
     wanted = RunOptions(log=log, progress=progress, on_event=blocks.append, command=command, interrupt=interrupt)
     run = PastRun.of(run_session(session, ENGINES["certified"], scene, stop, wanted))
     certified = np.concatenate(blocks)
-    float64 = rounded(stage, scene.domain.size, certified, stop.until)
+    float64 = rounded(stage, scene.domain.size, certified, stop.until, run.stopped in ("quiet", "until"))
     time = None
     if float64.difference is not None:
         row = certified[float64.difference]
@@ -105,30 +105,39 @@ class Rounded:
     Attributes:
         difference: the first proven event that float64 has otherwise, or has not since it stopped; None where there is none.
         agreed: events that it has in the same order.
+        surplus: events of float64 behind the last proven one, where the proof came to its end: the scene has no further ones.
         stopped, reason: why it stopped before that event, and the sentence about it; None where it went on.
         deviation: largest distance of a coordinate at an agreed contact from the certified one, length.
         deviation_share: the same as a part of the longer side of the domain; on the open plane, of the extent of all places.
         velocity_deviation: largest distance of a component of a velocity after an agreed contact, length / time.
         velocity_deviation_share: the same as a part of the fastest speed.
+        time_deviation: largest difference of the times of an agreed contact, time.
     """
 
     difference: int | None
     agreed: int
+    surplus: int
     stopped: str | None
     reason: str | None
     deviation: float
     deviation_share: float
     velocity_deviation: float
     velocity_deviation_share: float
+    time_deviation: float
 
 
-def rounded(stage: Stage, size: tuple[float, float] | None, certified: Rows, until: float | None) -> Rounded:
-    """Simulate a scene in float64 and compare it with its certified rows; size: of its domain, None on the open plane."""
+def rounded(
+    stage: Stage, size: tuple[float, float] | None, certified: Rows, until: float | None, ended: bool
+) -> Rounded:
+    """Simulate a scene in float64 and compare it with its certified rows.
+
+    size: of its domain, None on the open plane.  ended: whether the proof came to the end of the scene, or to its stop time.
+    """
     session = ReferenceSession(stage)
     stopped = session.advance(Stop(until, len(certified) + AHEAD * stage.n), 1 << 62)
     assert stopped is not None
     plain = session.take_rows()
-    pairs, difference = agreement(certified, plain)
+    pairs, difference, _, surplus = agreement(certified, plain)
     missing = difference is None and len(pairs) < len(certified) and stopped != "events"
     early, reason = diagnosed(session, stopped, plain) if missing else (None, None)
     places = float(deviations(certified, plain, pairs).max(initial=0.0))
@@ -137,12 +146,14 @@ def rounded(stage: Stage, size: tuple[float, float] | None, certified: Rows, unt
     return Rounded(
         difference=len(pairs) if missing else difference,
         agreed=len(pairs),
+        surplus=surplus if ended and difference is None else 0,
         stopped=early,
         reason=reason,
         deviation=places,
         deviation_share=_share(places, length),
         velocity_deviation=velocities,
         velocity_deviation_share=_share(velocities, _fastest(stage, certified, plain)),
+        time_deviation=float(time_differences(certified, plain, pairs, stage.epoch_length).max(initial=0.0)),
     )
 
 

@@ -37,6 +37,16 @@ def test_the_end_of_a_log_is_no_difference():
     assert agreement(rows((0, 1)), rows()).difference is None
 
 
+def test_rows_that_one_of_two_ended_logs_lacks_are_a_difference():
+    for one, other, first in ((((0, 1), (1, 2)), ((0, 1),), 1), (((0, 1),), ((0, 1), (1, 2)), 1), (((0, 1),), ((0, 1),), None)):
+        comparison = Comparison()
+        comparison.add(rows(*one), rows(*other))
+        comparison.end()
+        assert comparison.difference == first
+    found = agreement(rows((0, 1), (1, 2)), rows((0, 1)))
+    assert (found.missing, found.surplus) == (1, 0)
+
+
 def test_blocks_make_no_difference():
     one, other = rows((0, 1), (2, 3), (1, 2), (0, 3)), rows((2, 3), (0, 1), (1, 2), (0, 2))
     comparison = Comparison()
