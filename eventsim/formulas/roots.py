@@ -5,11 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple, TypeAlias
 
-NEARLY = 1.0 + 2.0**-50
-"""Contacts within a factor of this, 4 to 8 units in the last place of their times, may be in the other order: each time is right
-to about two."""
-
-
 Line: TypeAlias = tuple[Fraction, Fraction, Fraction]
 """A coordinate as a polynomial in time: its value at time 0, its rate there, half its acceleration."""
 

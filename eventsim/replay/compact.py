@@ -10,6 +10,7 @@ from typing import NamedTuple, TypeAlias
 
 from eventsim.errors import LogError
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
+from eventsim.formulas.doubt import latest_tie, screen_in
 from eventsim.formulas.impulse import (
     flat_update,
     mass_fractions,
@@ -19,7 +20,6 @@ from eventsim.formulas.impulse import (
     wall_update,
 )
 from eventsim.formulas.rest import STRUCK, SUPPORTED, resting_place
-from eventsim.formulas.roots import NEARLY
 from eventsim.formulas.simultaneous import JointContact, resolve_together
 from eventsim.formulas.walls.face import slope
 from eventsim.record.events import Column, Kind, Rows
@@ -208,7 +208,9 @@ class Expansion:
     def _together(self, cluster: list[Entry]) -> list[Contact]:
         """Return the contacts, at exactly one time, of the pairs and walls that the rows of a cluster name."""
         t = cluster[0].remainder
-        span = t * (2.0 - NEARLY), t * NEARLY
+        length = self.windows.length[cluster[0].window]
+        latest = latest_tie(t, screen_in(self.stage.tie_screen, length, self.stage.epoch_length))
+        span = t - (latest - t), latest
         wanted = Counter((entry.a, entry.b, entry.wall) for entry in cluster)
         near: list[Contact] = []
         for a, b, wall in sorted(wanted):

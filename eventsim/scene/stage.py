@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eventsim.formulas.doubt import tie_screen
 from eventsim.formulas.laws import Law, law_of
 from eventsim.formulas.low_place import Low
 from eventsim.formulas.motion import periods
@@ -23,7 +24,7 @@ from eventsim.scene.domain import Open
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of
-from eventsim.scene.walls import feature_names
+from eventsim.scene.walls import feature_names, parts_of
 
 WIDE = 2.0**16
 """Diameters of the largest disk across a domain from which on places carry their low parts: a coordinate there has lost 16 of the
@@ -72,6 +73,7 @@ class Stage:
         start_time: what the scene's clock shows at remainder 0 of epoch 0.
         epoch_length: time, a power of two.
         window_cap: the largest exponent of a window.
+        tie_screen: the span of time within which contacts that share a disk are ordered exactly, in the first window.
     """
 
     n: int
@@ -98,6 +100,7 @@ class Stage:
     start_time: float
     epoch_length: float
     window_cap: int
+    tie_screen: float
 
     @property
     def periodic(self) -> bool:
@@ -188,7 +191,25 @@ def stage_of(scene: Scene) -> Stage:
         start_time=scene.start_time,
         epoch_length=epoch_length,
         window_cap=longest_periodic if periodic and (moves or scene.gravity) else LONGEST_WINDOW,
+        tie_screen=tie_screen(_extent(scene, x, y, corner, features), _slowest(vx, vy), epoch_length / len(disks)),
     )
+
+
+def _extent(scene: Scene, x: Floats, y: Floats, corner: Point, features: tuple[Feature, ...]) -> float:
+    """The sum of the largest coordinates that gaps are differences of; length."""
+    largest = []
+    for axis, places in ((0, x), (1, y)):
+        ends = [(one.shape.x, one.shape.y)[axis] for one in features]
+        largest.append(max(float(np.abs(places).max()), *map(abs, ends)))
+    size = scene.domain.size
+    walls = max((part.scale(corner) for part in parts_of(scene.walls)), default=0.0)
+    return sum(largest) + walls + (0.0 if size is None else sum(size)) + float(scene.disks.radius.max())
+
+
+def _slowest(vx: Floats, vy: Floats) -> float:
+    """The lowest speed of a disk that moves, 0 where none does; of its components the larger."""
+    speeds = np.maximum(np.abs(vx), np.abs(vy))
+    return float(speeds[speeds > 0.0].min(initial=math.inf)) if np.any(speeds > 0.0) else 0.0
 
 
 def _corner(scene: Scene) -> Point:

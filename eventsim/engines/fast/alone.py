@@ -113,11 +113,11 @@ def _towards(m, rules, i, now, floor, to_cell, to_wrap, size, side, anchor, v0, 
     inside, x, v, edge, code_there = to_cell
     if inside:
         new = now + crossing_delay(x, v, g, edge - side * slack(size, rules.gx), side)
-        return earlier(time, code, shared, new, code_there)
+        return earlier(time, code, shared, new, code_there, rules.tie_screen)
     border, length, wall, wrap_code, second, axis = to_wrap
     new, what = _border_event(m, rules, i, anchor, v0, g, border, side, length, wall, wrap_code, second, axis, m.supports)
     if not new < floor:
-        time, code, shared = earlier(time, code, shared, new, what)
+        time, code, shared = earlier(time, code, shared, new, what, rules.tie_screen)
     return time, code, shared
 
 
@@ -155,7 +155,7 @@ def earliest_at_shapes(m, rules, i, floor, time, code, shared, features):
         new, side, _ = shape_time(m, rules, i, k, m.supports)
         if new >= floor:
             wall = WALL - 2 * (rules.first_feature + k) - (1 if side < 0 else 0)
-            time, code, shared = earlier(time, code, shared, new, wall)
+            time, code, shared = earlier(time, code, shared, new, wall, rules.tie_screen)
     return time, code, shared
 
 

@@ -7,7 +7,8 @@ the list of the present day.
 from __future__ import annotations
 
 from eventsim.engines.fast.cells import depth_of, slot_of
-from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.earlier import is_contact
 from eventsim.engines.fast.layout import (
     COLUMN,
     COUNT,
@@ -25,7 +26,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.levels import home_of
 from eventsim.engines.fast.memory import prefetch, real, store, word
-from eventsim.formulas.roots import NEARLY
+from eventsim.formulas.doubt import latest_tie, may_tie
 
 NO_DAY = 1 << 62
 """A deadline that does not come."""
@@ -120,8 +121,8 @@ def empty_room(m, grid, day, look_ahead):
 
 
 @inline
-def first(m, grid, day, limit, deadline):
-    """(disk, day, others, deadline): the earliest event, which stays in the calendar, and how many others are nearly at its time.
+def first(m, grid, day, limit, deadline, screen):
+    """(disk, day, others, deadline): the earliest event, which stays in the calendar, and how many others are within the screen.
 
     They are counted from event to event, so they may seem more than they are, but never none.  The end of the day counts as
     an event: what follows on the next day may be near.
@@ -135,7 +136,7 @@ def first(m, grid, day, limit, deadline):
         while i != grid.n:
             due = real(m.disks, i * REALS + DUE)
             sooner = due < time
-            near = (due <= time * NEARLY) & (time <= due * NEARLY)
+            near = may_tie(due, time, screen)
             others = (0 if sooner & ~near else others) + near
             earliest = i if sooner else earliest
             time = due if sooner else time
@@ -181,19 +182,41 @@ def is_stale(m, i):
     return word(m.disks, i * WORDS + PARTNER_COUNT) & (COUNTS - 1) != word(m.disks, j * WORDS + COUNT)
 
 
-@inline
-def unsettled(m, grid, i, day):
-    """What comes before the contact of disk i: a stale event nearly at its time, a wrap or a crossing exactly at it; or n."""
+@part
+def unsettled(m, grid, i, day, screen):
+    """What comes before the contact of disk i: a stale event within the screen, a wrap or crossing exactly at its time; or n."""
     time = real(m.disks, i * REALS + DUE)
+    latest = latest_tie(time, screen)
     k = word(m.disks, bucket(grid, day))
     while k != grid.n:
         due = real(m.disks, k * REALS + DUE)
-        if due <= time * NEARLY:
+        if due <= latest:
             code = word(m.disks, k * WORDS + PARTNER)
             if is_stale(m, k) or (due == time and NOTHING <= code < 0):
                 return k
         k = word(m.disks, k * WORDS + NEXT)
     return k
+
+
+@part
+def is_tied(m, grid, i, day, screen):
+    """Whether the contact of disk i has to be ordered exactly.
+
+    So it is where a contact within the screen shares a disk with it, or may do so, or has exactly its time.
+    """
+    time, j = real(m.disks, i * REALS + DUE), word(m.disks, i * WORDS + PARTNER)
+    for later in range(2):  # what follows on the next day may be within the screen
+        k = word(m.disks, bucket(grid, day + later))
+        while k != grid.n:
+            due, code = real(m.disks, k * REALS + DUE), word(m.disks, k * WORDS + PARTNER)
+            if k != i and is_contact(code) and may_tie(due, time, screen):
+                mutual = k == j and code == i and due == time
+                shares = code == i or (j >= 0 and (k == j or code == j))
+                flagged = word(m.disks, k * WORDS + PARTNER_COUNT) & COUNTS != 0
+                if not mutual and (shares or flagged or due == time):
+                    return True
+            k = word(m.disks, k * WORDS + NEXT)
+    return False
 
 
 @inline

@@ -25,6 +25,7 @@ from eventsim.formulas import (
     contact,
     crossing,
     digits,
+    doubt,
     expansion,
     impulse,
     low_place,
@@ -213,7 +214,7 @@ def _register(module: ModuleType, **options: Any) -> None:
             register_jitable(**options)(function)
 
 
-for _module in (motion, contact, impulse):
+for _module in (motion, contact, doubt, impulse):
     _register(_module, forceinline=True, error_model="numpy")
 _shapes = [sys.modules[shape.__module__] for shape in SHAPES]
 for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, rest, *_shapes):

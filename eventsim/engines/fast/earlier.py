@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.compiled import inline
 from eventsim.engines.fast.layout import WALL
-from eventsim.formulas.roots import NEARLY
+from eventsim.formulas.doubt import latest_tie
 
 
 @inline
@@ -14,13 +14,13 @@ def is_contact(code):
 
 
 @inline
-def earlier(time, code, shared, new_time, new_code):
+def earlier(time, code, shared, new_time, new_code, screen):
     """The earlier of two events; at one time wraps and crossings come first, and of these the one that is known already.
 
-    shared: whether another contact may be nearly at the time of the earlier one, so that it is not for kernels.
+    shared: whether another contact may come before the earlier one or with it, within the screen, so that it is not for kernels.
     """
     if new_time < time:
-        return new_time, new_code, 1 if time <= new_time * NEARLY else 0
+        return new_time, new_code, 1 if time <= latest_tie(new_time, screen) else 0
     if new_time == time and is_contact(code) and not is_contact(new_code):
         return new_time, new_code, 1
-    return time, code, 1 if new_time <= time * NEARLY else shared
+    return time, code, 1 if new_time <= latest_tie(time, screen) else shared

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pulls
 from eventsim.engines.fast.alone import shape_time, wall_delay
-from eventsim.engines.fast.calendar import bucket
+from eventsim.engines.fast.calendar import bucket, day_of
 from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline, kernel
 from eventsim.engines.fast.layout import (
@@ -41,7 +41,8 @@ def contacts_between(arrays, grid, rules, counts, first, latest, found, times):
     m = pointers(arrays)
     span = first, latest
     count = 0
-    for day in range(counts[DAY], counts[DAY] + 2):  # the next one may have begun in between
+    last = min(day_of(grid, latest, counts[DAY]) + 1, counts[DAY] + grid.days - 1)  # one more, since a day is rounded
+    for day in range(counts[DAY], last + 1):
         i = word(m.disks, bucket(grid, day))
         while i != grid.n:
             if first <= real(m.disks, i * REALS + DUE) <= latest:

@@ -15,6 +15,7 @@ from numba.extending import intrinsic
 from eventsim.engines.fast.layout import REALS
 from eventsim.engines.fast.memory import F64, I8, I32, I64, V8, call, f64, i64, place
 from eventsim.formulas.contact import DIGITS_LOST, NEAR, SMALLEST
+from eventsim.formulas.doubt import CLOCK_BITS
 
 I16, I1 = ir.IntType(16), ir.IntType(1)
 V16, M16 = ir.VectorType(I32, 16), ir.VectorType(I1, 16)
@@ -82,10 +83,10 @@ def _transposed(builder, rows, odd):
 
 @intrinsic
 def contact_of_eight(
-    typing, disks, near, first, x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y, edge, gx, gy
+    typing, disks, near, first, x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y, screen, edge, gx, gy
 ):
-    """(time, disk, many, doubted): the earliest contact of a disk with near[first:first+8], whether several share that time,
-    and a bit for each pair that the plain formula cannot tell about (it does not count then).
+    """(time, disk, many, doubted): the earliest contact of a disk with near[first:first+8], whether several are within
+    the screen of it, and a bit for each pair that the plain formula cannot tell about (it does not count then).
 
     x, y, vx, vy, t, r: the flight of the disk and its radius.  Times before `floor` do not count; inf if there is none.
     edge: 1.0 if the pairs may be across a periodic boundary (then x_now, y_now, length_x, length_y are used; length inf: none
@@ -116,7 +117,7 @@ def contact_of_eight(
             return add(v, mul(g, lag)) if falls else v
 
         x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y = map(every, arguments[3:15])
-        gx, gy = map(every, arguments[16:18]) if falls else (None, None)
+        gx, gy = map(every, arguments[17:19]) if falls else (None, None)
         rows = []
         for lane in range(8):
             disk = b.sext(b.load(b.gep(ids, [I64(lane)])), I64)
@@ -167,9 +168,10 @@ def contact_of_eight(
         earliest = b.extract_element(smallest, I32(0))
         hits = b.bitcast(b.fcmp_ordered("==", times, every(earliest)), I8)
         lane = b.and_(b.zext(call(b, "llvm.cttz.i8", I8, hits, I1(0)), I64), I64(7))
-        rest = b.and_(hits, b.sub(hits, I8(1)))
-        many = b.zext(b.icmp_unsigned("!=", rest, I8(0)), I64)
+        latest = add(mul(constant(CLOCK_BITS), every(earliest)), every(arguments[15]))
+        close = b.bitcast(b.fcmp_ordered("<=", times, latest), I8)
+        many = b.zext(b.icmp_unsigned("!=", b.and_(close, b.sub(close, I8(1))), I8(0)), I64)
         disk = b.sext(b.load(b.gep(ids, [lane])), I64)
         return context.make_tuple(b, signature.return_type, [earliest, disk, many, b.zext(b.bitcast(doubted, I8), I64)])
 
-    return types.Tuple((f64, i64, i64, i64))(disks, near, i64, *[f64] * 12, edge, gx, gy), codegen
+    return types.Tuple((f64, i64, i64, i64))(disks, near, i64, *[f64] * 13, edge, gx, gy), codegen

@@ -90,6 +90,7 @@ class Rules(NamedTuple):
     wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
     disks or tracers.  features: number of wall shapes; shapes: of each of the kinds of `shapes` whether there is one;
     first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.  settles: flights can be as good as none.
+    tie_screen: see `formulas.doubt`, in the present window.
     """
 
     gx: object
@@ -111,6 +112,7 @@ class Rules(NamedTuple):
     instant: float
     at_once_limit: int
     settles: object
+    tie_screen: float
 
 
 class Grid(NamedTuple):

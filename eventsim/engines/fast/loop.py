@@ -10,6 +10,7 @@ from eventsim.engines.fast.calendar import (
     first,
     is_mutual,
     is_stale,
+    is_tied,
     push,
     push_later,
     take,
@@ -138,7 +139,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
         if events >= bound:
             status = STATUS_EVENTS if events >= target else STATUS_ROWS
             break
-        i, day, others, deadline = first(m, grid, day, limit, deadline)
+        i, day, others, deadline = first(m, grid, day, limit, deadline, rules.tie_screen)
         if i < 0:
             status = STATUS_LIMIT if i == -1 else STATUS_IDLE
             break
@@ -148,10 +149,11 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             break
         now = due
         if others > 0 and not (others == 1 and is_mutual(m, i)):
-            i = unsettled(m, grid, i, day)
-            if i == grid.n:
+            k = unsettled(m, grid, i, day, rules.tie_screen)
+            if k == grid.n and is_tied(m, grid, i, day, rules.tie_screen):
                 status = STATUS_TIE
                 break
+            i = i if k == grid.n else k
         steps += 1
         code = word(m.disks, i * WORDS + PARTNER)
         if code >= 0:

@@ -19,6 +19,7 @@ from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortes
 from eventsim.engines.fast.rules import features_of, rules_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.clock import next_window, window_length
+from eventsim.formulas.doubt import screen_in
 from eventsim.formulas.expansion import two_sum
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.scene.stage import Stage
@@ -104,11 +105,17 @@ class Machine:
         state.window = next_window(state.window, state.window_rows, state.n, state.window_cap)
         state.window_end = window_length(state.window, state.epoch_length)
         state.window_rows = 0
+        self.choose_screen()
         self.set_now(0.0)
         if self.grid.day_length < shortest_day(state.window_end):
             self._choose_days()
         schedule(self.arrays, self.grid, self.counts, 0.0)
         self._predict(0, state.n, 0.0)
+
+    def choose_screen(self) -> None:
+        """Set within which span contacts are ordered exactly, as it is in the present window."""
+        stage, length = self.stage, self.state.window_end
+        self.rules = self.rules._replace(tie_screen=screen_in(stage.tie_screen, length, stage.epoch_length))
 
     def choose_cells(self, motion: Motion) -> None:
         """Choose cells for the disks where they are, and predict all of them anew."""
@@ -136,6 +143,7 @@ class Machine:
 
     def predict_afresh(self) -> None:
         """Fill cells and calendar anew, with more slots as long as a cell is full."""
+        self.choose_screen()
         state, now = self.state, self.state.now
         self._remade = int(self.counts[layout.EVENTS]), state.epoch, now
         while True:

@@ -59,4 +59,4 @@ def _look(m, grid, rules, i, now, u, w, time, code, shared, levels):
     """The time to look for smaller disks again, if that is before the given event."""
     if levels is None:
         return time, code, shared
-    return earlier(time, code, shared, now + look_delay(m, grid, rules, i, u, w), LOOK)
+    return earlier(time, code, shared, now + look_delay(m, grid, rules, i, u, w), LOOK, rules.tie_screen)

@@ -40,6 +40,7 @@ def rules_of(stage: Stage) -> Rules:
         len(stage.boundaries),
         *instant_of(stage),
         1 if stage.settles else None,
+        stage.tie_screen,
     )
 
 

@@ -17,7 +17,7 @@ from eventsim.engines.reference.generation import Ties, components, disks_of, ro
 from eventsim.engines.reference.loop import endless, refused
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
-from eventsim.formulas.roots import NEARLY
+from eventsim.formulas.doubt import latest_tie
 from eventsim.formulas.simultaneous import SqueezedError
 
 
@@ -42,7 +42,7 @@ class Rulings:
         machine = self._machine
         state, now = machine.state, machine.state.now
         machine.flush()
-        near = self._contacts_until(now * NEARLY)
+        near = self._contacts_until(latest_tie(now, machine.rules.tie_screen))
         generation = self._ties.settle(near) if any(event.time == now for event in near) else []
         resolver = self._opened_resolver()
         waiting = [int(state.labels[i]) for i in self._find(due_at, machine.counts, now)[:, 0]]

@@ -28,8 +28,8 @@ from eventsim.engines.fast.levels import gather_near
 from eventsim.engines.fast.memory import either, real, store, word
 from eventsim.engines.fast.met import partner_just_met
 from eventsim.engines.fast.pairs import images, pair_is_due
+from eventsim.formulas.doubt import may_tie
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.roots import NEARLY
 
 
 @inline
@@ -53,7 +53,7 @@ def contacts_of_everyone(m, grid, rules, i, now, floor, x, y, time, code, shared
             for ky in range(-span_y, span_y + 1):
                 new = pair_is_due(m, rules, i, j, kx, ky)
                 if new >= floor:
-                    time, code, shared = earlier(time, code, shared, new, j)
+                    time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
     return time, code, shared
 
 
@@ -73,7 +73,7 @@ def _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared
                 kx, ky = images(m, rules, i, j, now, x, y)
             new = pair_is_due(m, rules, i, j, kx, ky)
             if new >= floor:
-                time, code, shared = earlier(time, code, shared, new, j)
+                time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
         start += width
     return time, code, shared
 
@@ -135,7 +135,7 @@ def _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, 
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
     periodic = rules.length_x is not None or rules.length_y is not None
-    flight = x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y
+    flight = x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, rules.tie_screen
     first = doubts = 0
     while True:
         if periodic and edge:
@@ -143,7 +143,7 @@ def _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, 
         else:
             new, j, many, doubted = contact_of_eight(m.disks, m.near, first, *flight, 0, rules.gx, rules.gy)
         sooner = new < time  # no branches: they could not be foreseen
-        also = (new <= time * NEARLY) & (time <= new * NEARLY)
+        also = may_tie(new, time, rules.tie_screen)
         shared = (many if sooner else shared) | also
         code = j if sooner else code
         time = new if sooner else time
@@ -172,7 +172,7 @@ def _contacts_of_list(m, rules, i, now, floor, x, y, edge, count, time, code, sh
             kx, ky = images(m, rules, i, j, now, x, y)
         new = pair_is_due(m, rules, i, j, kx, ky)
         if new >= floor:
-            time, code, shared = earlier(time, code, shared, new, j)
+            time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
     return time, code, shared
 
 

@@ -23,7 +23,7 @@ class Ties:
         self._moments = ExactTimes(stage, self._exact_flight)
 
     def settle(self, near: list[Event]) -> list[Event]:
-        """Of contacts within NEARLY of the earliest: those that are to be resolved in one instant, in the order of rows.
+        """Of contacts within the screen: those that are to be resolved in one instant, in the order of rows.
 
         Of each component whose earliest float time is the first of all: those that come first.
         """

@@ -23,7 +23,7 @@ from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
 from eventsim.engines.reference.wide import WidePredictor
 from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
-from eventsim.formulas.roots import NEARLY
+from eventsim.formulas.doubt import latest_tie, screen_in
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import Floats, Rows
 from eventsim.scene.stage import Stage
@@ -137,7 +137,7 @@ class ReferenceSession(Session):
         """Take out the contacts of one instant, the earliest one."""
         calendar = self.calendar
         first = calendar.pop()
-        latest = first.time * NEARLY
+        latest = latest_tie(first.time, self.tie_screen)
         second = calendar.first()
         if second is None or second.time > latest:
             return [first]
@@ -147,6 +147,11 @@ class ReferenceSession(Session):
         for event in generation:
             calendar.remove(event)
         return generation
+
+    @property
+    def tie_screen(self) -> float:
+        """The span of time within which contacts that share a disk are ordered exactly."""
+        return screen_in(self.stage.tie_screen, self.state.window_end, self.stage.epoch_length)
 
     def is_stale(self, event: Event) -> bool:
         """Whether a disk of the event has begun another flight since the prediction."""

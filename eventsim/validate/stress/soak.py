@@ -14,11 +14,12 @@ import numpy as np
 
 from eventsim.engines import engine_named
 from eventsim.errors import SceneError
-from eventsim.formulas.roots import NEARLY
+from eventsim.formulas.doubt import latest_tie
 from eventsim.runner.loop import run_scene
 from eventsim.runner.options import RunOptions, stop_of
 from eventsim.runner.outcome import Outcome
 from eventsim.scene import Box, Channel, Disks, Domain, Open, Periodic, Scene
+from eventsim.scene.stage import stage_of
 from eventsim.validate.stress.workers import Silence, answers
 
 EVENTS, UNTIL = 80, 50.0
@@ -150,7 +151,7 @@ def _fault(run: Outcome) -> str | None:
         return "a position or a velocity is not a number"
     # Contacts so near to each other are taken in their exact order, so a logged time may step back by so much.
     back, latest = float(np.max(-np.diff(time), initial=0.0)), float(np.max(time, initial=1.0))
-    if back > (NEARLY - 1.0) * latest + math.ulp(latest):
+    if back > latest_tie(latest, stage_of(run.scene).tie_screen) - latest + math.ulp(latest):
         return f"the clock steps back by {back:.2g}"
     if run.residuals.max_overlap > OVERLAP:
         return f"an overlap of {run.residuals.max_overlap:.2g} reaches at a contact"

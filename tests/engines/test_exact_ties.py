@@ -1,0 +1,48 @@
+"""Contacts at exactly one time, which share a disk, are seen as such wherever they fall on the clock."""
+
+import pytest
+
+import eventsim as es
+from tests.engines.exact_ties import is_cluster, two_partners, two_walls
+
+ENGINES = ["reference", "fast"]
+FEW, MANY = range(40), range(1500)
+
+
+def missed(make, seeds, engine):
+    """The seeds whose tie an engine does not see."""
+    found = []
+    for seed in seeds:
+        run = es.simulate(make(seed), events=2, engine=engine, log=True)
+        if not is_cluster(run):
+            found.append(seed)
+    return found
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("make", [two_partners, two_walls])
+@pytest.mark.parametrize("seeds", [FEW, pytest.param(MANY, marks=pytest.mark.slow)])
+def test_an_exact_tie_is_seen_wherever_it_falls_on_the_clock(make, seeds, engine):
+    if engine == "fast":
+        pytest.importorskip("numba")
+    assert missed(make, seeds, engine) == []
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_symmetric_disk_between_two_walls_goes_straight_back(engine):
+    """Mirror symmetric in the plane x = 3: the walls are met at one time, near the beginning of the clock."""
+    walls = [es.Segment((0.0, 0.7), (3.0, 0.0)), es.Segment((3.0, 0.0), (6.0, 0.7))]
+    disks = es.Disks([(3.0, 0.5636958593624257)], [(0.0, -1.0)], 0.5)
+    run = es.simulate(es.Scene(disks, es.Box((6.0, 8.0)), walls), until=1.0, engine=engine)
+    assert run.state.velocity.tolist() == [[0.0, 1.0]]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_that_meets_two_others_at_once_gives_to_both(engine):
+    """Moreau's law in rationals: v0 = (5247, 1056) / 15811."""
+    places = [(0.0, 0.0), (0.8865209077803513, 1.5), (1.0115209077803513, -1.0)]
+    disks = es.Disks(places, [(1.0, 0.0), (0.0, 0.0), (0.0, 0.0)], [0.5, 1.125, 0.75])
+    run = es.simulate(es.Scene(disks, es.Open()), events=2, engine=engine)
+    expected = [(5247 / 15811, 1056 / 15811), (0.22073240, 0.52975776), (0.44741003, -0.59654671)]
+    for velocity, true in zip(run.state.velocity.tolist(), expected, strict=True):
+        assert velocity == pytest.approx(true, abs=1e-8)  # as many digits as are given
