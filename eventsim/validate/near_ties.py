@@ -16,7 +16,6 @@ from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.formulas.clock import clock_time
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
-from eventsim.scene.surfaces import Surfaces
 
 LAST_BITS = 4.0
 """Contacts are close that are apart by no more than so many last bits of a coordinate and of the clock, taken as a time."""
@@ -55,7 +54,6 @@ class WatchfulSession(ReferenceSession):
 
     def __init__(self, stage: Stage) -> None:
         super().__init__(stage, keep_rows=False)
-        self._surfaces = Surfaces(stage, stage.radius.tolist())
         self.near_ties: list[NearTie] = []
 
     def _resolve_instant(self) -> str | None:
@@ -96,7 +94,7 @@ class WatchfulSession(ReferenceSession):
             self.near_ties.append(found)
 
     def _contact(self, event: Event) -> tuple[int, int | str]:
-        return event.a, event.b if event.b >= 0 else self.stage.wall_names[self._surfaces.number(-1 - event.b)]
+        return event.a, event.b if event.b >= 0 else self.stage.wall_names[self.stage.surfaces[-1 - event.b].wall]
 
 
 def _disks(event: Event) -> set[int]:
