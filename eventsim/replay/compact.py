@@ -126,12 +126,12 @@ class Expansion:
         place_a, place_b = one.place(t), other.place(t)
         dx, dy = self._contacts.apart(contact.image, place_a, place_b, one.low_place, other.low_place)
         shares, reduced = self._shares(a, b)
+        restitution = self._restitution(self.stage.law.pair, t, a, b)
         if self.stage.low_parts:
             speeds, masses = (one.vx, one.vy, other.vx, other.vy), (self._mass[a], self._mass[b])
-            ua, wa, ub, wb, *low, q = careful_pair_update(dx, dy, *speeds, *one.low, *other.low, *masses)
+            ua, wa, ub, wb, *low, q = careful_pair_update(dx, dy, *speeds, *one.low, *other.low, *masses, restitution)
             one.low, other.low = (low[0], low[1]), (low[2], low[3])
         else:
-            restitution = self._restitution(self.stage.law.pair, t, a, b)
             ua, wa, ub, wb, q = pair_update(dx, dy, *one.speed(t), *other.speed(t), *shares, restitution)
         self._begin(contact, a, t, place_a, (ua, wa))
         self._begin(contact, b, t, place_b, (ub, wb))
@@ -152,7 +152,7 @@ class Expansion:
         axis = self._contacts.boundary_axis(contact)
         if self.stage.low_parts:
             normal = self._contacts.normal(contact, place, disk.low_place)
-            u, w, *low, _ = careful_wall_update(*normal, u, w, *disk.low)
+            u, w, *low, _ = careful_wall_update(*normal, u, w, *disk.low, restitution)
             disk.low = low[0], low[1]
         elif axis is None:
             u, w, _ = wall_update(*self._contacts.normal(contact, place, disk.low_place), u, w, restitution)

@@ -57,7 +57,7 @@ class Stage:
         radius: (n,).
         mass: (n,), or None where all are equal, finite and positive; then common_mass is that mass.
         mass_ratio: of the heaviest to the lightest disk, tracers and immovable ones apart.
-        low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): energy is conserved and
+        low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): nothing falls and
             masses are very uneven.
         low_places: whether places carry what their rounding leaves (`formulas/low_place`): the domain is very wide and
             nothing falls.
@@ -171,8 +171,7 @@ def stage_of(scene: Scene) -> Stage:
         common_mass=float(disks.mass[0]),
         mass_ratio=heaviest / lightest,
         low_parts=(
-            not law.loses_energy()
-            and scene.gravity is None
+            scene.gravity is None
             and heaviest / lightest > UNEVEN
             and lightest > 1.0 / EXTREME
             and heaviest < EXTREME
@@ -200,7 +199,7 @@ def _extent(scene: Scene, x: Floats, y: Floats, corner: Point, features: tuple[F
     largest = []
     for axis, places in ((0, x), (1, y)):
         ends = [(one.shape.x, one.shape.y)[axis] for one in features]
-        largest.append(max(float(np.abs(places).max()), *map(abs, ends)))
+        largest.append(max([float(np.abs(places).max()), *map(abs, ends)]))
     size = scene.domain.size
     walls = max((part.scale(corner) for part in parts_of(scene.walls)), default=0.0)
     return sum(largest) + walls + (0.0 if size is None else sum(size)) + float(scene.disks.radius.max())

@@ -29,7 +29,7 @@ from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rows import write_pair, write_wall
 from eventsim.engines.fast.shapes import WIDTH, shape_normal
-from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
+from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -206,22 +206,22 @@ def _settled_pair(m, rules, a, b, t, kx, ky):
 @inline
 def _parted(m, rules, a, b, t, dx, dy, mass, low):
     """The velocities of a pair after contact, and q; low parts are set."""
+    e = _restitution(m, a, b, t, rules.pair_restitution, rules.duration)
     if low is not None:
-        return _carefully_parted(m, a, b, dx, dy)
+        return _carefully_parted(m, a, b, dx, dy, e)
     ua, wa = speed(m, rules, a, t)
     ub, wb = speed(m, rules, b, t)
     share_a, share_b = _shares(a, b, mass)
-    e = _restitution(m, a, b, t, rules.pair_restitution, rules.duration)
     return pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, e)
 
 
 @part
-def _carefully_parted(m, a, b, dx, dy):
+def _carefully_parted(m, a, b, dx, dy, e):
     f, g, i, j = a * REALS, b * REALS, 2 * a, 2 * b
     ua, wa, ub, wb = real(m.disks, f + VX), real(m.disks, f + VY), real(m.disks, g + VX), real(m.disks, g + VY)
     ea, fa, eb, fb = real(m.low, i), real(m.low, i + 1), real(m.low, j), real(m.low, j + 1)
     masses = real(m.mass, a), real(m.mass, b)
-    ua, wa, ub, wb, ea, fa, eb, fb, q = careful_pair_update(dx, dy, ua, wa, ub, wb, ea, fa, eb, fb, *masses)
+    ua, wa, ub, wb, ea, fa, eb, fb, q = careful_pair_update(dx, dy, ua, wa, ub, wb, ea, fa, eb, fb, *masses, e)
     store(m.low, i, ea)
     store(m.low, i + 1, fa)
     store(m.low, j, eb)
@@ -244,14 +244,12 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r
         lay_on(2 * i, rules.width, side, r, m.low_places)
-        u, _ = flat_update(u, float(side), e)
-        _reverse(2 * i, u != u0, m.low)
+        u = _across(2 * i, u, float(side), e, m.low)
         wall = place_
     elif _is_across(rules.wall_y, place_):
         y = rules.height - r if side < 0 else r
         lay_on(2 * i + 1, rules.height, side, r, m.low_places)
-        w, _ = flat_update(w, float(side), e)
-        _reverse(2 * i + 1, w != w0, m.low)
+        w = _across(2 * i + 1, w, float(side), e, m.low)
         wall = place_
     else:
         u, w, wall = _against_shape(m, i, place_ - rules.first_feature, side, x, y, u, w, e, m.features, m.low)
@@ -273,10 +271,13 @@ def _is_across(first, place_):
 
 
 @inline
-def _reverse(place_, reversed_, low):
-    """Reverse a low part where its velocity was reversed."""
-    if low is not None and reversed_:
-        store(low, place_, -real(low, place_))
+def _across(place_, v, side, e, low):
+    """The component across a wall of the domain after a contact; its low part, if it has one, is set."""
+    if low is None or not side * v < 0.0:
+        return flat_update(v, side, e)[0]
+    after, rest = careful_flat_update(v, real(low, place_), e)
+    store(low, place_, rest)
+    return after
 
 
 @inline
@@ -287,7 +288,7 @@ def _against_shape(m, i, k, side, x, y, u, w, e, features, low):
     if low is None:
         u, w, _ = wall_update(nx, ny, u, w, e)
     else:
-        u, w, low_x, low_y, _ = careful_wall_update(nx, ny, u, w, real(low, 2 * i), real(low, 2 * i + 1))
+        u, w, low_x, low_y, _ = careful_wall_update(nx, ny, u, w, real(low, 2 * i), real(low, 2 * i + 1), e)
         store(low, 2 * i, low_x)
         store(low, 2 * i + 1, low_y)
     return u, w, int(real(features, WIDTH * k + 1))

@@ -94,13 +94,13 @@ class Resolver:
         xb, yb = state.place(b, t)
         dx, dy = self._apart(event, xa, ya, xb, yb, state.low_place(a, t), state.low_place(b, t))
         still = self._instants.is_still(a, t) and self._instants.is_still(b, t)
+        restitution = self._restitution(self._stage.law.pair, t, a, b)
         if state.low_parts:
-            ua, wa, ub, wb, q = self._careful_pair(a, b, dx, dy)
+            ua, wa, ub, wb, q = self._careful_pair(a, b, dx, dy, restitution)
         else:
             ua, wa = state.speed(a, t)
             ub, wb = state.speed(b, t)
             share_a, share_b = self._shares(a, b)
-            restitution = self._restitution(self._stage.law.pair, t, a, b)
             ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
         self._rests.free(a, t)
         self._rests.free(b, t)
@@ -122,14 +122,16 @@ class Resolver:
         """Of the sum of two masses, in the engine's numbers."""
         return self._masses.shares(a, b)
 
-    def _careful_pair(self, a: int, b: int, dx: Real, dy: Real) -> tuple[Real, Real, Real, Real, Real]:
+    def _careful_pair(
+        self, a: int, b: int, dx: Real, dy: Real, restitution: Real
+    ) -> tuple[Real, Real, Real, Real, Real]:
         """Velocities after contact, and q, as from `pair_update`; their low parts are set."""
         state = self._state
         low_x, low_y = state.low_vx, state.low_vy
         speeds = state.vx[a], state.vy[a], state.vx[b], state.vy[b]
         masses = self._masses.of(a), self._masses.of(b)
         ua, wa, ub, wb, low_x[a], low_y[a], low_x[b], low_y[b], q = careful_pair_update(
-            dx, dy, *speeds, low_x[a], low_y[a], low_x[b], low_y[b], *masses
+            dx, dy, *speeds, low_x[a], low_y[a], low_x[b], low_y[b], *masses, restitution
         )
         return ua, wa, ub, wb, q
 
@@ -144,7 +146,7 @@ class Resolver:
         still = not self._instants.is_series(i, place) and self._instants.is_still(i, t)
         restitution = self._restitution(stage.law.wall, t, i, i)
         if state.low_parts:
-            u, w = self._careful_wall(i, *stage.normal(place, side, x, y, state.low_place(i, t)))
+            u, w = self._careful_wall(i, *stage.normal(place, side, x, y, state.low_place(i, t)), restitution)
         elif (boundary := stage.boundary(place)) is None:
             u, w, _ = wall_update(*stage.normal(place, side, x, y, state.low_place(i, t)), u, w, restitution)
         elif boundary.axis == 0:
@@ -161,11 +163,12 @@ class Resolver:
         self._ledger.log(t, Kind.WALL, i, -1, stage.surfaces[place].wall, impulse, -1)
         return [i]
 
-    def _careful_wall(self, i: int, nx: Real, ny: Real) -> tuple[Real, Real]:
+    def _careful_wall(self, i: int, nx: Real, ny: Real, restitution: Real) -> tuple[Real, Real]:
         """The velocity of disk i after contact with a wall; its low part is set."""
         state = self._state
         low = state.low_vx[i], state.low_vy[i]
-        u, w, state.low_vx[i], state.low_vy[i], _ = careful_wall_update(nx, ny, state.vx[i], state.vy[i], *low)
+        u, w = state.vx[i], state.vy[i]
+        u, w, state.low_vx[i], state.low_vy[i], _ = careful_wall_update(nx, ny, u, w, *low, restitution)
         return u, w
 
     def _time_of(self, component: list[Event]) -> Real:
