@@ -43,7 +43,7 @@ from tests.oracle.search import (
     pair_key,
     wall_key,
 )
-from tests.oracle.table import TOUCHING, Bow, Line, Ring, Table, Tip, Vector, across, along, names_of, table_of
+from tests.oracle.table import TOUCHING, Bow, Line, Oval, Ring, Table, Tip, Vector, across, along, names_of, table_of
 
 PAIR, WALL, KICK = "pair", "wall", "kick"
 """Kinds of rows, beside `rest`."""
@@ -483,6 +483,8 @@ class _Run:
                 return m.side * shape.normal[0] / shape.norm, m.side * shape.normal[1] / shape.norm
             centre = shape.place if isinstance(shape, Tip) else shape.centre
             dx, dy = m.side * (x - px - centre[0]), m.side * (y - py - centre[1])
+            if isinstance(shape, Oval):
+                dx, dy = shape.gradient(shape.scaled((dx, dy)))
         length = root(dx * dx + dy * dy)
         return dx / length, dy / length
 
@@ -494,6 +496,13 @@ class _Run:
             return 0.0
         if isinstance(shape, Tip):
             return 1.0 / r
+        if isinstance(shape, Oval):
+            x, y, _, _ = self.flights[m.a].at(m.time)
+            px, py = self.search._shift(m.image)
+            steep = math.hypot(
+                *_floats(shape.gradient(shape.scaled((x - px - shape.centre[0], y - py - shape.centre[1]))))
+            )
+            return m.side / (float(shape.semi_axes[0] * shape.semi_axes[1]) ** 2 * steep**3)
         return m.side / (float(shape.radius) + m.side * r)
 
     def _restitution(self, m: Meeting) -> Decimal:
@@ -833,7 +842,7 @@ class _Run:
             for k, shape in enumerate(table.shapes):
                 if isinstance(shape, Line):
                     self._touch_line(i, k, shape)
-                elif not (isinstance(shape, Tip) and table.radius[i] == 0):
+                elif not isinstance(shape, Oval) and not (isinstance(shape, Tip) and table.radius[i] == 0):
                     self._touch_round(i, k, shape)
 
     def _touch_pair(self, a: int, b: int) -> None:
@@ -949,11 +958,7 @@ class _Run:
         rate, slip = nx * f.u + ny * f.w, nx * f.w - ny * f.u
         fall = nx * f.ax + ny * f.ay
         if not isinstance(one, Line):  # what slips along a round wall leaves it, or is pressed onto it from inside
-            fall += (
-                slip
-                * slip
-                / (self.table.radius[i] if isinstance(one, Tip) else m.side * one.radius + self.table.radius[i])
-            )
+            fall += slip * slip * exact(self._bend(m))
         if fall >= 0 or rate < 0:
             return False
         flight = 2 * rate / -fall

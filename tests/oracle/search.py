@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from tests.oracle.digits import HALF, ONE, ZERO, exact, sign
 from tests.oracle.roots import Polynomial, survey
-from tests.oracle.table import Bow, Line, Ring, Shape, Table, Tip, Vector, across, along, ends_of
+from tests.oracle.table import Bow, Line, Oval, Ring, Shape, Table, Tip, Vector, across, along, ends_of
 
 NEAR = 1e-2
 """A miss by more than this part of the scene's size is no close call: errors as large end the judging before."""
@@ -262,6 +262,8 @@ class Search:
         found: list[Found] = []
         if isinstance(shape, Bow):
             return self._bow(a, k, shape, from_centre, speed, pull, radius, image, touch, now)
+        if isinstance(shape, Oval):
+            return self._oval(a, k, shape, from_centre, speed, image, touch, now)
         inside = isinstance(shape, Ring)
         reach = shape.radius - radius if isinstance(shape, Ring) else radius
         side = -1 if inside else 1
@@ -417,6 +419,36 @@ class Search:
                     break
         return [Found(best, calls)] if best is not None or calls else []
 
+    def _oval(
+        self,
+        a: int,
+        k: int,
+        shape: Oval,
+        d: Vector,
+        speed: Vector,
+        image: tuple[int, int],
+        touch: dict[tuple[int, ...], bool],
+        now: Decimal,
+    ) -> list[Found]:
+        """Contacts of a point that flies straight with an ellipse: with the circle that it is in its own frame."""
+        touched = next((side for side in (1, -1) if wall_key(k, image, side) in touch), 0)
+        best: Meeting | None = None
+        calls: list[Call] = []
+        for side in (1, -1):
+            here = touch[wall_key(k, image, touched)] if touched else None
+            away = touched != 0 and side != touched
+            place, velocity = shape.scaled(d), shape.scaled(speed)
+            outcome = _round(place, velocity, (ZERO, ZERO), ONE, side, here, now, self.near, every=True, departing=away)
+            if outcome is None:
+                continue
+            times, how, near = outcome
+            for call in near:
+                pull = shape.gradient((exact(call.pull[0]), exact(call.pull[1])))
+                calls.append(Call(call.time, call.margin, (float(pull[0]), float(pull[1]))))
+            if times and (best is None or now + times[0] < best.time):
+                best = Meeting(now + times[0], a, -1, k, image, side, how)
+        return [Found(best, calls)] if best is not None or calls else []
+
     def _on_bow(
         self,
         shape: Bow,
@@ -557,7 +589,7 @@ def _box(shape: Shape) -> tuple[float, float, float, float]:
     elif isinstance(shape, Tip):
         points = [shape.place]
     else:
-        (x, y), r = shape.centre, shape.radius
+        (x, y), r = shape.centre, max(shape.semi_axes) if isinstance(shape, Oval) else shape.radius
         points = [(x - r, y - r), (x + r, y + r)]
     xs, ys = [float(p[0]) for p in points], [float(p[1]) for p in points]
     return min(xs), min(ys), max(xs), max(ys)

@@ -5,6 +5,7 @@ This is all that the oracle takes from `eventsim`: the numbers of a Scene.  Plac
 * `Line`: a straight wall, a side of the domain among them (which has no ends, and is met from one side).
 * `Ring`: a container, met from inside.
 * `Bow`: an arc, hard on both sides.
+* `Oval`: an ellipse, hard on both sides, for points alone.
 * `Tip`: a point where lines or bows end; disks with a radius meet it like a disk of radius 0 that stands still.
 """
 
@@ -68,6 +69,27 @@ class Bow:
 
 
 @dataclass(frozen=True, eq=False)
+class Oval:
+    """An ellipse; axis: the unit direction of its first semi-axis."""
+
+    name: str
+    centre: Vector
+    axis: Vector
+    semi_axes: Vector
+
+    def scaled(self, p: Vector) -> Vector:
+        """A vector in the frame in which the ellipse is a circle of radius 1."""
+        (ex, ey), (a, b) = self.axis, self.semi_axes
+        return (p[0] * ex + p[1] * ey) / a, (p[1] * ex - p[0] * ey) / b
+
+    def gradient(self, p: Vector) -> Vector:
+        """How the distance from the middle of that circle grows, for a point p of it: across the ellipse, outwards."""
+        (ex, ey), (a, b) = self.axis, self.semi_axes
+        x, y = p[0] / a, p[1] / b
+        return x * ex - y * ey, x * ey + y * ex
+
+
+@dataclass(frozen=True, eq=False)
 class Tip:
     """An end of walls; names: of all walls that end there; arms: the unit directions in which they leave."""
 
@@ -77,7 +99,7 @@ class Tip:
     arms: tuple[Vector, ...]
 
 
-Shape: TypeAlias = Line | Ring | Bow | Tip
+Shape: TypeAlias = Line | Ring | Bow | Oval | Tip
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,6 +202,10 @@ def _pieces(wall: Any, name: str) -> list[Shape]:
         return [bow(name, _point(wall.start), _point(wall.through), _point(wall.end))]
     if isinstance(wall, es.Segment):
         return [line(name, _point(wall.start), _point(wall.end))]
+    if wall.kind == "ellipse":
+        x, y = _point(wall.direction)
+        length = root(x * x + y * y)
+        return [Oval(name, _point(wall.center), (x / length, y / length), _point(wall.semi_axes))]
     if not isinstance(wall, es.Polygon | es.Polyline):
         raise NotImplementedError(f"the oracle knows no wall of kind {wall.kind}")
     points = [_point(p) for p in wall.points]
@@ -312,4 +338,5 @@ def _extent(shape: Shape) -> list[Decimal]:
         return [*shape.start, *shape.end]
     if isinstance(shape, Bow):
         return [*shape.start, *shape.end]
-    return [c + s * shape.radius for c in shape.centre for s in (1, -1)]
+    far = max(shape.semi_axes) if isinstance(shape, Oval) else shape.radius
+    return [c + s * far for c in shape.centre for s in (1, -1)]

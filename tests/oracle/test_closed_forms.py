@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from decimal import Decimal
+from types import SimpleNamespace
 from typing import Any
 
 import mpmath
@@ -147,6 +148,46 @@ def test_a_tie_of_two_walls_is_one_cluster() -> None:
     )
     assert [row.walls for row in told.rows] == [{"wall0"}, {"wall1"}]
     assert velocities(told) == [(0.0, 1.0)]
+
+
+def an_ellipse(**numbers: Any) -> Any:
+    """A scene of a point in an ellipse, as far as the oracle reads it."""
+    wall = SimpleNamespace(
+        kind="ellipse", name=None, center=(0.0, 0.0), direction=(1.0, 0.0), semi_axes=numbers.pop("semi_axes")
+    )
+    scene = es.Scene(
+        disks([numbers.pop("position")], [numbers.pop("velocity")], 0.0), es.Open(), until=numbers.pop("until")
+    )
+    parts = {
+        name: getattr(scene, name)
+        for name in ("disks", "domain", "gravity", "restitution", "contact_duration", "until")
+    }
+    return SimpleNamespace(walls=[wall], events=None, start_time=0.0, **parts)
+
+
+def test_a_round_ellipse_is_a_container() -> None:
+    start = {"position": (0.3, 0.2), "velocity": (1.0, 0.37)}
+    oval = story(an_ellipse(semi_axes=(2.0, 2.0), until=30.0, **start))
+    ring = story(
+        es.Scene(
+            disks([start["position"]], [start["velocity"]], 0.0), es.Open(), walls=[es.Circle((0, 0), 2.0)], until=30.0
+        )
+    )
+    assert len(oval.rows) == len(ring.rows) > 5
+    for one, other in zip(oval.rows, ring.rows, strict=True):
+        assert abs(one.time - other.time) < Decimal("1e-50")
+        assert one.parts[0].place_error == pytest.approx(other.parts[0].place_error, rel=0.5)
+
+
+def test_paths_through_a_focus_pass_through_the_other_one() -> None:
+    """Semi-axes 5 and 3: foci at -4 and 4."""
+    told = story(an_ellipse(semi_axes=(5.0, 3.0), position=(-4.0, 0.0), velocity=(0.6, 0.8), until=60.0))
+    assert len(told.rows) > 4
+    for number, row in enumerate(told.rows):
+        (x, y), (u, w) = row.parts[0].place, row.parts[0].velocity
+        focus = 4 if number % 2 == 0 else -4
+        with working_with(60):
+            assert abs((focus - x) * w - (0 - y) * u) < Decimal("1e-45")
 
 
 def test_the_map_of_a_contact_is_its_derivative() -> None:

@@ -9,7 +9,20 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from tests.oracle.families import bows, chains, collapse, drops, gases, idle, kicks, mixtures, points, slopes, ties
+from tests.oracle.families import (
+    bows,
+    chains,
+    collapse,
+    drops,
+    gases,
+    idle,
+    kicks,
+    mixtures,
+    ovals,
+    points,
+    slopes,
+    ties,
+)
 from tests.oracle.families.case import Case
 
 FAMILIES: Mapping[str, Callable[[np.random.Generator], Case]] = {
@@ -18,6 +31,7 @@ FAMILIES: Mapping[str, Callable[[np.random.Generator], Case]] = {
     **drops.FAMILIES,
     **chains.FAMILIES,
     **bows.FAMILIES,
+    **ovals.FAMILIES,
     **gases.FAMILIES,
     **mixtures.FAMILIES,
     **slopes.FAMILIES,
