@@ -1,0 +1,100 @@
+"""The judge finds what is wrong with a log: each test damages the rows of a right run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import eventsim as es
+from tests.oracle.judge import REFUSED, RIGHT, WRONG, Seen, judge, observe
+from tests.oracle.loop import Story, story
+
+
+@pytest.fixture(scope="module")
+def gas() -> tuple[Story, Seen]:
+    rng = np.random.default_rng(4)
+    places = [(1.0 + 2.0 * i, 1.0 + 2.0 * j) for i in range(3) for j in range(2)]
+    scene = es.Scene(es.Disks(places, rng.normal(0, 1, (6, 2)), 0.4), es.Box((6.0, 4.0)), until=3.0)
+    return story(scene), observe(scene, "reference")
+
+
+def changed(seen: Seen, change: Callable[[Any], Any]) -> Seen:
+    rows = change(seen.rows.copy())
+    return replace(seen, rows=rows)
+
+
+def set_to(column: str, number: int, by: float) -> Callable[[Any], Any]:
+    def change(rows: Any) -> Any:
+        rows[column][number] += by
+        return rows
+
+    return change
+
+
+def swapped(rows: Any) -> Any:
+    """Two rows of one disk in the other order."""
+    for first in range(len(rows)):
+        for second in range(first + 1, len(rows)):
+            mine = {rows["a"][first], rows["b"][first]} - {-1}
+            if mine & ({rows["a"][second], rows["b"][second]} - {-1}):
+                rows[[first, second]] = rows[[second, first]]
+                return rows
+    raise AssertionError("no disk has two rows")
+
+
+def test_an_undamaged_run_is_right(gas: tuple[Story, Seen]) -> None:
+    told, seen = gas
+    verdict = judge(told, seen)
+    assert verdict.word == RIGHT, verdict
+    assert verdict.judged == len(seen.rows) > 10
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        pytest.param(set_to("vxa", 3, 1e-6), id="a velocity"),
+        pytest.param(set_to("ya", 5, 1e-6), id="a place"),
+        pytest.param(set_to("remainder", 4, 1e-6), id="a time"),
+        pytest.param(lambda rows: np.delete(rows, 4), id="a row is missing"),
+        pytest.param(lambda rows: rows[:-2], id="the last rows are missing"),
+        pytest.param(lambda rows: np.insert(rows, 4, rows[4]), id="a row stands twice"),
+        pytest.param(swapped, id="the order of a disk"),
+    ],
+)
+def test_a_damaged_log_is_wrong(gas: tuple[Story, Seen], change: Callable[[Any], Any]) -> None:
+    told, seen = gas
+    assert judge(told, changed(seen, change)).word == WRONG
+
+
+def test_another_state_at_the_end_is_wrong(gas: tuple[Story, Seen]) -> None:
+    told, seen = gas
+    assert judge(told, replace(seen, position=seen.position + 1e-6)).word == WRONG
+
+
+def test_another_word_for_the_end_is_wrong(gas: tuple[Story, Seen]) -> None:
+    told, seen = gas
+    assert judge(told, replace(seen, stopped="quiet")).word == WRONG
+
+
+def test_a_stop_with_a_reason_is_a_refusal_where_the_oracle_goes_on(gas: tuple[Story, Seen]) -> None:
+    told, seen = gas
+    early = replace(seen, rows=seen.rows[:5], stopped="digits", time=float(seen.rows["time"][4]))
+    assert judge(told, early).word == REFUSED
+
+
+def test_what_floats_do_not_determine_is_not_judged() -> None:
+    """A wall of posts beside a fast small disk: after a few contacts its order is a matter of last bits, and is not judged."""
+    rng = np.random.default_rng(1)
+    places = [(0.5 + i, 0.5 + j) for i in range(3) for j in range(3)] + [(1.0, 1.0)]
+    masses = [np.inf] * 9 + [1.0]
+    velocities = np.concatenate([np.zeros((9, 2)), rng.normal(0, 1, (1, 2))])
+    scene = es.Scene(es.Disks(places, velocities, [0.3] * 9 + [0.05], masses), es.Periodic((3.0, 3.0)), events=200)
+    told, seen = story(scene), observe(scene, "reference")
+    assert told.ending == "beyond"
+    verdict = judge(told, seen)
+    assert verdict.word != WRONG
+    assert 10 < verdict.judged < 60
