@@ -28,7 +28,8 @@ from tests.oracle.judge import (
     judge,
     observe,
 )
-from tests.oracle.loop import Story, story
+from tests.oracle.loop import story
+from tests.oracle.story import Story
 
 ENGINES = {"reference": ("reference",), "fast": ("fast",), "both": ("reference", "fast")}
 

@@ -27,8 +27,8 @@ import eventsim as es
 from eventsim.scene.stage import stage_of
 from tests.oracle.digits import ROUNDS, exact, working_with
 from tests.oracle.doubt import SAFE
-from tests.oracle.loop import KICK, PAIR, WALL, Kick, Part, Row, Story
 from tests.oracle.search import REST
+from tests.oracle.story import KICK, PAIR, WALL, Kick, Part, Row, Story
 
 CLOSE = 1e-9
 """What is right, in mean free times, mean free paths, speeds."""

@@ -141,7 +141,7 @@ class Search:
         found: list[Found] = []
         images, again = self._images((0.0, 0.0, 0.0, 0.0), x, y, u, w, ax, ay, float(reach))
         for image in images:
-            px, py = self._shift(image)
+            px, py = self.shift(image)
             key = pair_key(a, b, image)
             touch = fa.touch.get(key) if at_once else None
             one = _round((x - px, y - py), (u, w), (ax, ay), reach, 1, touch, now, self.near)
@@ -163,7 +163,7 @@ class Search:
         images, again = self._images(self._boxes[k], x, y, u, w, flight.ax, flight.ay, float(radius))
         found: list[Found] = []
         for image in images:
-            px, py = self._shift(image)
+            px, py = self.shift(image)
             place, touch = (x - px, y - py), flight.touch if flight.time == now else {}
             found += self._meet(a, k, shape, place, (u, w), (flight.ax, flight.ay), radius, image, touch, now)
         if again is not None:
@@ -199,7 +199,7 @@ class Search:
         feet = [along(one, end) for j in self.table.supports[k] for end, _ in ends_of(self.table.shapes[j])]
         return min(feet), max(feet)
 
-    def _shift(self, image: tuple[int, int]) -> Vector:
+    def shift(self, image: tuple[int, int]) -> Vector:
         px, py = self.table.period
         return (ZERO if px is None else image[0] * px, ZERO if py is None else image[1] * py)
 

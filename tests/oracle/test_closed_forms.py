@@ -14,8 +14,9 @@ import pytest
 import eventsim as es
 from tests.oracle.digits import exact, working_with
 from tests.oracle.doubt import contact_map
-from tests.oracle.loop import Kick, Story, story
+from tests.oracle.loop import story
 from tests.oracle.roots import survey, value
+from tests.oracle.story import Kick, Story
 
 
 def disks(position: Any, velocity: Any = None, radius: Any = 0.5, mass: Any = 1.0) -> es.Disks:

@@ -11,7 +11,8 @@ import pytest
 
 import eventsim as es
 from tests.oracle.judge import REFUSED, RIGHT, WRONG, Seen, judge, observe
-from tests.oracle.loop import Story, story
+from tests.oracle.loop import story
+from tests.oracle.story import Story
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import numpy as np
 
 import eventsim as es
 from tests.oracle.judge import CLOSE
-from tests.oracle.loop import Kick
+from tests.oracle.story import Kick
 
 Place = tuple[float, float]
 

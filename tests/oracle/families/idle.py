@@ -6,7 +6,7 @@ import numpy as np
 
 import eventsim as es
 from tests.oracle.families.case import Case, scatter, scene
-from tests.oracle.loop import Kick
+from tests.oracle.story import Kick
 
 
 def _spell(rng: np.random.Generator) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 import eventsim as es
 from tests.oracle.families.case import Case, scatter, scene, segment_distance
-from tests.oracle.loop import Kick
+from tests.oracle.story import Kick
 
 
 def anywhere(rng: np.random.Generator) -> Case:
