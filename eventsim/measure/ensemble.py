@@ -14,7 +14,7 @@ from eventsim.measure.billiard_table import Table, table_of
 from eventsim.scene.disks import species_among
 from eventsim.scene.domain import Box, Channel, Open, Periodic
 from eventsim.scene.scene import Scene
-from eventsim.scene.walls import Arc, Circle
+from eventsim.scene.walls import Circle
 
 MOST_SPECIES = 8
 """More kinds of disks than this are measured together only."""
@@ -150,7 +150,7 @@ class Ensemble:
     @cached_property
     def integrable(self) -> bool:
         """Whether a billiard's flights keep what they begin with: no post and no arc scatters them."""
-        return self.posts is None and not any(isinstance(wall, Arc) for wall in self.scene.walls)
+        return self.posts is None and not any(wall.scatters for wall in self.scene.walls)
 
     @property
     def torus(self) -> bool:

@@ -25,6 +25,7 @@ class Circle(Part):
     kind: ClassVar[str] = "circle"
     made_of: ClassVar[tuple[type[Shape], ...]] = (Container,)
     holds: ClassVar[bool] = True
+    scatters: ClassVar[bool] = False
 
     def parts(self, name: str) -> tuple[Circle, ...]:
         """The circle itself, with its name."""

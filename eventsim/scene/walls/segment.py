@@ -27,6 +27,7 @@ class Segment(Part):
     name: str | None = None
     kind: ClassVar[str] = "segment"
     made_of: ClassVar[tuple[type[Shape], ...]] = (Face, Post)
+    scatters: ClassVar[bool] = False
     sides: ClassVar[tuple[str, str]] = ("left", "right")
 
     def parts(self, name: str) -> tuple[Segment, ...]:
@@ -77,6 +78,7 @@ class _Chain(Wall):
     points: tuple[Point, ...]
     name: str | None = None
     made_of: ClassVar[tuple[type[Shape], ...]] = (Face, Post)
+    scatters: ClassVar[bool] = False
     least: ClassVar[int]
     """Points that it needs."""
 

@@ -37,12 +37,14 @@ class Wall(ABC):
         kind: what a scene file calls it.
         made_of: the shapes that `pieces` gives.
         holds: whether disks live inside of it, so that it has no periodic images.
+        scatters: whether flights that meet it forget where they come from, as at an arc; False keeps a billiard integrable.
     """
 
     __slots__ = ()
     kind: ClassVar[str]
     made_of: ClassVar[tuple[type[Shape], ...]]
     holds: ClassVar[bool] = False
+    scatters: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Store points and lengths as floats.
