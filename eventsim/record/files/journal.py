@@ -95,14 +95,18 @@ class JournalSink(FileSink):
         self.part.unlink(missing_ok=True)
         # A run may be killed at any moment: the journal comes in one piece, and goes in one.
         begun = self._beside()
-        begun.mkdir()
-        scene = scene_beside(self.provenance.scene, begun)
-        (begun / METADATA).write_text(provenance_text(self.provenance, scene), encoding="ascii")
-        (begun / RUNS).touch()
-        for name in raw(self.columns):
-            (begun / name).touch()
-            os.truncate(begun / name, ROOM)
-        begun.replace(self.part)
+        try:
+            begun.mkdir()
+            scene = scene_beside(self.provenance.scene, begun)
+            (begun / METADATA).write_text(provenance_text(self.provenance, scene), encoding="ascii")
+            (begun / RUNS).touch()
+            for name in raw(self.columns):
+                (begun / name).touch()
+                os.truncate(begun / name, ROOM)
+            begun.replace(self.part)
+        except BaseException:
+            shutil.rmtree(begun, ignore_errors=True)
+            raise
         self._go_on()
 
     def _reopen(self, rows: int) -> None:
