@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eventsim.errors import LogError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, ROW
-from eventsim.record.files import open_sink
+from eventsim.record.files import csv, open_sink
 from eventsim.replay.log import EventLog, load_log
 from eventsim.suffixes import LOGS
 from tests.record.logs import FLOATS, any_float, provenance, random_log, random_rows
@@ -151,3 +153,28 @@ def test_a_byte_order_mark_and_other_line_ends_do_no_harm(tmp_path, suffix):
     run = es.simulate(es.gallery("two-disks"), log=path)
     path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().replace(b"\n", b"\r\n"))
     assert es.load_log(path).digest() == run.digest
+
+
+@pytest.mark.parametrize("names", [("left", "floor", "a b", "ü"), ("nan", "inf", "-1", "null"), ('say "x"', "# a", "b", "c")])
+def test_a_long_csv_is_read_as_a_short_one(tmp_path, monkeypatch, names):
+    """Many lines are read by pyarrow, few by Python: the same bits, and the same sentence about a bad line."""
+    monkeypatch.setattr(csv, "MANY_LINES", 10)
+    log = random_log(500)
+    rows = log.rows.copy()
+    rows["impulse"][:6] = [np.nan, np.inf, -np.inf, -0.0, 5e-324, 1.7976931348623157e308]
+    EventLog(replace(log.provenance, wall_names=names), rows).save(tmp_path / "log.csv")
+    many = load_log(tmp_path / "log.csv")
+    monkeypatch.setattr(csv, "MANY_LINES", 10**9)
+    few = load_log(tmp_path / "log.csv")
+    assert many.rows.tobytes() == few.rows.tobytes() == rows.tobytes()
+    text = (tmp_path / "log.csv").read_text()
+    said = []
+    for limit in (10, 10**9):
+        monkeypatch.setattr(csv, "MANY_LINES", limit)
+        for old, new in ((",0,", ",0.5,"), (",0,", ",,"), (",0,", ",1_0,"), (",-1,", ",99999999999,"), ("pair", "pear")):
+            place = text.rindex(old, 0, -3000)
+            (tmp_path / "log.csv").write_text(text[:place] + new + text[place + len(old) :])
+            with pytest.raises(LogError) as caught:
+                load_log(tmp_path / "log.csv")
+            said.append(str(caught.value))
+    assert said[:5] == said[5:]

@@ -6,9 +6,8 @@ import io
 import os
 import shutil
 from abc import abstractmethod
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator
 from contextlib import ExitStack
-from itertools import islice
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -30,7 +29,9 @@ TAIL = b', "kicks": '
 PAGE = 4096
 """Bytes that a file system writes as one: a tail within a page is either the old one or the new one, even after a kill."""
 
-BLOCK_LINES = 1 << 15
+BLOCK_LETTERS = 1 << 23
+"""Of lines that are read together: some 30,000 rows."""
+
 CHUNK = 1 << 20
 
 
@@ -38,7 +39,7 @@ class TextForm(NamedTuple):
     """How a text format is read.
 
     prefix: what stands before the metadata in their line.  header_of: what must stand between metadata and rows.  parse: lines
-    without newline to rows; it may raise ValueError, TypeError, OverflowError or KeyError.
+    to rows; it may raise ValueError, TypeError, OverflowError or KeyError.
     """
 
     prefix: str
@@ -170,37 +171,37 @@ def open_text(path: Path, form: TextForm) -> Opened:
     with ExitStack() as opened:
         file = opened.enter_context(reading(path, LogError, "not an event log of this format"))
         # Editors on some systems add a mark and other line ends.
-        lines = _whole_lines(opened.enter_context(io.TextIOWrapper(file, encoding="utf-8-sig")), path)
-        head = next(lines, "")
+        lines = opened.enter_context(io.TextIOWrapper(file, encoding="utf-8-sig"))
+        head = "".join(_whole([lines.readline()], path)).rstrip("\n")
         if not head.startswith(form.prefix):
             raise LogError(f"{path}: not an event log: the first line does not hold its scene")
         provenance = provenance_from_text(head.removeprefix(form.prefix), str(path))
         header = form.header_of(provenance)
-        if header and next(lines, "") + "\n" != header:
+        if header and "".join(_whole([lines.readline()], path)) != header:
             raise LogError(f"{path}: the columns are not those of an event log: {header.strip()}")
         return Opened(provenance, _blocks(opened.pop_all(), lines, form, provenance, path))
     raise AssertionError("either metadata or an error")
 
 
 def _blocks(
-    opened: ExitStack, lines: Iterator[str], form: TextForm, provenance: Provenance, path: Path
+    opened: ExitStack, lines: IO[str], form: TextForm, provenance: Provenance, path: Path
 ) -> Generator[Rows]:
     number = 2 + form.header_of(provenance).count("\n")
     with opened:
-        while block := list(islice(lines, BLOCK_LINES)):
+        while block := _whole(lines.readlines(BLOCK_LETTERS), path):
             yield _parse_block(form.parse, block, provenance, f"{path}", number)
             number += len(block)
 
 
-def _whole_lines(file: IO[str], path: Path) -> Iterator[str]:
-    """Yield lines without their newline."""
-    for line in file:
-        if line.endswith("\n"):
-            yield line[:-1]
-        elif path.suffix != PART:
-            raise LogError(
-                f"{path}: the last line is not whole; the file was cut off (named {path.name}{PART}, it is read up to there)"
-            )
+def _whole(lines: list[str], path: Path) -> list[str]:
+    """Those of some lines that end; only the last one of a file that grows may not."""
+    if not lines or lines[-1].endswith("\n") or lines == [""]:
+        return lines
+    if path.suffix == PART:
+        return lines[:-1]
+    raise LogError(
+        f"{path}: the last line is not whole; the file was cut off (named {path.name}{PART}, it is read up to there)"
+    )
 
 
 def _parse_block(
