@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import asyncio
+import os
+import threading
+from collections.abc import Coroutine
+from typing import Any
+
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
-from eventsim.cli.output import say
+from eventsim.cli.output import DONE, say
 from eventsim.errors import EventsimError
 
 PORT = 8642
+
+PATIENCE = 1.5
+"""Seconds that a server which was ended has to take leave."""
 
 
 @click.command()
@@ -51,7 +60,6 @@ def command(
 
     Exit codes: 0 ended by Ctrl-C; 2 bad usage, scene or file, a port that is taken, or aiohttp is missing.
     """
-    import asyncio
     import webbrowser
 
     from eventsim.cli.source import chosen_scene
@@ -76,6 +84,17 @@ def command(
             webbrowser.open(address)
 
     try:
-        asyncio.run(serve(chosen, port, tell))
+        asyncio.run(_served(serve(chosen, port, tell)))
     except KeyboardInterrupt:
         say("", err=True)  # after the ^C that the terminal shows
+
+
+async def _served(server: Coroutine[Any, Any, None]) -> None:
+    """Serve; once that is over the process ends within a moment, whatever a thread of it is still computing."""
+    try:
+        await server
+    except asyncio.CancelledError:
+        end = threading.Timer(PATIENCE, os._exit, (DONE,))
+        end.daemon = True
+        end.start()
+        raise

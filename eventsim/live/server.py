@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import secrets
 import tempfile
 from collections.abc import Awaitable, Callable
 from importlib.resources import files
@@ -18,6 +19,7 @@ from eventsim.live.world import World
 from eventsim.scene import Scene
 from eventsim.scene.files import scene_to_toml
 from eventsim.scene.gallery import describe, names
+from eventsim.suffixes import LOGS
 
 HOST = "127.0.0.1"
 
@@ -51,10 +53,21 @@ PAGE = {"/": ("live/page", "live.html", "text/html")} | {
 }
 """What is served under which name: folder, file and type."""
 
-POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src 'self'"
-"""The page talks to this server and to nobody else. Source: W3C, Content Security Policy Level 3."""
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src 'self'; "
+    "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+)
+"""The page talks to this server and to nobody else, and stands in no other page. Source: W3C, Content Security Policy Level 3."""
 
-LOGS = (".csv", ".jsonl", ".npz", ".parquet")
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "Cache-Control": "no-store",
+    "Referrer-Policy": "no-referrer",  # nobody else learns the address
+    "X-Content-Type-Options": "nosniff",
+}
+
+OWN = ("same-origin", "none")
+"""What browsers say of requests of the page itself, and of an address that was typed. Source: W3C, Fetch Metadata."""
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -62,8 +75,9 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 class House:
     """All worlds that are open, and the scene that the server was started with."""
 
-    def __init__(self, given: Scene | None) -> None:
+    def __init__(self, given: Scene | None, prefix: str) -> None:
         self.given = given
+        self._prefix = prefix
         self.worlds: dict[str, World] = {}
         self.viewers: set[Viewer] = set()
 
@@ -73,10 +87,9 @@ class House:
 
     async def page(self, request: web.Request) -> web.StreamResponse:
         """Serve a part of the page."""
-        folder, name, kind = PAGE[request.path]
+        folder, name, kind = PAGE[request.path.removeprefix(self._prefix)]
         text = files("eventsim").joinpath(folder, name).read_text(encoding="utf-8")
-        headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-store"}
-        return web.Response(text=text, content_type=kind, headers=headers)
+        return web.Response(text=text, content_type=kind, headers=HEADERS)
 
     async def socket(self, request: web.Request) -> web.StreamResponse:
         """Serve a page that looks at a world: its own, until it joins another."""
@@ -141,26 +154,34 @@ class House:
         return packet("hello", version=__version__, gallery=gallery, given=given)
 
 
-def application(given: Scene | None = None) -> web.Application:
-    """Return the server's application; given: the scene that a page begins with, None: what the menu says."""
-    house = House(given)
+def application(given: Scene | None = None, token: str = "") -> web.Application:
+    """Return the server's application.
+
+    Args:
+        given: the scene that a page begins with, None: what the menu says.
+        token: what all addresses begin with, so that only who was told it finds anything.
+    """
+    prefix = f"/{token}" if token else ""
+    house = House(given, prefix)
     app = web.Application(middlewares=[refuse_foreigners])
-    app.add_routes([web.get(path, house.page) for path in PAGE])
-    app.router.add_get("/socket", house.socket)
-    app.router.add_get("/worlds/{world}/scene.toml", house.scene_file)
-    app.router.add_get("/worlds/{world}/log.{suffix}", house.log_file)
+    app.add_routes([web.get(prefix + path, house.page) for path in PAGE])
+    app.router.add_get(prefix + "/socket", house.socket)
+    app.router.add_get(prefix + "/worlds/{world}/scene.toml", house.scene_file)
+    app.router.add_get(prefix + "/worlds/{world}/log.{suffix}", house.log_file)
     return app
 
 
 @web.middleware
 async def refuse_foreigners(request: web.Request, handler: Handler) -> web.StreamResponse:
     """Refuse requests that pages of other origins make, and names of this machine that others may have given it."""
-    port = request.url.port
+    assert request.transport is not None
+    port = request.transport.get_extra_info("sockname")[1]  # not what the request says of itself
     here = {f"{name}:{port}" for name in (HOST, "localhost")}
     if port == 80:
         here |= {HOST, "localhost"}
     origin = request.headers.get("Origin")
-    if request.host not in here or (origin is not None and origin.removeprefix("http://") not in here):
+    foreign = origin is not None and origin.removeprefix("http://") not in here
+    if request.host not in here or foreign or request.headers.get("Sec-Fetch-Site", "none") not in OWN:
         raise web.HTTPForbidden(
             text="this server is for its own page on this machine; a page from elsewhere is refused"
         )
@@ -172,7 +193,8 @@ async def serve(given: Scene | None, port: int, ready: Callable[[str], None]) ->
 
     Raises EventsimError where the port is taken.
     """
-    runner = web.AppRunner(application(given), access_log=None, shutdown_timeout=1.0)
+    token = secrets.token_urlsafe(16)
+    runner = web.AppRunner(application(given, token), access_log=None, shutdown_timeout=1.0)
     await runner.setup()
     try:
         try:
@@ -180,7 +202,7 @@ async def serve(given: Scene | None, port: int, ready: Callable[[str], None]) ->
             await site.start()
         except OSError as error:
             raise EventsimError(f"port {port} cannot be used ({error.strerror}): choose another with --port") from None
-        ready(f"http://{HOST}:{runner.addresses[0][1]}/")
+        ready(f"http://{HOST}:{runner.addresses[0][1]}/{token}/")
         await asyncio.Event().wait()
     finally:
         await runner.cleanup()

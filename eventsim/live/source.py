@@ -41,6 +41,8 @@ class BuiltIn:
         """Return the scene with these parameters."""
         for name in ABOUT_COUNTS:
             demand_few(self.parameters.get(name, 0), name)
+        if "name" in self.parameters:
+            raise SceneError(f"{self.name}: a built-in scene has no parameter 'name'")
         return gallery(self.name, **self.parameters)
 
 
@@ -70,5 +72,5 @@ class Text:
 
 def demand_few(count: object, what: str) -> None:
     """Raise where a live view is asked for too many disks."""
-    if isinstance(count, int) and count > MOST_DISKS:
+    if isinstance(count, int | float) and not count <= MOST_DISKS:
         raise EventsimError(f"{what} = {count}: a live view has at most {MOST_DISKS} disks")

@@ -96,9 +96,12 @@ class Viewer:
     async def _follow(self, message: Message) -> None:
         """Do what a message asks for."""
         if isinstance(message, Shown):
-            if message.edition != self.world.edition:
+            if message.edition != self.world.edition or not self.world.tracks:
                 return  # said before the page had heard of what is open now
-            self.time, self.events, self.speed = message.time, message.events, message.speed
+            # Nobody is shown more than there is: what a page says it shows must not send the engine far ahead.
+            track = self.world.tracks[0]
+            self.time, self.events = min(message.time, track.horizon), min(message.events, track.count)
+            self.speed = message.speed
             self.world.wake()
         elif isinstance(message, Control):
             for other in self.world.viewers - {self}:

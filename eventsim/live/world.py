@@ -183,6 +183,8 @@ class World:
         track = self.tracks[0]
         if disk >= len(track.scene.disks):
             raise EventsimError(f"disk {disk} does not exist; there are {len(track.scene.disks)}, counted from 0")
+        if time > track.horizon:
+            raise EventsimError(f"time = {time:g}: is not simulated yet, and no page shows it; {track.horizon:g} is")
         state = await asyncio.to_thread(track.rewind, time)
         for viewer in self.viewers:
             viewer.cut(track.count, track.horizon)

@@ -1,12 +1,15 @@
 """What the server refuses, and bounds: garbage, strangers, pages that do not read, events without end."""
 
 import asyncio
+import json
+import signal
 import sys
+import time
 
 import pytest
 
 import eventsim as es
-from tests.live.running import menu
+from tests.live.running import live_server, menu
 from tests.live.serving import run, worlds_alive
 
 aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
@@ -83,13 +86,25 @@ def test_an_oversized_message_ends_its_connection_alone():
 def test_pages_from_elsewhere_are_refused():
     async def story(connect, session, address):
         for path in ("socket", "", "live.js"):
-            for headers in ({"Origin": "http://evil.example"}, {"Host": "evil.example"}, {"Origin": "null"}):
+            port = int(address.rstrip("/").rpartition(":")[2])
+            for headers in (
+                {"Origin": "http://evil.example"},
+                {"Host": "evil.example"},
+                {"Origin": "null"},
+                {"Host": f"127.0.0.1:{port + 1}"},  # the port that counts is the one that is bound
+                {"Sec-Fetch-Site": "cross-site"},
+                {"Sec-Fetch-Site": "same-site"},
+            ):
                 async with session.get(address + path, headers=headers) as answer:
                     assert answer.status == 403
                     assert "this machine" in await answer.text()
         async with session.get(address, headers={"Origin": address.rstrip("/")}) as answer:
             assert answer.status == 200
             assert "default-src 'none'" in answer.headers["Content-Security-Policy"]
+            assert "frame-ancestors 'none'" in answer.headers["Content-Security-Policy"]
+            assert answer.headers["Referrer-Policy"] == "no-referrer"
+        async with session.get(address, headers={"Sec-Fetch-Site": "none"}) as answer:
+            assert answer.status == 200
         async with session.get(address + "../server.py") as answer:
             assert answer.status == 404
 
@@ -110,3 +125,69 @@ def test_events_that_are_kept_are_bounded(monkeypatch):
         assert "as many as are kept" in rows["ended"]
 
     run(story)
+
+
+def test_the_future_is_not_asked_for():
+    """A throw at time 1e15 simulated without bound, and went on after the page had left."""
+
+    async def story(connect, session, address):
+        client = await connect()
+        await client.tell({"type": "shown", "edition": 0, "time": 1e15, "events": 0, "speed": 1.0})  # of nothing yet
+        await client.tell(menu())
+        opened = await client.hear("opened")
+        for message in (
+            {"type": "throw", "disk": 0, "velocity": [1.0, 0.0]},
+            {"type": "move", "disk": 0, "position": [1.0, 1.0]},
+            {"type": "resize", "size": [300.0, 300.0]},
+        ):
+            await client.tell({**message, "time": 1e15})
+            assert "is not simulated yet" in (await client.hear("error"))["text"]
+        shown = {"type": "shown", "edition": opened["edition"], "time": 1e15, "events": 2**53, "speed": 1.0}
+        await client.tell(shown)
+        await asyncio.sleep(0.5)
+        await client.tell({"type": "throw", "time": 1000.0, "disk": 0, "velocity": [1.0, 0.0]})
+        assert "is not simulated yet" in (await client.hear("error", most=2000))["text"]
+
+    run(story)
+
+
+@pytest.mark.parametrize(
+    ("message", "words"),
+    [
+        ({"scene": "gallery", "name": "gas", "parameters": {"name": "break"}}, "no parameter 'name'"),
+        ({"scene": "gallery", "name": "gas", "parameters": {"n": 1e9}}, "at most 5000 disks"),
+        ({"scene": "text", "text": '[domain]\nkind = "open"\n[[gas]]\ncount = 1e9\nradius = 0.1'}, "at most 5000 disks"),
+        ({"scene": "text", "text": "a = " + "1" * 5000}, "not valid TOML"),
+        ({"scene": "text", "text": "a" + ".a" * 500 + " = 1"}, "nested too deeply"),
+    ],
+)
+def test_a_scene_that_breaks_bounds_by_another_way_is_refused(message, words):
+    async def story(connect, session, address):
+        client = await connect()
+        await client.tell({"type": "open", "rate": None, **message})
+        assert words in (await client.hear("error"))["text"]
+
+    run(story)
+
+
+def test_the_address_has_a_token_and_ctrl_c_ends_the_server_whatever_it_computes():
+    gas = 'count = 4000\npacking_fraction = 0.5\narrangement = "random"\nseed = 1'
+    text = f'[domain]\nkind = "box"\nsize = [1, 1]\n[[gas]]\n{gas}'
+
+    async def ask(address):
+        async with aiohttp.ClientSession() as session:
+            host, _, token = address.rstrip("/").rpartition("/")
+            assert len(token) > 20
+            for path in ("/", "/socket", "/live.js"):
+                async with session.get(host + path) as answer:
+                    assert answer.status == 404
+            socket = await session.ws_connect(address + "socket")
+            await socket.send_str(json.dumps({"type": "open", "rate": None, "scene": "text", "text": text}))
+            await asyncio.sleep(0.5)
+
+    with live_server() as (address, process):
+        asyncio.run(ask(address))
+        began = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=30) == 0
+        assert time.monotonic() - began < 10.0  # two seconds on a machine of its own

@@ -28,7 +28,7 @@ class Link {
   }
 
   _connect() {
-    this.socket = new WebSocket(`ws://${location.host}/socket`);
+    this.socket = new WebSocket(`ws://${location.host}${location.pathname.replace(/[^/]*$/, "")}socket`);
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = () => { this.failures = 0; this.pending = 0; };
     this.socket.onmessage = (event) => this._unpack(event.data);
