@@ -44,6 +44,7 @@ def simulate(
     progress: Progress | None = None,
     on_event: OnEvent | None = None,
     measure: bool | float = False,
+    profile: str | None = None,
     command: str | None = None,
     checkpoint: str | PathLike[str] | None = None,
     every: int | str = "60s",
@@ -56,9 +57,10 @@ def simulate(
     (counters only), True (in memory) or a path (.csv, .jsonl, .npz, .parquet; streamed; `compact` leaves out what replay
     computes).  digest: compute the digest also where no log is kept.  progress(fraction, events, time): called a few times a
     second.  on_event(rows): called with each block of new rows.  measure: True, or the time at the beginning to leave out, for
-    `run.measures`, in constant memory and without a log.  checkpoint: a file that `resume` can go on from, replaced `every` so
-    many events (1000000) or so much time ("90s", "5min", "2h"), and at the end.  interrupt: ends the run between two events once
-    another thread asks it to (`Interrupt().ask()`).  options: the engine's own, such as check=True.
+    `run.measures`, in constant memory and without a log.  profile: "x" or "y", for profiles along it as well.  checkpoint: a file
+    that `resume` can go on from, replaced `every` so many events (1000000) or so much time ("90s", "5min", "2h"), and at the end.
+    interrupt: ends the run between two events once another thread asks it to (`Interrupt().ask()`).  options: the engine's own,
+    such as check=True.
 
     Simultaneous contacts are never cut apart, so a run that stops by `events` may have a few events more.
 
@@ -87,7 +89,7 @@ def simulate(
         return Run.of(run_scene(chosen, scene, stop, wanted, given))
     from eventsim.measure import Meter  # only who measures pays for it
 
-    meter = Meter(scene, None if measure is True else measure)
+    meter = Meter(scene, None if measure is True else measure, profile=profile)
     wanted.takers.append(meter.write)
     run = Run.of(run_scene(chosen, scene, stop, wanted, given))
     if run.time > scene.start_time:

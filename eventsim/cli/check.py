@@ -35,7 +35,9 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
       radii, masses               [least, largest]
       fastest, temperature        largest speed; mean m v^2/2 (null without a finite positive mass; a text where
                                   it is beyond the range of floats)
-      packing_fraction            null on the open plane
+      packing_fraction            of the area that disks can cover; null where nothing bounds it
+      table                       [area, perimeter, pi A / P] of the region that the centre of a lone disk or of tracers
+                                  sees; null where disks meet each other
       domain, size, origin        kind; [width, height]; lower-left corner
       walls, shapes               name -> kind; primitive shape -> number
       gravity, restitution, contact_duration

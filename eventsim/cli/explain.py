@@ -39,6 +39,8 @@ def explanation(needs: Needs) -> Iterator[tuple[str, str]]:
     yield "domain", _domain(needs)
     if needs.walls:
         yield "walls", _walls(needs)
+    if needs.table is not None:
+        yield "table", _table(needs.table)
     yield "flights", _flights(needs)
     yield "contacts", _contacts(needs)
     if needs.touching_pairs or needs.touching_notes:
@@ -62,7 +64,7 @@ def _disks(needs: Needs) -> str:
         text = f"{plural(needs.disks, 'disk')}: {'; '.join(species)}"
     if needs.packing_fraction is not None:
         covering = "it covers" if needs.disks == 1 else "they cover"
-        text += f"; {covering} {100 * needs.packing_fraction:.3g} % of the domain"
+        text += f"; {covering} {100 * needs.packing_fraction:.3g} % of the area that is free to them"
     parts = []
     if needs.immovable:
         unmoved = "nothing deflects it" if needs.gravity is None else "neither contacts nor gravity deflect it"
@@ -96,6 +98,11 @@ def _walls(needs: Needs) -> str:
     shapes = ", ".join(plural(count, SHAPE_WORDS[shape]) for shape, count in needs.shapes.items())
     images = ", periodic images included" if needs.domain in ("periodic", "channel") else ""
     return f"{named}; made of {shapes}{images}, each tried by every disk"
+
+
+def _table(table: tuple[float, float, float]) -> str:
+    area, perimeter, path = (short(number) for number in table)
+    return f"its centre sees area {area}, perimeter {perimeter}; the mean free path, over all ways, is pi A / P = {path}"
 
 
 def _flights(needs: Needs) -> str:

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eventsim.cli.options import json_option, quiet_option, scene_options
+from eventsim.cli.columns import profile_columns, series_columns, table_of, write_columns
+from eventsim.cli.options import json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import say
 from eventsim.cli.source import chosen_scene, is_log, log_of, run_of, stop_options
 from eventsim.cli.words import aligned, as_json_text, short
+from eventsim.measure.quantities import FAMILIES
 from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
@@ -18,11 +20,57 @@ if TYPE_CHECKING:
     from eventsim.measure.structure import Structure
 
 
-@click.command()
+HELP = """Measure the run that LOG tells, or of SCENE, simulated now without keeping a log.
+
+Every number has a standard error from block averages; the block length is found, not guessed. Averages weigh time to
+the very end of the run. Theory stands beside a number only where it holds, with the difference in standard errors. A
+quantity without meaning in this run is a dash with the reason; what a number does not say stands behind it. The
+beginning is left out as far as --discard, the scene's key equilibration, or else the pressure itself tells. Where a
+steady state is in doubt, the reasons are printed.
+
+\b
+Examples:
+  eventsim measure gas.csv
+  eventsim measure periodic-fluid --set packing_fraction=0.3 --events 1000000
+  eventsim measure cooling --series --out cooling.csv
+  eventsim measure jar --until 500 --profile y
+
+\b
+Quantities:
+{quantities}
+
+\b
+Keys of --json:
+  scene                     as typed
+  disks, tracers            those that carry energy; those of mass 0
+  packing_fraction          of the area that disks can cover; null where nothing bounds it
+  table                     {{area, perimeter}} that the centre of a lone disk or of tracers sees, else null
+  duration, discarded       of the run; at its beginning; discard_given: whether it was asked for
+  steady, equilibrated      can there be a steady state; was it reached, as far as one can tell
+  doubts                    reasons against it, sentences
+  quantities                name -> {{value, error, unit, doubt, theory, accuracy, deviation, source, fixed, blocks,
+                            block_length}}; value null: no meaning, for the reason in doubt; error null: none can be
+                            given; fixed: conservation laws fix the value; deviation in standard errors; a unit
+                            "2^1800 energy" where the value would be no float in the scene's own
+  speeds                    histograms: species, edges, density, error, theory, misfit
+  correlations              lag, msd, msd_error, vacf, vacf_error
+  series                    columns time, contacts (of a disk), energy, temperature, pressure, collision_rate
+  profile                   null without --profile; axis, edges, species: density, velocity, temperature, each with
+                            its error, and theory of the density (hydrostatics under gravity)
+  structure                 null without --structure; psi_6, r, g
+
+Exit codes: 0 done; 2 bad usage, scene or file, or nothing to measure; 130 interrupted.
+""".format(quantities="\n".join(f"  {family.words}" for family in FAMILIES))
+
+
+@click.command(help=HELP)
 @scene_options(required=True, metavar="LOG|SCENE")
 @stop_options
 @click.option("--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this much time at the beginning.")
 @click.option("--structure", is_flag=True, help="Also g(r) at contact and psi_6 of the final state (needs freud).")
+@click.option("--series", is_flag=True, help="Also energy, temperature, pressure and collision rate along the run.")
+@click.option("--profile", type=click.Choice(["x", "y"]), help="Also density, velocity and temperature along an axis.")
+@click.option("--out", metavar="FILE.csv", help="Write the series, or else the profile, to a file.")
 @json_option
 @quiet_option
 def command(
@@ -33,51 +81,29 @@ def command(
     events: int | None,
     discard: float | None,
     structure: bool,
+    series: bool,
+    profile: str | None,
+    out: str | None,
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Measure the run that LOG tells, or of SCENE, simulated now without keeping a log.
-
-    Every number has a standard error from block averages; the block length is found, not guessed. Theory stands
-    beside it where there is one (equation of state of the fluid, closed forms, Maxwell, Enskog, Haff), with the
-    difference in standard errors. The beginning is left out as far as --discard, the scene's key equilibration, or
-    else the pressure itself tells. Where a steady state is in doubt, the reasons are printed.
-
-    \b
-    Examples:
-      eventsim measure gas.csv
-      eventsim measure periodic-fluid --set packing_fraction=0.3 --events 1000000
-      eventsim measure gas --until 10 --discard 1 --json
-
-    \b
-    Keys of --json:
-      scene                     as typed
-      disks, packing_fraction   those that carry energy; null on the open plane
-      duration, discarded       of the run; at its beginning; discard_given: whether it was asked for
-      steady, equilibrated      can there be a steady state; was it reached, as far as one can tell
-      doubts                    reasons against it, sentences
-      quantities                name -> {value, error, unit, blocks, block_length, theory, accuracy, deviation,
-                                source}; deviation in standard errors; null where there is none; a unit "2^1800 energy"
-                                where speeds are such that the value would be no float in the scene's own
-      speeds                    histograms: species, edges, density, error, theory, misfit
-      correlations              lag, msd, msd_error, vacf, vacf_error
-      structure                 null without --structure; psi_6, r, g
-
-    \b
-    Quantities: temperature (kT), Z (P V / N kT from the virial), Z_walls, pressure, collision_rate (pair contacts of a
-    disk per time), wall_contact_rate, force_WALL (impacts, and the weight of disks at rest on it), mean_free_time,
-    mean_free_path, mean_speed, diffusion, cooling_exponent (-d ln T per contact of a disk); with several species also
-    temperature_I, mean_speed_I, collision_rate_I and collision_rate_I_J.
-
-    Exit codes: 0 done; 2 bad usage, scene or file, or nothing to measure; 130 interrupted.
-    """
-
-    measures, order = measured(scene, settings, seed, until, events, discard, structure, quiet)
+    """Measure a run, see HELP."""
+    target = writable(out, "--out", (".csv",))
+    if target is not None and not series and profile is None:
+        raise click.UsageError("--out is the file of the series or the profile: give --series or --profile")
+    measures, order = measured(scene, settings, seed, until, events, discard, structure, profile, quiet)
+    columns = series_columns(measures) if series else profile_columns(measures)
+    if target is not None:
+        write_columns(columns, target)
     if as_json:
         found = None if order is None else order.to_dict()
         say(as_json_text({"scene": scene, **measures.to_dict(), "structure": found}))
     elif not quiet:
         say(measures_text(scene, measures, order))
+        if series:
+            say("\n" + table_of(series_columns(measures)))
+        if profile is not None:
+            say("\n" + table_of(profile_columns(measures)))
 
 
 def measured(
@@ -88,6 +114,7 @@ def measured(
     events: int | None,
     discard: float | None,
     structure: bool,
+    profile: str | None,
     quiet: bool,
 ) -> tuple[Measures, Structure | None]:
     """The measures of a log file, or of a scene that is simulated now; and the structure of its last state."""
@@ -98,10 +125,10 @@ def measured(
         from eventsim.replay.replay import Replay
 
         log = log_of(source, settings, seed, until, events, quiet)
-        return measure(log, discard), structure_of(log.scene, Replay(log).final()) if structure else None
+        return measure(log, discard, profile), structure_of(log.scene, Replay(log).final()) if structure else None
 
     scene = chosen_scene(source, settings, seed)
-    run = run_of(scene, source, until, events, quiet, measure=True if discard is None else discard)
+    run = run_of(scene, source, until, events, quiet, measure=True if discard is None else discard, profile=profile)
     if run.measures is None:
         raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
     return run.measures, structure_of(scene, run.state) if structure else None

@@ -11,6 +11,7 @@ import numpy as np
 from eventsim.engines.auto import first_engine
 from eventsim.engines.base import Stop
 from eventsim.engines.reference.cells import images_of, plan
+from eventsim.measure.ensemble import ensemble_of
 from eventsim.scene.disks import Disks, species_among
 from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
@@ -64,7 +65,9 @@ class Needs:
         fastest: largest speed at the start, length / time.
         temperature: kT = sum m |v|^2 / 2N over disks of finite positive mass, as a text where that is no float; None where
             there are none.
-        packing_fraction: area of the disks over that of the domain; None on the open plane.
+        packing_fraction: area of the disks that carry energy over the area that they can cover; None where nothing bounds it.
+        table: area and perimeter of the region that a lone disk's or a tracer's centre sees, and its mean free path pi A / P;
+            None where disks meet each other.
         domain, size, origin: its kind, width and height, lower-left corner.
         walls: name -> kind of the walls inside the domain.
         shapes: name -> number of the primitive shapes that the walls are made of, periodic images included.
@@ -93,6 +96,7 @@ class Needs:
     fastest: float
     temperature: float | str | None
     packing_fraction: float | None
+    table: tuple[float, float, float] | None
     domain: str
     size: tuple[float, float] | None
     origin: tuple[float, float]
@@ -121,6 +125,8 @@ def needs_of(scene: Scene) -> Needs:
     species, species_count = _species(disks)
     speed = np.hypot(disks.velocity[:, 0], disks.velocity[:, 1])
     size = domain.size
+    ensemble = ensemble_of(scene)
+    table = ensemble.table if ensemble.billiard else None
     shapes = Counter(type(feature.shape).__name__.lower() for feature in stage.features)
     return Needs(
         disks=len(disks),
@@ -134,7 +140,8 @@ def needs_of(scene: Scene) -> Needs:
         masses=(float(disks.mass.min()), float(disks.mass.max())),
         fastest=float(speed.max()),
         temperature=_temperature(disks, speed, pace_of_scene(scene)),
-        packing_fraction=None if size is None else float(np.pi * (disks.radius**2).sum()) / (size[0] * size[1]),
+        packing_fraction=ensemble.packing_fraction,
+        table=None if table is None else (table.area, table.perimeter, table.mean_free_path),
         domain=domain.kind,
         size=size,
         origin=domain.origin,

@@ -126,6 +126,7 @@ class Meter:
             self._filled = 0
         correlator = self._scales(duration, 0)
         end = max(duration, self._time)
+        self._make_room(end)
         kernel = kernels(self._rows)
         while not kernel.finish(end, self._plan, self._sums):
             self._drain(coarsen=True)
@@ -154,6 +155,7 @@ class Meter:
         kernel = kernels(self._rows)
         self._hold(kernel)
         self._time = float(time[-1])
+        self._make_room(self._time)
         block = sums.Block(time, *(rows[name] for name in sums.Block._fields[1:]))
         done = 0
         while (done := kernel.take(block, done, self._plan, self._sums)) < len(rows):
@@ -180,6 +182,12 @@ class Meter:
             numbers[sums.INTERVAL] = self._correlator.interval
             self._hold(kernels(rows))
         return self._correlator
+
+    def _make_room(self, end: float) -> None:
+        """Take samples half as often until those that are due up to a time fit into the buffer."""
+        numbers, counts = self._sums.numbers, self._sums.counts
+        while (end - numbers[sums.ORIGIN]) / numbers[sums.INTERVAL] - counts[sums.SAMPLED] > len(self._sums.way):
+            self._drain(coarsen=True)
 
     def _drain(self, coarsen: bool = False) -> None:
         """Add the samples that are in the buffer; coarsen: take them half as often from here on."""

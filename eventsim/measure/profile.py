@@ -160,7 +160,7 @@ class Profiler:
                 bar = ratio_average(0.5 * one.mass * square, here[:, COUNT])
                 temperature[k], temperature_error[k] = bar.mean, bar.error
         mean = np.array([bar.mean for bar in density]) / areas
-        error = np.array([bar.error for bar in density]) / areas
+        error = np.array([bar.error if bar.error > 0.0 else math.nan for bar in density]) / areas
         heat = float(np.nansum(temperature * mean * areas) / max(float((mean * areas).sum()), 1e-300))
         return SpeciesProfile(
             kind, mean, error, velocity, velocity_error, temperature, temperature_error, self._barometric(kind, heat)

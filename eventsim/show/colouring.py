@@ -29,11 +29,12 @@ Paint = Callable[[Frame], Floats]
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """The key of a colour map: what it shows, from `low` to `high`."""
+    """The key of a colour map: what it shows, from `low` to `high`; beyond: whether there is more, in the last colour."""
 
     title: str
     low: float
     high: float
+    beyond: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,14 +90,20 @@ def amounts() -> Colormap:
 
 def fastest_flight(log: EventLog) -> float:
     """Return the speed at the end of the scale: `FASTEST_SHARE` of the flights are slower; above 0."""
+    speeds = _speeds(log)
+    return float(np.quantile(speeds, FASTEST_SHARE)) or float(speeds.max()) or 1.0
+
+
+def _speeds(log: EventLog) -> Floats:
+    """Return the speeds at the beginning of all flights."""
     pairs = log.b >= 0
     flights: list[Sequence[Floats]] = [
         (*log.scene.disks.velocity.T,),
         (log.vxa, log.vya),
         (log.vxb[pairs], log.vyb[pairs]),
     ]
-    speeds = np.concatenate([np.hypot(*flight) for flight in flights])
-    return float(np.quantile(speeds, FASTEST_SHARE)) or float(speeds.max()) or 1.0
+    speeds: Floats = np.concatenate([np.hypot(*flight) for flight in flights])
+    return speeds
 
 
 def species_of(disks: Disks) -> tuple[NDArray[np.int64], Floats]:
@@ -115,7 +122,9 @@ def _mapped(amount: Callable[[Frame], Floats], scale: Scale) -> Colouring:
 
 
 def _by_speed(replay: Replay) -> Colouring:
-    return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), Scale("speed", 0.0, fastest_flight(replay.log)))
+    high = fastest_flight(replay.log)
+    scale = Scale("speed", 0.0, high, beyond=bool((_speeds(replay.log) > high).any()))
+    return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), scale)
 
 
 def _by_contacts(replay: Replay) -> Colouring:

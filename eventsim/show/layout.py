@@ -25,6 +25,9 @@ SMALLEST_UNIT = 0.9
 
 SMALLEST_SIZE, LARGEST_SIZE = 160, 8192
 
+AT_LEAST = "\N{GREATER-THAN OR EQUAL TO} "
+"""Before the end of a scale whose last colour is for more, too."""
+
 
 @dataclass(frozen=True, slots=True)
 class Layout:
@@ -89,7 +92,7 @@ class Bars:
 
     def _draw_scale(self, key: Scale) -> None:
         right, length, faint = float(PAD), 90.0, self._palette.faint
-        high = self._text(-right, BAR / 2, f"{key.high:.3g}", "right", faint)
+        high = self._text(-right, BAR / 2, f"{AT_LEAST if key.beyond else ''}{key.high:.3g}", "right", faint)
         right += self._width(high) + 6
         unit, (width, height) = self._place.unit, self._place.size
         strip = self._figure.add_axes(

@@ -173,14 +173,14 @@ class Picture:
         self._axes.add_collection(artist, autolim=False)
 
 
-MISPLACED = 0.15
-"""Of the time between frames: a clock that is further off gets one more digit (t = 4.8 among steps of 1.6 is not 5)."""
+MISPLACED = 0.02
+"""Of the time between frames: a clock that is further off gets more digits (t = 12.8 among steps of 3.2 is not 13)."""
 
 
 def _clock_format(times: Floats) -> str:
     """Return a format that tells neighbouring frames apart, and shows none as if it were elsewhere between the others."""
     step = float(times[-1] - times[0]) / max(len(times) - 1, 1)
     digits = max(math.ceil(-math.log10(step)), 0) if step > 0.0 else 3
-    if digits < 12 and float(np.abs(np.round(times, digits) - times).max()) > MISPLACED * step > 0.0:
+    while digits < 12 and float(np.abs(np.round(times, digits) - times).max()) > MISPLACED * step > 0.0:
         digits += 1
     return f",.{digits}f" if digits < 12 and float(np.abs(times).max()) < LATEST else ".6e"

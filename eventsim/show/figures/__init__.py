@@ -8,7 +8,10 @@ TITLES = {
     "raster": "which disk had an event when, and how many there were",
     "speeds": "speed histogram, with Maxwell's curve",
     "msd": "mean squared displacement against time",
+    "vacf": "velocity autocorrelation, with the tail 1 / t of two dimensions",
     "free-paths": "distances between contacts, with kinetic theory",
+    "series": "energy, temperature, pressure, collision rate along the run",
+    "profile": "density and temperature in slices along gravity, or along x",
     "residuals": "energy and overlaps over time: how good the run is",
     "space-time": "positions against time, for disks in a corridor",
 }

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
-from eventsim.measure.free_paths import free_paths, mean_free_path, path_density
+from eventsim.measure import measure
+from eventsim.measure.free_paths import free_paths, path_density
 from eventsim.record.events import Kind
 from eventsim.replay.flights import flight_table
 from eventsim.replay.log import EventLog
-from eventsim.scene import Periodic
 from eventsim.show.figures.demands import replay_with_time, with_events
 from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of
 
@@ -38,15 +40,14 @@ def draw(figure: Figure, log: EventLog) -> None:
         middle[seen], counts[seen] / (len(paths) * width), np.sqrt(counts[seen]) / (len(paths) * width),
         fmt="o", ms=3.5, lw=1, color=BLUE, label=f"{len(paths):,} free paths, counting errors",
     )  # fmt: skip
-    theory = mean_free_path(log.scene)
-    shown = mean if theory is None else theory
-    x = np.linspace(0.0, edges[-1], 200)
-    axes.plot(x, path_density(x / shown) / shown, color=ORANGE, lw=1.5, label=f"kinetic theory, mean {shown:.4g}")
-    if theory is None:
-        verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, taken over by the curve"
-    else:
-        whose = "Enskog" if isinstance(log.scene.domain, Periodic) else "Enskog without walls"
-        verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}, {whose} {theory:.4g} ({mean / theory - 1:+.1%})"
+    told = measure(log).by_name.get("mean_free_path")
+    theory = None if told is None or math.isnan(told.value) else told.theory
+    if theory is not None:
+        x = np.linspace(0.0, edges[-1], 200)
+        axes.plot(x, path_density(x / theory) / theory, color=ORANGE, lw=1.5, label=f"kinetic theory, mean {theory:.4g}")
+    verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}"
+    if theory is not None:
+        verdict += f", kinetic theory {theory:.4g} ({mean / theory - 1:+.1%})"
     label(
         axes,
         f"free path [{LENGTH}]",

@@ -48,8 +48,9 @@ def draw(figure: Figure, log: EventLog) -> None:
         for edge in (scene.domain.origin[axis], scene.domain.origin[axis] + scene.domain.size[axis]):
             axes.axhline(edge, color="#39424e", lw=1.2, ls="--" if scene.domain.periodic[axis] else "-")
     which = f"{len(pairs):,}" if len(pairs) <= MOST_CONTACTS else f"the first {MOST_CONTACTS:,} of {len(pairs):,}"
+    every = int((log.kind != Kind.KICK).sum())
     label(
         axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
-        f"{name_of(log)}: {replay.stage.n:,} disks, {which} contacts between them (dots)",
+        f"{name_of(log)}: {replay.stage.n:,} disks, {every:,} contacts, {which} of them between disks (dots)",
     )  # fmt: skip
     axes.grid(visible=False)

@@ -147,7 +147,7 @@ class Player {
     const { amounts, kinds, speciesNames, fastest, masses } = this.stage, number = (value) => String(Number(value.toPrecision(3)));
     const scale = (low, high) => [low, dot(`linear-gradient(90deg, ${amounts.join(", ")})`, "scale"), high];
     const keys = {
-      speed: () => scale("0", number(fastest)),
+      speed: () => scale("0", `≥ ${number(fastest)}`),
       mass: () => (masses[0] < masses[1] ? scale(number(masses[0]), number(masses[1])) : []),
       contacts: () => scale("few", "many"),
       index: () => scale("0", String(this.world.count - 1)),

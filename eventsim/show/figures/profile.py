@@ -1,0 +1,38 @@
+"""Profile: density and temperature in slices along gravity, or along x, with error bars; the barometric curve beside."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from eventsim.measure import measure
+from eventsim.replay.log import EventLog
+from eventsim.show.figures.demands import replay_with_time
+from eventsim.show.figures.style import LENGTH, ORANGE, label, name_of
+from eventsim.show.palette import KINDS
+
+
+def draw(figure: Figure, log: EventLog) -> None:
+    """Draw the number density of each species above, its temperature below."""
+    replay_with_time(log)
+    gravity = log.scene.gravity or (0.0, 0.0)
+    profile = measure(log, profile="y" if abs(gravity[1]) > abs(gravity[0]) else "x").profile
+    assert profile is not None
+    middle = 0.5 * (profile.edges[1:] + profile.edges[:-1])
+    above, below = figure.subplots(2, 1, sharex=True)
+    theory = False
+    for place, one in enumerate(profile.species):
+        look = {"fmt": "o", "ms": 3.0, "lw": 1.0, "color": KINDS[place % len(KINDS)]}
+        name = f"species {one.species}" if len(profile.species) > 1 else "measured"
+        above.errorbar(middle, one.density, np.nan_to_num(one.density_error), label=name, **look)
+        if one.theory is not None:
+            above.plot(middle, one.theory, color=ORANGE, lw=1.4, label="hydrostatics of the fluid")
+            theory = True
+        if np.isfinite(one.temperature).any():
+            below.errorbar(middle, one.temperature, np.nan_to_num(one.temperature_error), **look)
+    label(above, "", f"disks / ({LENGTH})$^2$", name_of(log))
+    label(below, f"{profile.axis} [{LENGTH}]", "temperature kT", "")
+    above.set_ylim(0.0, None)
+    below.set_ylim(0.0, None)
+    if theory or len(profile.species) > 1:
+        above.legend(frameon=False)

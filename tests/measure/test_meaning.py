@@ -1,0 +1,289 @@
+"""What numbers mean: who is counted, what is conserved, until when averages go, and where there is a dash instead."""
+
+import math
+
+import numpy as np
+import pytest
+
+import eventsim as es
+from eventsim.measure import Meter, measure
+from eventsim.record.events import Kind
+from eventsim.replay.flights import flight_table
+from eventsim.replay.replay import Replay
+from eventsim.scene.gallery import names
+from tests.engines.scenes import lattice_gas
+from tests.measure.write_pages import PAGES, page
+
+INF = math.inf
+
+
+def run_of(scene, **stop):
+    return es.simulate(scene, engine="reference", log=True, **stop)
+
+
+def posts():
+    """A small disk between two large posts that cannot be moved: a Lorentz gas."""
+    disks = es.Disks([[0.5, 0.5], [0.05, 0.05], [0.1, 0.55]], [[0, 0], [0, 0], [0.6, 0.8]], [0.2, 0.2, 0.01], [INF, INF, 1.0])
+    return es.Scene(disks, es.Periodic((1.0, 1.0)))
+
+
+def with_tracers(tracers):
+    """A gas, and tracers among it."""
+    gas = lattice_gas(36, 0.3, es.Periodic, seed=2).disks
+    rng = np.random.default_rng(1)
+    side = lattice_gas(36, 0.3, es.Periodic, seed=2).domain.size[0]
+    corners = [[(k % 6) * side / 6.0, (k // 6) * side / 6.0] for k in range(tracers)]
+    place = np.concatenate([gas.position, np.reshape(corners, (-1, 2))])
+    velocity = np.concatenate([gas.velocity, rng.normal(size=(tracers, 2)) * 3.0])
+    radius = np.concatenate([gas.radius, np.zeros(tracers)])
+    mass = np.concatenate([gas.mass, np.zeros(tracers)])
+    return es.Scene(es.Disks(place, velocity, radius, mass), es.Periodic((side, side)))
+
+
+def turning(n=36, omega=2.0, seed=4):
+    """Disks in a round container, all turning about its middle."""
+    rng = np.random.default_rng(seed)
+    place = np.array([[x, y] for x in range(-4, 5) for y in range(-4, 5) if x * x + y * y < 16])[:n] * 0.2
+    velocity = rng.normal(size=place.shape) * 0.6 + omega * np.column_stack([-place[:, 1], place[:, 0]])
+    return es.Scene(es.Disks(place, velocity, 0.04), es.Open(), walls=[es.Circle((0.0, 0.0), 1.0)])
+
+
+# --- who is counted, and whom they meet
+
+
+def test_a_lone_disk_among_posts_has_every_contact_once():
+    run = run_of(posts(), events=400)
+    measures = measure(run.log, discard=0.0)
+    assert measures["collision_rate"].value == pytest.approx(len(run.log) / measures.duration, rel=1e-12)
+    assert measures["mean_free_time"].value == pytest.approx(measures.duration / len(run.log), rel=1e-12)
+    # 1 - 2 pi .21^2 and 4 pi .21: no post overlaps the other
+    assert measures["mean_free_path"].theory == pytest.approx(0.8606089618, rel=1e-9)
+
+
+def test_contacts_with_a_post_count_once_and_with_each_other_twice():
+    gas = lattice_gas(16, 0.2, es.Periodic, seed=3).disks
+    mass = gas.mass.copy()
+    mass[5] = INF
+    velocity = gas.velocity.copy()
+    velocity[5] = 0.0
+    scene = es.Scene(es.Disks(gas.position, velocity, gas.radius, mass), lattice_gas(16, 0.2, es.Periodic, seed=3).domain)
+    run = run_of(scene, events=1500)
+    with_post = int(((run.log.a == 5) | (run.log.b == 5)).sum())
+    rate = (2 * (len(run.log) - with_post) + with_post) / 15 / run.time
+    assert measure(run.log, discard=0.0)["collision_rate"].value == pytest.approx(rate, rel=1e-12)
+
+
+def test_tracers_change_no_number_of_the_gas():
+    alone = measure(run_of(with_tracers(0), events=4000).log, discard=0.0)
+    run = run_of(with_tracers(20), until=alone.duration)
+    among = measure(run.log, discard=0.0)
+    for name in ("temperature", "Z", "collision_rate", "mean_free_path", "mean_speed"):
+        assert among[name].value == pytest.approx(alone[name].value, rel=1e-9), name
+    assert among.disks == 36
+    assert among.tracers == 20
+    met = int(((run.log.a < 36) & (run.log.b >= 36)).sum())
+    assert among["tracer_collision_rate"].value == pytest.approx(met / 20 / run.time, rel=1e-12)
+
+
+def test_the_way_of_tracers_in_a_table_is_pi_a_over_p():
+    measures = es.simulate(es.gallery("sinai", n=16), events=2000, engine="reference", measure=True).measures
+    assert measures["mean_free_path"].theory == pytest.approx(math.pi * (1.0 - math.pi / 16.0) / (0.5 * math.pi), rel=1e-12)
+    assert abs(measures["mean_free_path"].deviation) < 4.0
+    assert measures.table_seen == pytest.approx((1.0 - math.pi / 16.0, 0.5 * math.pi), rel=1e-12)
+    assert measures["mean_speed"].fixed
+    assert measures["mean_speed"].value == pytest.approx(1.0, rel=1e-12)
+
+
+def test_the_stadium_has_the_free_path_of_its_table():
+    measures = es.simulate(es.gallery("stadium"), events=4000, engine="reference", measure=True).measures
+    area, perimeter = math.pi * 0.875**2 + 2.0 * 1.75, 2.0 * math.pi * 0.875 + 4.0
+    assert measures["mean_free_path"].theory == pytest.approx(math.pi * area / perimeter, rel=1e-12)
+    assert abs(measures["mean_free_path"].deviation) < 4.0
+
+
+def test_a_disk_that_repeats_its_way_is_not_compared_with_the_mean_over_all_ways():
+    path = es.simulate(es.gallery("corner"), events=400, engine="reference", measure=True).measures["mean_free_path"]
+    assert path.theory is None
+    assert "7.06858" in path.doubt  # pi 81 / 36
+
+
+# --- what is conserved
+
+
+def test_a_gas_that_turns_in_a_jar_keeps_its_angular_momentum_out_of_the_temperature():
+    scene = turning()
+    run = run_of(scene, events=4000)
+    measures = measure(run.log, discard=0.0)
+    disks = scene.disks
+    energy = 0.5 * float((disks.velocity**2).sum())
+    turn = float((disks.position[:, 0] * disks.velocity[:, 1] - disks.position[:, 1] * disks.velocity[:, 0]).sum())
+    times = np.linspace(0.0, run.time, 2000, endpoint=False)
+    inertia = np.array([float((run.state_at(t).position ** 2).sum()) for t in times])
+    kt = 2.0 * (energy - float((0.5 * turn**2 / inertia).mean())) / (2 * len(disks) - 1)
+    # means over 2000 times and over the meter's own differ by their scatter
+    assert measures["temperature"].value == pytest.approx(kt, rel=5e-3)
+    assert measures["temperature"].value < 0.8 * energy / len(disks)
+    assert math.isnan(measures["Z"].value)
+    assert "turns" in measures["Z"].doubt
+    assert measures.packing_fraction == pytest.approx(len(disks) * 0.04**2, rel=1e-12)
+    assert measures["pressure_edge" if "pressure_edge" in measures else "pressure_wall0"].value > 0.0
+
+
+# --- until the end of the run
+
+
+def test_two_contacts_are_a_rate_without_a_bar():
+    scene = es.Scene(
+        es.Disks([(0.5, 0.5), (1.5, 0.5)], [(1, 0), (0, 0)], 0.1, [1, 2]),
+        es.Box((2, 1)),
+        walls=[es.Segment((1.8, 0.2), (1.9, 0.8))],
+    )
+    run = run_of(scene, until=4.0)
+    rate = measure(run.log)["collision_rate"]
+    assert rate.value == pytest.approx(int((run.log.kind == Kind.PAIR).sum()) / 4.0, rel=1e-12)
+    assert math.isnan(rate.error)
+    assert "too few" in rate.doubt
+    assert measure(run.log).discarded == 0.0
+    assert not measure(run.log).equilibrated
+
+
+@pytest.mark.parametrize("name", ["mixture", "brownian", "jar", "channel"])
+def test_averages_go_to_the_end_of_the_run(name):
+    run = run_of(es.gallery(name), events=600)
+    measures = measure(run.log, discard=0.0)
+    table = flight_table(Replay(run.log))
+    lag = table.duration[:, None]
+    ends = table.velocity, table.velocity + 0.5 * lag * table.pull, table.velocity + lag * table.pull
+    square = sum(weight * (v**2).sum(axis=1) for weight, v in zip((1, 4, 1), ends, strict=True)) / 6.0
+    mass = run.scene.disks.mass
+    species = np.unique(mass)
+    if len(species) == 1:
+        energy = 0.5 * float((mass[table.disk] * square * table.duration).sum()) / run.time
+        assert measures.series.energy.mean() == pytest.approx(energy, rel=0.05)
+        return
+    for kind, value in enumerate(species):
+        mine = mass[table.disk] == value
+        kt = 0.5 * value * float((square * table.duration)[mine].sum()) / (run.time * (mass == value).sum())
+        assert measures[f"temperature_{kind}"].value == pytest.approx(kt, rel=1e-9)
+
+
+def test_what_is_left_out_is_left_out_to_the_last_bit_of_a_flight():
+    run = run_of(es.gallery("gas", n=20), events=2000)
+    cut = 0.37 * run.time
+    kept = run.log.time > cut
+    measures = measure(run.log, discard=cut)
+    met = int(((run.log.kind == Kind.PAIR) & kept).sum())
+    assert measures["collision_rate"].value == pytest.approx(2.0 * met / 20 / (run.time - cut), rel=1e-9)
+
+
+# --- any length
+
+
+def test_a_run_that_falls_quiet_costs_no_more_samples():
+    scene = es.Scene(es.Disks([[0.0, 0.0], [3.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], 0.5), es.Open())
+    run = run_of(scene, until=1e3)
+    meter = Meter(scene)
+    meter.write(run.log.rows)
+    before = meter._sums.way.shape
+    measures = meter.finish(1e14)
+    assert meter._sums.way.shape == before
+    assert len(measures.correlations.lag) < 400
+    assert measures["mean_speed"].value == pytest.approx(0.5, rel=1e-9)
+
+
+def test_rows_far_apart_are_measured_as_those_close_by():
+    """A disk that slows down by a factor 2 at each of 200 contacts: the intervals between samples double with it."""
+    meter = Meter(es.Scene(es.Disks([[0.0, 0.0]], [[1.0, 0.0]], 0.0), es.Box((2.0, 2.0), origin=(-1.0, -1.0))), 0.0)
+    rows = es.simulate(meter.scene, events=4_000, engine="reference", log=True).log.rows.copy()
+    slow = 2.0 ** np.minimum(np.arange(len(rows)) / 20.0, 200.0)
+    rows["remainder"] = np.cumsum(2.0 * slow)
+    rows["epoch"] = 0
+    rows["vxa"] /= slow
+    meter.write(rows)
+    measures = meter.finish(float(rows["remainder"][-1]))
+    assert measures["wall_contact_rate"].value == pytest.approx(len(rows) / rows["remainder"][-1], rel=1e-9)
+    assert measures.correlations.lag[-1] > 1e50
+
+
+# --- dashes
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("galperin", "open plane"),
+        ("newton-cradle", "one line"),
+        ("two-disks", "one line"),
+        ("corridor", "one line"),
+        ("bounce", "take energy"),
+        ("corner", "with nobody"),
+        ("obstacle", "obstacles"),
+        ("cooling", "take energy"),
+    ],
+)
+def test_there_is_a_dash_where_there_is_no_temperature(name, why):
+    measures = es.simulate(es.gallery(name), events=300, engine="reference", measure=True).measures
+    assert math.isnan(measures["temperature"].value)
+    assert why in measures["temperature"].doubt
+    assert not measures.equilibrated
+    assert all(quantity.theory is None for quantity in measures.quantities if quantity.name != "cooling_exponent")
+
+
+def test_three_contacts_do_not_make_an_equilibrium():
+    measures = es.simulate(es.gallery("break"), events=40, engine="reference", measure=True).measures
+    assert not measures.equilibrated
+    assert all(quantity.theory is None for quantity in measures.quantities)
+
+
+def test_a_cooling_gas_is_told_by_its_series():
+    scene = lattice_gas(64, 0.1, es.Periodic, seed=7, restitution=0.9)
+    run = run_of(scene, events=64 * 20)
+    series = measure(run.log).series
+    assert math.isnan(measure(run.log)["temperature"].value)
+    fall = -np.diff(np.log(series.temperature)).sum() / (series.contacts[-1] - series.contacts[0])
+    assert fall == pytest.approx(0.5 * (1.0 - 0.81), rel=0.1)
+    energy = 0.5 * float((run.state_at(series.time[-1]).velocity ** 2).sum())
+    assert series.energy[-1] == pytest.approx(energy, rel=1e-9)
+
+
+def test_diffusion_tells_the_lags_it_was_read_between():
+    measures = es.simulate(lattice_gas(36, 0.3, es.Periodic, seed=3), events=8_000, engine="reference", measure=True).measures
+    assert "slope between lags" in measures["diffusion"].doubt
+    assert "grows with the lag" in measures["diffusion"].doubt
+    assert measures["diffusion"].theory is None
+
+
+def test_walls_with_two_sides_have_two_pressures():
+    disks = es.Disks([[0.25, 0.25], [0.25, 0.75], [0.75, 0.5]], [[1, 0.3], [0.2, -1], [0.3, 0.5]], 0.05)
+    scene = es.Scene(disks, es.Box((1.0, 1.0)), walls=[es.Segment((0.5, 0.0), (0.5, 1.0), name="middle")])
+    measures = es.simulate(scene, events=2000, engine="reference", measure=True).measures
+    left, right = measures["force_middle_left"].value, measures["force_middle_right"].value
+    assert measures["force_middle"].value == pytest.approx(left + right, rel=1e-12)
+    assert left > right  # two fast disks against a slow one; the left of the way up is towards smaller x
+
+
+def test_measures_have_keys_and_a_table():
+    measures = es.simulate(lattice_gas(16, 0.2, es.Periodic, seed=3), events=2000, engine="reference", measure=True).measures
+    assert measures.keys()[0] == "temperature"
+    assert "collision_rate" in measures.table()
+    assert len(repr(measures)) < 100
+    with pytest.raises(KeyError, match="there are temperature"):
+        measures["heat"]
+
+
+# --- pages
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_page_of_a_gallery_scene_is_the_one_that_was_read(name):
+    """To change a page, read it, and write it by `python -m tests.measure.write_pages`."""
+    assert page(name) == (PAGES / f"{name}.txt").read_text()
+
+
+@pytest.mark.parametrize("name", names())
+def test_no_bar_is_zero_and_no_number_is_without_a_reason(name):
+    measures = es.simulate(es.gallery(name), events=300, engine="reference", measure=True).measures
+    for quantity in measures.quantities:
+        assert quantity.error != 0.0, quantity.name
+        assert quantity.fixed or quantity.error > 0.0 or quantity.doubt, quantity.name
+        assert not math.isnan(quantity.value) or quantity.doubt, quantity.name
