@@ -17,6 +17,8 @@ from eventsim.live.messages import Move, Open, Resize, Throw
 from eventsim.live.packets import packet
 from eventsim.live.source import demand_few
 from eventsim.live.track import Track
+from eventsim.measure.ensemble import ensemble_of
+from eventsim.measure.records import FEW
 from eventsim.record.events import State
 from eventsim.replay.replay import Replay
 from eventsim.scene import Box, Disks, Scene
@@ -260,6 +262,7 @@ def _scouted(scene: Scene, pace: float | None) -> tuple[Track, float, dict[str, 
         "borders": len(replay.stage.boundaries),
         "scene": scene_description(replay.stage),
         "stage": stage,
+        "gas": _gas(scene),
     }
     return track, speed, header, start_columns(replay)
 
@@ -280,3 +283,18 @@ def _usual_speed(scene: Scene) -> float:
     if scene.until is None or not scene.until > scene.start_time:
         return 0.0
     return (scene.until - scene.start_time) / SECONDS
+
+
+def _gas(scene: Scene) -> dict[str, Any]:
+    """What read-outs need to know of the scene as a gas; null where `measure` has a dash, with the reason."""
+    ensemble = ensemble_of(scene)
+    disks, kept = scene.disks, ensemble.kept_momenta
+    return {
+        "freedoms": ensemble.freedoms,
+        "kept": [axis < kept for axis in range(2)],
+        "mass": float(disks.mass[ensemble.counted].sum()),
+        "area": ensemble.area,
+        "noTemperature": ensemble.no_temperature,
+        "noPressure": ensemble.no_pressure,
+        "maxwell": ensemble.simple and ensemble.n >= FEW,
+    }

@@ -124,6 +124,32 @@ class Ensemble:
             return "along the period disks fall for ever"
         return None
 
+    @cached_property
+    def no_temperature(self) -> str | None:
+        """Why no run of the scene has a temperature, a clause; None where one may."""
+        if not self.n:
+            return "tracers carry no energy"
+        if self.unsteady is not None:
+            return self.unsteady
+        if self.n == 1:
+            return "one disk shares its energy with nobody"
+        if self.drowned:
+            return "the energy of the common motion leaves no digits of the thermal energy"
+        return None
+
+    @cached_property
+    def no_pressure(self) -> str | None:
+        """Why no run of the scene has a pressure of its gas, a clause; None where one may."""
+        if self.no_temperature is not None:
+            return self.no_temperature
+        if self.scene.gravity is not None:
+            return "under gravity it falls with the height"
+        if not self.alone:
+            return "walls and posts inside make it a matter of place"
+        if self.turns:
+            return "the gas turns as a whole, and it grows outwards"
+        return None if self.area is not None else "nothing bounds the gas"
+
     @property
     def steady(self) -> bool:
         """Whether an equilibrium can be reached at all."""

@@ -194,16 +194,10 @@ class Records:
     def no_temperature(self) -> str | None:
         """Why there is no temperature, a clause; None where there is one."""
         ensemble = self.ensemble
-        if not ensemble.n:
-            return "tracers carry no energy"
-        if not self.moves:
+        if ensemble.n and not self.moves:
             return "nothing moves"
-        if ensemble.unsteady is not None:
-            return ensemble.unsteady
-        if ensemble.n == 1:
-            return "one disk shares its energy with nobody"
-        if ensemble.drowned:
-            return "the energy of the common motion leaves no digits of the thermal energy"
+        if ensemble.no_temperature is not None:
+            return ensemble.no_temperature
         if self.on_a_line is not None:
             return self.on_a_line
         if ensemble.n < FEW and self.events < FEWEST_CONTACTS * ensemble.n:
@@ -213,16 +207,7 @@ class Records:
     @cached_property
     def no_pressure(self) -> str | None:
         """Why there is no pressure of the gas, a clause; None where there is one."""
-        ensemble = self.ensemble
-        if self.no_temperature is not None:
-            return self.no_temperature
-        if ensemble.scene.gravity is not None:
-            return "under gravity it falls with the height"
-        if not ensemble.alone:
-            return "walls and posts inside make it a matter of place"
-        if ensemble.turns:
-            return "the gas turns as a whole, and it grows outwards"
-        return None if ensemble.area is not None else "nothing bounds the gas"
+        return self.no_temperature or self.ensemble.no_pressure
 
     @property
     def mixed(self) -> bool:

@@ -27,17 +27,14 @@ def posts():
     return es.Scene(disks, es.Periodic((1.0, 1.0)))
 
 
-def with_tracers(tracers):
-    """A gas, and tracers among it."""
-    gas = lattice_gas(36, 0.3, es.Periodic, seed=2).disks
-    rng = np.random.default_rng(1)
-    side = lattice_gas(36, 0.3, es.Periodic, seed=2).domain.size[0]
-    corners = [[(k % 6) * side / 6.0, (k // 6) * side / 6.0] for k in range(tracers)]
-    place = np.concatenate([gas.position, np.reshape(corners, (-1, 2))])
-    velocity = np.concatenate([gas.velocity, rng.normal(size=(tracers, 2)) * 3.0])
-    radius = np.concatenate([gas.radius, np.zeros(tracers)])
-    mass = np.concatenate([gas.mass, np.zeros(tracers)])
-    return es.Scene(es.Disks(place, velocity, radius, mass), es.Periodic((side, side)))
+def with_tracers():
+    """A gas of 16 disks, and six tracers among it."""
+    scene = lattice_gas(16, 0.2, es.Periodic, seed=2)
+    gas, side = scene.disks, scene.domain.size[0]
+    places = [[0.25 * side * (k % 4), 0.25 * side * (k // 4)] for k in range(6)]
+    velocity = np.concatenate([gas.velocity, np.random.default_rng(1).normal(size=(6, 2))])
+    radius, mass = np.append(gas.radius, np.zeros(6)), np.append(gas.mass, np.zeros(6))
+    return es.Scene(es.Disks(np.concatenate([gas.position, places]), velocity, radius, mass), scene.domain)
 
 
 def turning(n=36, omega=2.0, seed=4):
@@ -74,15 +71,20 @@ def test_contacts_with_a_post_count_once_and_with_each_other_twice():
 
 
 def test_tracers_change_no_number_of_the_gas():
-    alone = measure(run_of(with_tracers(0), events=4000).log, discard=0.0)
-    run = run_of(with_tracers(20), until=alone.duration)
-    among = measure(run.log, discard=0.0)
-    for name in ("temperature", "Z", "collision_rate", "mean_free_path", "mean_speed"):
-        assert among[name].value == pytest.approx(alone[name].value, rel=1e-9), name
-    assert among.disks == 36
-    assert among.tracers == 20
-    met = int(((run.log.a < 36) & (run.log.b >= 36)).sum())
-    assert among["tracer_collision_rate"].value == pytest.approx(met / 20 / run.time, rel=1e-12)
+    run = run_of(with_tracers(), events=1200)
+    measures, rows = measure(run.log, discard=0.0), run.log.rows
+    gas = rows[rows["b"] < 16]
+    disks = run.scene.disks
+    energy = 0.5 * float((disks.mass[:, None] * disks.velocity**2).sum())
+    drift = 0.5 * float((disks.velocity[:16].mean(axis=0) ** 2).sum()) * 16
+    kt = (energy - drift) / 15
+    virial = 2.0 * disks.radius[0] * float(gas["impulse"].sum())
+    assert measures["temperature"].value == pytest.approx(kt, rel=1e-12)
+    assert measures["Z"].value == pytest.approx(1.0 + virial / (2.0 * 16 * kt * run.time), rel=1e-9)
+    assert measures["collision_rate"].value == pytest.approx(2.0 * len(gas) / 16 / run.time, rel=1e-9)
+    assert (measures.disks, measures.tracers) == (16, 6)
+    met = int(((rows["a"] < 16) & (rows["b"] >= 16)).sum())
+    assert measures["tracer_collision_rate"].value == pytest.approx(met / 6 / run.time, rel=1e-9)
 
 
 def test_the_way_of_tracers_in_a_table_is_pi_a_over_p():

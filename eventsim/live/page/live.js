@@ -10,6 +10,7 @@ class LivePlayer extends Player {
   open(world, description) {
     const factor = this.usualSpeed ? this.view.speed / this.usualSpeed : 1;
     this.app = description.app;
+    this.gas = description.gas;
     super.open(world, { ...description, duration: description.usualSpeed, seconds: 1 });
     this.view.speed = factor * this.usualSpeed;
     this.impulses = new WallImpulses(description.borders);

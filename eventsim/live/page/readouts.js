@@ -3,7 +3,7 @@
 
 const BINS = 24, PRESSURE_SECONDS = 5, CURVE_POINTS = 60;
 
-/* Kinetic energy, potential energy, momentum and mass of the disks of finite mass. */
+/* Kinetic energy, potential energy, momentum and number of the disks of finite positive mass. */
 function sums(world, state) {
   let kinetic = 0, potential = 0, px = 0, py = 0, count = 0;
   for (let i = 0; i < world.count; i++) {
@@ -50,9 +50,11 @@ class Readouts {
     }
   }
 
-  /* view: what is shown; its state lies in world.now. */
-  show(world, stage, impulses, view) {
-    const state = world.now, found = sums(world, state), temperature = found.count ? found.kinetic / found.count : 0;
+  /* view: what is shown; its state lies in world.now.  gas: what `measure` knows of the scene as a gas, and where it has a dash. */
+  show(world, stage, gas, impulses, view) {
+    const state = world.now, found = sums(world, state);
+    const drift = (gas.kept[0] ? found.px ** 2 : 0) + (gas.kept[1] ? found.py ** 2 : 0);
+    const temperature = gas.noTemperature ? 0 : (2 * (found.kinetic - (drift ? drift / (2 * gas.mass) : 0))) / gas.freedoms;
     const events = world.eventsUntil(view.time), from = Math.max(view.time - view.speed, 0);
     const lasted = view.time > 0 ? Math.min(view.time, view.speed) / view.speed : 1;
     const pressure = this._pressure(world, stage, impulses, view, events);
@@ -60,11 +62,13 @@ class Readouts {
     tell("events / s", number((events - world.eventsUntil(from)) / lasted));
     tell("energy", number(found.energy, 6));
     tell("momentum", `${number(found.px)}, ${number(found.py)}`);
-    tell("temperature", number(temperature, 4));
+    tell("temperature", gas.noTemperature ? "–" : number(temperature, 4));
+    this.values.get("temperature").title = gas.noTemperature || "";
     tell("pressure", pressure === null ? "–" : number(pressure));
-    const volume = stage.size ? stage.size[0] * stage.size[1] : 0;
-    tell("p V / N kT", pressure === null || !temperature ? "–" : number((pressure * volume) / (found.count * temperature)));
-    this._drawSpeeds(world, state, temperature, view.dark ? stage.palettes.dark : stage.palettes.light);
+    const none = gas.noPressure || pressure === null || !temperature;
+    tell("p V / N kT", none ? "–" : number((pressure * gas.area) / (found.count * temperature)));
+    this.values.get("p V / N kT").title = gas.noPressure || "";
+    this._drawSpeeds(world, state, temperature || (found.count ? found.kinetic / found.count : 0), gas.maxwell, view.dark ? stage.palettes.dark : stage.palettes.light);
   }
 
   /* Momentum that the hard boundary took up per length and time, over the last seconds; null where there is none. */
@@ -76,7 +80,7 @@ class Readouts {
   }
 
   /* The histogram, and the density of speeds in two dimensions: m v / kT exp(-m v^2 / 2 kT), averaged over the masses. */
-  _drawSpeeds(world, state, temperature, palette) {
+  _drawSpeeds(world, state, temperature, maxwell, palette) {
     const ratio = window.devicePixelRatio || 1, box = this.canvas.getBoundingClientRect(), context = this.canvas.getContext("2d");
     const width = (this.canvas.width = Math.round(box.width * ratio)), height = (this.canvas.height = Math.round(box.height * ratio));
     const masses = new Map(), speeds = [];
@@ -101,17 +105,19 @@ class Readouts {
     context.globalAlpha = 0.55;
     counts.forEach((n, k) => context.fillRect((width * k) / BINS, y(n), width / BINS - ratio, base - y(n)));
     context.globalAlpha = 1;
-    context.strokeStyle = palette.arrow;
-    context.lineWidth = 1.6 * ratio;
-    context.beginPath();
-    curve.forEach((n, k) => context[k ? "lineTo" : "moveTo"]((width * k) / CURVE_POINTS, y(n)));
-    context.stroke();
+    if (maxwell) {
+      context.strokeStyle = palette.arrow;
+      context.lineWidth = 1.6 * ratio;
+      context.beginPath();
+      curve.forEach((n, k) => context[k ? "lineTo" : "moveTo"]((width * k) / CURVE_POINTS, y(n)));
+      context.stroke();
+    }
     context.fillStyle = palette.faint;
     context.font = `${11 * ratio}px system-ui, sans-serif`;
     context.textBaseline = "bottom";
     context.fillText("0", 0, height);
     context.textAlign = "center";
-    context.fillText("speed, and Maxwell's curve", width / 2, height);
+    context.fillText(maxwell ? "speed, and Maxwell's curve" : "speed", width / 2, height);
     context.textAlign = "right";
     context.fillText(number(end), width, height);
   }

@@ -45,7 +45,7 @@ class LiveView {
   }
 
   tell(player) {
-    this.readouts.show(player.world, player.stage, player.impulses, player.view);
+    this.readouts.show(player.world, player.stage, player.gas, player.impulses, player.view);
     const done = player.ended !== null && player.view.time >= player.duration;
     if (done !== this.done) { this.done = done; this._notice(done ? player.ended : null); }
     if (!player.comparison) return;
