@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import eventsim as es
-from eventsim.cli.measured import measures_text
+from eventsim.cli.measure import measures_text
 from eventsim.scene.gallery import names
 
 PAGES = Path(__file__).parent / "pages"
