@@ -64,7 +64,9 @@ def _disks(needs: Needs) -> str:
         text = f"{plural(needs.disks, 'disk')}: {'; '.join(species)}"
     if needs.packing_fraction is not None:
         covering = "it covers" if needs.disks == 1 else "they cover"
-        text += f"; {covering} {100 * needs.packing_fraction:.3g} % of the area that is free to them"
+        whole = needs.size is not None and not needs.walls and not needs.immovable
+        free = "the domain" if whole else "what walls and posts leave free"
+        text += f"; {covering} {100 * needs.packing_fraction:.3g} % of {free}"
     parts = []
     if needs.immovable:
         unmoved = "nothing deflects it" if needs.gravity is None else "neither contacts nor gravity deflect it"
