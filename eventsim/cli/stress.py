@@ -98,12 +98,12 @@ def command(
     Exit codes: 0 done; 1 an event-driven engine is at fault; 2 bad usage; 130 interrupted (a soak tells what
     it found so far).
     """
-    from eventsim.engines import engine_named
+    from eventsim.engines import ONE_LOG, engine_named
 
     if soak is not None:
         if names or out or table:
             raise click.UsageError("--soak draws its own scenes: no NAME, --out or --csv with it")
-        against = tuple(engine_named(name).name for name in dict.fromkeys(engines)) or ("reference", "fast")
+        against = tuple(engine_named(name).name for name in dict.fromkeys(engines)) or ONE_LOG
         _soak(range(seed, seed + soak), against, workers, as_json, quiet)
         return
     figure_path = writable(out, "--out", suffixes.FIGURES)

@@ -155,6 +155,9 @@ TABLE = {
 ENGINES = {name: engine for name, engine in TABLE.items() if name != "auto"}
 """name -> engine, each of which is one and no choice among others."""
 
+ONE_LOG = tuple(name for name, engine in ENGINES.items() if engine.replays)
+"""The engines that write the one log of a scene, bit for bit."""
+
 STEPPED = {name: engine for name, engine in ENGINES.items() if engine.stepped}
 """The engines that advance in steps of a length `dt`; what event-driven runs are validated against."""
 

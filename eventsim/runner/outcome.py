@@ -60,7 +60,7 @@ class Outcome:
 def diagnosed(session: Session, stopped: str, last_rows: Rows) -> tuple[str, str | None]:
     """Why a run stopped, and the sentence about it; a sequence that does not end is told from its last rows."""
     stage = session.stage
-    if stopped != "collapse" or not stage.law.loses_energy() or getattr(session, "refused", False):
+    if stopped != "collapse" or not stage.law.loses_energy() or session.refused:
         return stopped, session.reason
     time = clock_time(*session.clock, stage.epoch_length, stage.start_time)
     return diagnosis(last_rows, stage, session.clock, time) or (stopped, session.reason)

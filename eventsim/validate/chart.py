@@ -9,7 +9,7 @@ from statistics import median
 
 import numpy as np
 
-from eventsim.engines import ENGINES, STEPPED
+from eventsim.engines import ENGINES, ONE_LOG, STEPPED
 from eventsim.engines.base import Session, Stop
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats
@@ -161,5 +161,5 @@ def _contestants(dt: float) -> list[tuple[str, Callable[[Stage], Session]]]:
     def stepped(competitor: Competitor) -> Callable[[Stage], Session]:
         return lambda stage: STEPPED[competitor.engine].open(stage, options=competitor.at(dt))
 
-    named = [(name, event_driven(name)) for name in ("reference", "fast")]
+    named = [(name, event_driven(name)) for name in ONE_LOG]
     return named + [(label, stepped(COMPETITORS[label])) for label in ("stepped", "frames", "pymunk")]

@@ -230,7 +230,7 @@ def test_a_run_whose_terminal_goes_keeps_its_log_and_ends_as_interrupted(tmp_pat
     pty = pytest.importorskip("pty")
     mine, theirs = pty.openpty()
     log = tmp_path / "run.jsonl"
-    words = command("run", "gas", "--set", "n=30", "--until", "1e9", "--log", log)
+    words = command("run", "gas", "--set", "n=30", "--until", "1e9", "--engine", "reference", "--log", log)
     running = subprocess.Popen(words, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True)
     os.close(theirs)
     wait_for(lambda: Path(f"{log}.part").exists() and Path(f"{log}.part").stat().st_size > 10_000)
@@ -243,7 +243,7 @@ def test_a_run_whose_terminal_goes_keeps_its_log_and_ends_as_interrupted(tmp_pat
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="there is no such signal")
 def test_a_run_under_nohup_outlives_its_terminal(tmp_path):
     log = tmp_path / "run.jsonl"
-    words = command("run", "gas", "--set", "n=30", "--until", "1e9", "--log", log)
+    words = command("run", "gas", "--set", "n=30", "--until", "1e9", "--engine", "reference", "--log", log)
     running = subprocess.Popen(
         words, stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
     )

@@ -88,6 +88,14 @@ def test_what_replay_computes_can_be_left_out_where_the_engine_says_so(name, tmp
         es.simulate(TWO, **keep)
 
 
+@pytest.mark.parametrize("name", [name for name, row in TABLE.items() if row.replays])
+def test_engines_that_replay_write_the_one_log(name):
+    if TABLE[name].missing is not None:
+        pytest.skip(TABLE[name].missing)
+    expected = es.simulate(TWO, until=20.0, engine="reference", digest=True)
+    assert es.simulate(TWO, until=20.0, engine=name, digest=True).digest == expected.digest
+
+
 @EVERY
 def test_every_option_has_words_of_its_own_or_is_for_python_alone(name):
     kind = TABLE[name].options

@@ -7,13 +7,16 @@ from dataclasses import dataclass
 from enum import StrEnum
 from time import perf_counter
 
+from eventsim.engines import ONE_LOG
 from eventsim.errors import EventsimError
 from eventsim.validate.stress.case import Bench, Case, GaveUpError, TimeUpError
 from eventsim.validate.stress.workers import Silence
 
-EVENT_DRIVEN, CERTIFIED = ("reference", "fast"), "certified"
-"""Engines that must be right, or refuse with a documented reason; and the one that may also say that it cannot prove a scene,
-or take its time, but not be wrong."""
+CERTIFIED = "certified"
+"""It may say that it cannot prove a scene, or take its time, but not be wrong.
+
+The engines of ONE_LOG must be right, or refuse with a documented reason.
+"""
 
 COARSE = 0.1
 """Errors below it, in the case's units, are inaccurate; above it the answer is wrong."""
@@ -74,7 +77,7 @@ def judge(case: Case, engine: str, limit: float) -> Verdict:
 
 def hung(case: Case, engine: str, silence: Silence) -> Verdict:
     """The verdict on an engine that did not come back."""
-    fault = engine in EVENT_DRIVEN
+    fault = engine in ONE_LOG
     return Verdict(case.name, engine, Word.SLOW, math.nan, silence.seconds, str(silence), fault)
 
 
@@ -82,7 +85,7 @@ def is_fault(engine: str, word: Word, documented: bool) -> bool:
     """Whether an engine that claims to be exact falls short of it."""
     if word is Word.RIGHT or (word is Word.REFUSED and documented):
         return False
-    return engine in EVENT_DRIVEN or (engine == CERTIFIED and word not in (Word.REFUSED, Word.SLOW))
+    return engine in ONE_LOG or (engine == CERTIFIED and word not in (Word.REFUSED, Word.SLOW))
 
 
 def _of_error(case: Case, error: float, energy: float) -> tuple[Word, str]:
