@@ -10,7 +10,7 @@ import click
 from eventsim.cli.columns import profile_columns, series_columns, table_of, write_columns
 from eventsim.cli.options import json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import say
-from eventsim.cli.source import chosen_scene, is_log, log_of, run_of, stop_options
+from eventsim.cli.source import chosen_scene, demand_no_scene_options, is_log, log_of, run_of, stop_options
 from eventsim.cli.words import aligned, as_json_text, short
 from eventsim.measure.quantities import FAMILIES
 from eventsim.scene.names import plural
@@ -121,11 +121,14 @@ def measured(
     if structure:
         from eventsim.measure.structure import structure_of
     if is_log(source):
-        from eventsim.measure import measure
+        from eventsim.measure import measure, measure_file
         from eventsim.replay.replay import Replay
 
+        if not structure:
+            demand_no_scene_options(source, settings, seed, until, events)
+            return measure_file(source, discard, profile)[0], None
         log = log_of(source, settings, seed, until, events, quiet)
-        return measure(log, discard, profile), structure_of(log.scene, Replay(log).final()) if structure else None
+        return measure(log, discard, profile), structure_of(log.scene, Replay(log).final())
 
     scene = chosen_scene(source, settings, seed)
     run = run_of(scene, source, until, events, quiet, measure=True if discard is None else discard, profile=profile)

@@ -57,8 +57,7 @@ def log_of(
     Raises click.UsageError where options of a scene are given with a log, or nothing says when a scene stops.
     """
     if is_log(source):
-        if settings or seed is not None or until is not None or events is not None:
-            raise click.UsageError(f"{source} is a log: --set, --seed, --until and --events are for scenes")
+        demand_no_scene_options(source, settings, seed, until, events)
         from eventsim.replay.log import load_log
 
         return load_log(source)
@@ -66,6 +65,14 @@ def log_of(
     log = run_of(chosen_scene(source, settings, seed), source, until, events, quiet, log=True).log
     assert log is not None
     return log
+
+
+def demand_no_scene_options(
+    source: str, settings: Sequence[str], seed: int | None, until: float | None, events: int | None
+) -> None:
+    """Raise click.UsageError where options of a scene are given with a log."""
+    if settings or seed is not None or until is not None or events is not None:
+        raise click.UsageError(f"{source} is a log: --set, --seed, --until and --events are for scenes")
 
 
 def run_of(scene: Scene, asked: str, until: float | None, events: int | None, quiet: bool, **wanted: Any) -> Run:

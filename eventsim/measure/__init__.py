@@ -9,6 +9,6 @@ flight and keep sums by time, and samples to `correlation`, in constant memory; 
 """
 
 from eventsim.measure.measures import Measure, Measures
-from eventsim.measure.meter import Meter, measure
+from eventsim.measure.meter import Meter, measure, measure_file
 
-__all__ = ["Measure", "Measures", "Meter", "measure"]
+__all__ = ["Measure", "Measures", "Meter", "measure", "measure_file"]

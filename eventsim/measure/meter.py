@@ -6,6 +6,8 @@ The sums do not depend on how the rows were cut into blocks: they are taken up i
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +25,8 @@ from eventsim.measure.records import Records
 from eventsim.measure.speeds import FASTEST
 from eventsim.measure.walls import described_walls
 from eventsim.record.events import ROW, Floats, Rows
-from eventsim.record.provenance import Kick
-from eventsim.replay.log import EventLog
+from eventsim.record.provenance import Kick, Provenance
+from eventsim.replay.log import EventLog, stream_log
 from eventsim.scene.pace import later, pace_of_scene, slowed_scene
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
@@ -277,13 +279,29 @@ def measure(log: EventLog, discard: float | None = None, profile: str | None = N
     discard, profile: as of Meter.  Raises EventsimError where there is nothing to measure, LogError for a log without an end.
     """
     full = log.expand()
-    meter = Meter(full.scene, discard, full.provenance.kicks, profile)
-    for first in range(0, len(full), BLOCK):
-        meter.write(full.rows[first : first + BLOCK])
-    ending = full.provenance.ending
-    length = full.provenance.epoch_length
-    if ending is not None:
-        return meter.finish(ending.epoch * length + ending.remainder)
-    if not len(full):
-        return meter.finish(0.0)
-    return meter.finish(float((full.epoch * length + full.remainder).max()))
+    blocks = (full.rows[first : first + BLOCK] for first in range(0, len(full), BLOCK))
+    return _measured(full.provenance, blocks, discard, profile)
+
+
+def measure_file(
+    path: str | PathLike[str], discard: float | None = None, profile: str | None = None
+) -> tuple[Measures, Provenance]:
+    """Measure the run that a log file tells, block by block: a full log of any length in the same memory.
+
+    discard, profile, errors: as of `measure`.  The provenance is that of the log.
+    """
+    provenance, blocks = stream_log(path)
+    return _measured(provenance, blocks, discard, profile), provenance
+
+
+def _measured(
+    provenance: Provenance, blocks: Iterable[Rows], discard: float | None, profile: str | None
+) -> Measures:
+    meter = Meter(provenance.scene, discard, provenance.kicks, profile)
+    length, latest = provenance.epoch_length, 0.0
+    for rows in blocks:
+        if len(rows):
+            meter.write(rows)
+            latest = max(latest, float((rows["epoch"] * length + rows["remainder"]).max()))
+    ending = provenance.ending
+    return meter.finish(latest if ending is None else ending.epoch * length + ending.remainder)

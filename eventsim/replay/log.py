@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Generator
+from contextlib import closing
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
@@ -11,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from eventsim.errors import LogWarning
-from eventsim.record.digest import digest_of
-from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, unchangeable
-from eventsim.record.files import open_sink, read_log
+from eventsim.record.digest import Digester, digest_of
+from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, blank_rows, unchangeable
+from eventsim.record.files import open_log, open_sink, read_log
 from eventsim.record.provenance import Provenance
 from eventsim.scene import Scene
 
@@ -86,13 +88,8 @@ class EventLog(Columns):
         time does not replay.
         """
         ending = self.provenance.ending
-        if ending is None or ending.digest is None or self.compact or ending.digest == self.digest():
-            return
-        warnings.warn(
-            f"{name} is not what its run wrote: its rows have another digest than the one it was closed with",
-            LogWarning,
-            stacklevel=2,
-        )
+        if ending is not None and ending.digest is not None and not self.compact and ending.digest != self.digest():
+            _warn_of_changes(name)
 
     def digest(self) -> str:
         """Return the SHA-256 of the log (see `eventsim.record.digest`); a compact log is expanded first."""
@@ -128,3 +125,35 @@ def load_log(path: str | PathLike[str]) -> EventLog:
     log.verify(str(file))
     log.path = file
     return log
+
+
+def stream_log(path: str | PathLike[str]) -> tuple[Provenance, Generator[Rows]]:
+    """Open a log file of any format: its provenance, and its full rows block by block, in bounded memory.
+
+    A compact log is expanded as a whole.  Warns (LogWarning) after the last block where rows were changed since the run wrote
+    them.
+
+    Raises:
+        LogError: where it is no log; also while its blocks are read.
+    """
+    file = Path(path)
+    provenance, blocks = open_log(file)
+    if provenance.compact:
+        full = EventLog(provenance, np.concatenate([blank_rows(0), *blocks])).expand()
+        return full.provenance, (full.rows[first : first + SAVE_BLOCK] for first in range(0, len(full), SAVE_BLOCK))
+    return provenance, _verified(provenance, blocks, file)
+
+
+def _verified(provenance: Provenance, blocks: Generator[Rows], file: Path) -> Generator[Rows]:
+    ending, digester = provenance.ending, Digester()
+    with closing(blocks):
+        for rows in blocks:
+            digester.update(rows)
+            yield rows
+    if ending is not None and ending.digest is not None and ending.digest != digester.hexdigest():
+        _warn_of_changes(str(file))
+
+
+def _warn_of_changes(name: str) -> None:
+    words = f"{name} is not what its run wrote: its rows have another digest than the one it was closed with"
+    warnings.warn(words, LogWarning, stacklevel=3)
