@@ -32,7 +32,8 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
     late = lateness(run, cluster[0]) + UNIT * (clock + delay)
     disks = sorted({i for m in cluster for i in m.disks})
     pulls = {i: (run.flights[i].ax, run.flights[i].ay) for i in disks}
-    states = {i: run.fly_to_now(i, clock, sides_met(run, i, cluster)) for i in disks}
+    terms = max(run.terms_of(m) for m in cluster)
+    states = {i: run.fly_to_now(i, clock, sides_met(run, i, cluster), terms) for i in disks}
     before = {i: states[i][1] for i in disks}
     may_refuse = False
     if len(cluster) == 1:

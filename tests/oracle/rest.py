@@ -42,6 +42,7 @@ def settle(run: State, m: Meeting, e: Decimal) -> bool:
     place = max(
         abs(float(f.x - run.table.corner[0])), abs(float(f.y - run.table.corner[1])), float(run.table.radius[i])
     )
+    place = max(place, run.terms_of(m))
     floor = math.sqrt(2.0 * 2.0**-52 * place / (float(-fall) * loss))
     run.rows[-1].flight, run.rows[-1].floor = float(flight), floor
     if float(flight) > ENDED * floor:

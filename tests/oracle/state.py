@@ -11,7 +11,7 @@ from tests.oracle.digits import UNIT, ZERO, exact, is_float, root
 from tests.oracle.doubt import Doubt, NoDoubt, last_bits
 from tests.oracle.search import Flight, Found, Meeting, Search
 from tests.oracle.story import Kick, Part, Row
-from tests.oracle.table import Line, Oval, Tip, Vector, names_of, table_of
+from tests.oracle.table import Bow, Line, Oval, Ring, Tip, Vector, names_of, table_of
 
 IDLE = 64.0
 """An engine's clock begins anew after a spell without contacts that is so many times longer than what it has counted.
@@ -110,11 +110,13 @@ class State:
             self.begun = self.now
         return float(self.now - self.begun)
 
-    def fly_to_now(self, i: int, clock: float, sides: tuple[int, ...] = ()) -> tuple[Vector, Vector]:
+    def fly_to_now(
+        self, i: int, clock: float, sides: tuple[int, ...] = (), terms: float = 0.0
+    ) -> tuple[Vector, Vector]:
         """Move disk i to the present in flight and doubt; its place and velocity, without a new flight yet.
 
         clock: what an engine's clock shows.  sides: axes along which the place is exact, since a side of the domain
-        is met.
+        is met.  terms: the size of what is added up where the place is compared with what is met.
         """
         f = self.flights[i]
         x, y, u, w = f.at(self.now)
@@ -126,7 +128,7 @@ class State:
         for axis, (place, start, v, c) in enumerate(((x, f.x, u, corner[0]), (y, f.y, w, corner[1]))):
             kept = axis in sides or (is_float(place - c) and (place == start or on_clock))
             way = abs(float(place - start)) + abs(float(v)) * (abs(delay) + clock)
-            sigma.append(0.0 if kept else UNIT * (self.place_size(place, c) + way))
+            sigma.append(0.0 if kept else UNIT * (max(self.place_size(place, c), terms) + way))
         for v, start in ((u, f.u), (w, f.w)):
             sigma.append(0.0 if v == start or is_float(v) else last_bits(v, v - start))
         self.doubt.round(i, sigma)
@@ -138,6 +140,14 @@ class State:
         if self.table.period != (None, None):
             size = min(size, self.large)
         return size
+
+    def terms_of(self, m: Meeting) -> float:
+        """The size of what is added up where a gap is calculated: the reach, and the place of the wall."""
+        if m.b >= 0:
+            return float(self.table.radius[m.a] + self.table.radius[m.b])
+        shape, r = self.table.shapes[m.shape], float(self.table.radius[m.a])
+        places = [shape.place] if isinstance(shape, Tip) else ends_or_centre(shape)
+        return r + max(abs(float(p - c)) for place in places for p, c in zip(place, self.table.corner, strict=True))
 
     def begin_flight(
         self,
@@ -205,6 +215,11 @@ class State:
         """The images next to a disk."""
         px, py = self.table.period
         return [(i, j) for i in ((0,) if px is None else (-1, 0, 1)) for j in ((0,) if py is None else (-1, 0, 1))]
+
+
+def ends_or_centre(shape: Line | Ring | Bow | Oval) -> list[Vector]:
+    """Places that tell where a wall is; the centre of a flat arc is far away, and not used."""
+    return [shape.centre] if isinstance(shape, Ring | Oval) else [shape.start, shape.end]
 
 
 def size(velocity: Vector) -> float:
