@@ -34,6 +34,10 @@ class Law:
         """Whether contacts take energy, so that they can pile up."""
         return self.pair < 1.0 or self.wall < 1.0
 
+    def loss(self) -> float:
+        """1 - e of the least inelastic contacts that take energy; 0 where none does."""
+        return min((1.0 - e for e in (self.pair, self.wall) if e < 1.0), default=0.0)
+
     def comes_to_rest(self) -> bool:
         """Whether bounces become ever lower, so that under gravity disks end up lying on something."""
         return self.loses_energy()

@@ -5,7 +5,7 @@ derivative is a quadratic: so the roots of the quadratic bracket those of the cu
 quartic, every one on a monotone piece, where bisection cannot miss.  No root formula of degree 4, hence no cancellation.
 """
 
-from eventsim.formulas.real import NEVER, Real, sqrt
+from eventsim.formulas.real import NEVER, Real, is_float, sqrt
 
 BISECTIONS = 200
 """More halvings than any bracket here survives in float64."""
@@ -18,11 +18,38 @@ ANY_OVERLAP, PRESENT_OVERLAP, NO_OVERLAP = 2, 1, 0
 """Which falling pieces that begin with a closed gap are contacts: all; only one that falls already now; none."""
 
 
-def circle_gap(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, t: Real) -> Real:
-    """h = side (|d + v t + a t^2/2|^2 - radius^2) at delay t; side is +1 outside the circle, -1 inside."""
+def circle_gap(
+    dx: Real,
+    dy: Real,
+    du: Real,
+    dw: Real,
+    ax: Real,
+    ay: Real,
+    radius: Real,
+    side: float,
+    t: Real,
+    touches: bool = False,
+) -> Real:
+    """h = side (|d + v t + a t^2/2|^2 - radius^2) at delay t; side is +1 outside the circle, -1 inside.
+
+    touches: |d| is the radius but for rounding, so that the difference is t (v + a t/2).(2 d + t (v + a t/2)).
+    """
+    if touches:
+        mx, my = du + (0.5 * ax) * t, dw + (0.5 * ay) * t
+        return side * (t * (mx * (2.0 * dx + t * mx) + my * (2.0 * dy + t * my)))
     px = dx + t * (du + (0.5 * ax) * t)
     py = dy + t * (dw + (0.5 * ay) * t)
     return side * ((px * px + py * py) - radius * radius)
+
+
+def on_circle(cx: Real, cy: Real, reach: Real, x: Real, y: Real) -> tuple[Real, Real]:
+    """The point next to (x, y) that is `reach` from (cx, cy), but for the last bits; where nothing is rounded it is there."""
+    dx, dy = x - cx, y - cy
+    square = dx * dx + dy * dy
+    if not (is_float(x) and square > 0.0 and reach > 0.0):
+        return x, y
+    share = reach / sqrt(square)
+    return cx + share * dx, cy + share * dy
 
 
 def circle_rate(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side: float, t: Real) -> Real:
@@ -33,13 +60,23 @@ def circle_rate(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side
 
 
 def circle_delays(
-    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, overlap: int = ANY_OVERLAP
+    dx: Real,
+    dy: Real,
+    du: Real,
+    dw: Real,
+    ax: Real,
+    ay: Real,
+    radius: Real,
+    side: float,
+    overlap: int = ANY_OVERLAP,
+    touches: bool = False,
 ) -> tuple[Real, Real]:
     """The first two delays >= 0 at which the gap h to a circle is <= 0 and falling; NEVER where there is none.
 
     (dx, dy), (du, dw), (ax, ay): position, velocity and acceleration (not zero) relative to the centre.  A quartic has at
     most two falling pieces; the second is for arcs, which may be open where the first one crosses them: there a disk can be
-    on the far side of the circle without overlapping it, and `overlap` says which closed gaps count.
+    on the far side of the circle without overlapping it, and `overlap` says which closed gaps count.  touches: the flight
+    begins on the circle, wherever rounding has put the disk: then no bounce is too low for the digits of its place.
     """
     q2 = 1.5 * (ax * ax + ay * ay)
     q1 = 3.0 * (du * ax + dw * ay)
@@ -52,7 +89,7 @@ def circle_delays(
     late = overlap == ANY_OVERLAP
     counts = overlap != NO_OVERLAP
     found = NEVER
-    far = _far(dx, dy, du, dw, ax, ay, radius, side, second)
+    far = _far(dx, dy, du, dw, ax, ay, radius, side, touches, second)
     for end in (first, second, far):
         if not end > start:
             continue
@@ -60,7 +97,7 @@ def circle_delays(
         if falls != falls_then:
             turn = _turn(dx, dy, du, dw, ax, ay, side, start, end, falls)
             if falls:
-                delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, turn, counts)
+                delay = _closing(dx, dy, du, dw, ax, ay, radius, side, touches, fall, turn, counts)
                 if delay < NEVER:
                     if found < NEVER:
                         return found, delay
@@ -71,7 +108,7 @@ def circle_delays(
         start = end
         falls = falls_then
     if falls:
-        delay = _closing(dx, dy, du, dw, ax, ay, radius, side, fall, far, counts)
+        delay = _closing(dx, dy, du, dw, ax, ay, radius, side, touches, fall, far, counts)
         if found < NEVER:
             return found, delay
         found = delay
@@ -92,7 +129,18 @@ def _positive_roots(q2: Real, q1: Real, q0: Real) -> tuple[Real, Real]:
     return (low if low > 0.0 else 0.0), (high if high > 0.0 else 0.0)
 
 
-def _far(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Real, side: float, last: Real) -> Real:
+def _far(
+    dx: Real,
+    dy: Real,
+    du: Real,
+    dw: Real,
+    ax: Real,
+    ay: Real,
+    radius: Real,
+    side: float,
+    touches: bool,
+    last: Real,
+) -> Real:
     """A delay after which the gap only opens (outside) or stays closed (inside)."""
     speed = sqrt(du * du + dw * dw)
     acceleration = sqrt(ax * ax + ay * ay)
@@ -100,7 +148,7 @@ def _far(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, radius: Rea
     t = last + speed / acceleration + sqrt(distance / acceleration)
     for _ in range(DOUBLINGS):
         rate = side * circle_rate(dx, dy, du, dw, ax, ay, side, t)
-        gap = side * circle_gap(dx, dy, du, dw, ax, ay, radius, side, t)
+        gap = side * circle_gap(dx, dy, du, dw, ax, ay, radius, side, t, touches)
         if rate > 0.0 and gap > 0.0:
             break
         t = 2.0 * t
@@ -140,6 +188,7 @@ def _closing(
     ay: Real,
     radius: Real,
     side: float,
+    touches: bool,
     low: Real,
     high: Real,
     counts: bool,
@@ -148,15 +197,15 @@ def _closing(
 
     A gap that is closed from the beginning closes at low, if such an overlap counts.
     """
-    if not circle_gap(dx, dy, du, dw, ax, ay, radius, side, low) > 0.0:
+    if not circle_gap(dx, dy, du, dw, ax, ay, radius, side, low, touches) > 0.0:
         return low if counts else NEVER
-    if circle_gap(dx, dy, du, dw, ax, ay, radius, side, high) > 0.0:
+    if circle_gap(dx, dy, du, dw, ax, ay, radius, side, high, touches) > 0.0:
         return NEVER
     for _ in range(BISECTIONS):
         middle = low + 0.5 * (high - low)
         if not (low < middle < high):
             break
-        if circle_gap(dx, dy, du, dw, ax, ay, radius, side, middle) > 0.0:
+        if circle_gap(dx, dy, du, dw, ax, ay, radius, side, middle, touches) > 0.0:
             low = middle
         else:
             high = middle

@@ -1,32 +1,65 @@
 """Coming to rest on a flat wall under gravity: when a series of bounces is over, and how the disk slides from there on.
 
-A disk that leaves a wall at speed v against the pull a flies for 2 v / a, then for e times as long, and so on: after
+A disk that leaves a wall at speed v against the pull a is back after 2 v / a, at speed v, and leaves at e v: after
 2 v / (a (1 - e)), the Zeno time, infinitely many bounces are over.  The series is cut where float64 cannot tell it from its
 end, and the disk is supported: it has the part of gravity that is along the wall, until the next impulse or the wall's end.
+
+A bounce is reckoned from the contact where it began: there the disk touches the wall, wherever rounding has put it.  So each
+bounce is e times as fast as the one before to the last bits, and rounding keeps none of them up.  Reckoned from the rounded
+place, bounces would never become shorter than sqrt(2 ulp(place) / (a (1 - e))); from the rounded clock, than ulp(t) / (1 - e).
 """
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from eventsim.formulas.crossing import closing_delay, crossing_delay
-from eventsim.formulas.real import NEVER, Real
-from eventsim.formulas.walls.face import TOUCHING, Face, face_side, slope
+from eventsim.formulas.real import NEVER, Real, is_float, sqrt
+from eventsim.formulas.walls.face import TOUCHING, Face, face_side, is_within, slope
 from eventsim.formulas.walls.shape import Shape
 
 AT_ONCE = 2.0**-48
 """Events closer than this part of the clock are at one instant: a few of its last bits."""
 
-LATEST = 1024.0
-"""A Zeno time further off than so many instants, of an almost elastic disk, is not waited for: it would fall through the wall."""
+ROUNDED = 2.0**-52
+"""What rounding may do to the speed across a slanted wall, as a part of the components that it is calculated from."""
+
+FLOORS = 32.0
+"""A series is cut so many times above the speed that rounding may keep up, which is ROUNDED / (1 - e): the errors of all the
+bounces before are then a few per cent of the last one."""
+
+LEAST_LOSS = 2.0**-20
+"""The least 1 - e with which that speed is reckoned: a series that takes millions of bounces is not cut early."""
+
+NOT_LAST = -1.0
+"""Instead of the time since a wall was met: it is not what the disk met last."""
+
+LONGEST_INSTANT, LONGEST_STILL = 2.0**-32, 2.0**-30
+"""The most that counts as one instant of the clock, and as no way in coordinates, however little is lost at a contact."""
 
 STRUCK, SUPPORTED, LEFT = 0, 1, 2
 """What a contact with a wall is, and what the disk remembers of it: an impact; it came to rest there; it slid over the end."""
 
 
-def is_still(x: Real, y: Real, u0: Real, w0: Real, u1: Real, w1: Real, lag: Real) -> bool:
-    """Whether a flight to (x, y), with these velocities at its ends, was shorter than the last bits of the place."""
+def kept_up_instant(loss: float) -> float:
+    """The share of the clock within which flights may be kept up by its rounding: ROUNDED / (1 - e), and FLOORS above it.
+
+    loss: 1 - e.  The end of a flight is rounded, and with it the speed there; that is lost again in 1 / (1 - e) bounces.
+    """
+    return min(FLOORS * ROUNDED / loss, LONGEST_INSTANT)
+
+
+def kept_up_way(loss: float) -> float:
+    """The way, as a part of the coordinates, of flights that the rounding of places may keep up, and FLOORS above it in time.
+
+    A place known to u, its last bit, leaves the energy of a fall from u: so bounces last sqrt(2 u / (a (1 - e))), a t^2 long.
+    """
+    return min(FLOORS * FLOORS * 2.0 * ROUNDED / loss, LONGEST_STILL)
+
+
+def is_still(x: Real, y: Real, u0: Real, w0: Real, u1: Real, w1: Real, lag: Real, share: float) -> bool:
+    """Whether a flight to (x, y), with these velocities at its ends, was shorter than a share of the coordinates."""
     way = (abs(u0) + abs(w0) + abs(u1) + abs(w1)) * lag
-    return bool(not way > TOUCHING * (abs(x) + abs(y)))
+    return bool(not way > share * (abs(x) + abs(y)))
 
 
 class Support(NamedTuple):
@@ -59,33 +92,72 @@ def held_by(met: tuple[tuple[int, int, int], ...]) -> Held | None:
     return None
 
 
-def rest_delay(gap: Real, rate: Real, fall: Real, scale: Real, restitution: Real, t: Real) -> Real:
+def launch(rate: Real, fall: Real, since: Real) -> Real:
+    """The speed at which a disk left a flat wall `since` before its flight, which has this rate and fall, began."""
+    return rate - fall * since
+
+
+def hop_delay(rate: Real, fall: Real, since: Real) -> Real:
+    """The delay until a disk is back on the flat wall that it left `since` ago, pulled onto it (fall < 0)."""
+    delay = (2.0 * launch(rate, fall, since)) / -fall - since
+    return delay if delay > 0.0 else 0.0
+
+
+def hop_on_face_delay(
+    shape: Face, side: int, x: Real, y: Real, vx: Real, vy: Real, gx: Real, gy: Real, since: Real
+) -> Real:
+    """The same for a face; NEVER where the disk is not pulled onto it, or comes down beside it."""
+    nx, ny = side * shape.nx, side * shape.ny
+    fall = nx * gx + ny * gy
+    if not fall < 0.0:
+        return NEVER
+    delay = hop_delay(nx * vx + ny * vy, fall, since)
+    x, y = x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
+    return delay if is_within(shape, x, y) else NEVER
+
+
+def rest_delay(
+    gap: Real, rate: Real, fall: Real, scale: Real, restitution: Real, t: Real, since: Real, blur: Real
+) -> Real:
     """The delay until a disk that touches a flat wall has come to rest there; NEVER if it is to bounce on.
 
     gap, rate, fall: of its distance from contact, in terms of the wall's normal.  scale: the coordinates that the gap was
-    calculated from.  t: the clock at the beginning of the flight.
+    calculated from.  t: the clock at the beginning of the flight.  since: the time from the contact with the wall until then,
+    NOT_LAST if something else was met since.  blur: what rounding may do to the rate, 0 where that is one component.
 
-    It rests at its Zeno time where the next flight is over at the same instant of the clock; at once where a bounce is no higher
-    than those that rounding keeps up: the energy of a gap that it has left is lost with v^2 = 2 a gap / (1 - e^2).  (On a wall of
-    the domain there is no such gap, and forty and more halvings of a flight are rows.)
+    It rests at its Zeno time where the next bounce is over at the same instant of the clock, or so slow that rounding may keep it
+    up; earlier if until then it would fall through the wall by more than the last bits of its place (a share of the whole series
+    as small as that of the last bounce).  At once where it does not leave the wall, or comes to it no faster than from the gap
+    that rounding may have left.
     """
     if not fall < 0.0:
         return NEVER
     if gap > TOUCHING * scale or gap < -(TOUCHING * scale):
         return NEVER
-    if not rate < 0.0:
-        instant = AT_ONCE * t
-        flight = (2.0 * rate) / -fall
-        if not rate > 0.0:
+    lag = since if since > 0.0 else 0.0
+    if lag > 0.0 or not rate < 0.0:
+        speed = launch(rate, fall, lag)
+        if not speed > 0.0:
             return 0.0
-        if not flight > instant:
-            late = LATEST * instant
-            return flight / (1.0 - restitution) if flight < (1.0 - restitution) * late else late
-    loss = 1.0 - restitution * restitution if restitution < 1.0 else 1.0
-    noise, bounce = (-8.0 * fall) * gap, loss * (rate * rate)
+        flight = (2.0 * speed) / -fall
+        if not flight > AT_ONCE * t or _is_blurred(speed, restitution, blur):
+            late = sqrt((2.0 * TOUCHING) * scale / -fall)
+            delay = (flight / (1.0 - restitution) if flight < (1.0 - restitution) * late else late) - lag
+            return delay if delay > 0.0 else 0.0
+        if not since < 0.0:
+            return NEVER
+    noise, bounce = (-8.0 * fall) * gap, rate * rate
     if bounce > noise and bounce > -noise:
         return NEVER
     return 0.0
+
+
+def _is_blurred(speed: Real, restitution: Real, blur: Real) -> bool:
+    """Whether rounding may keep up bounces as slow as this one."""
+    if not restitution < 1.0:
+        return False
+    loss = 1.0 - restitution
+    return bool(speed * (loss if loss > LEAST_LOSS else LEAST_LOSS) < FLOORS * blur)
 
 
 def rest_on_face_delay(
@@ -102,22 +174,43 @@ def rest_on_face_delay(
     radius: Real,
     restitution: Real,
     t: Real,
+    since: Real,
 ) -> Real:
-    """The same for a face that supports from `low` to `high` of its e.(p - start); at an end nothing rests that moves out."""
+    """The same for a face that supports from `low` to `high` of its e.(p - start); at an end nothing rests that moves out.
+
+    A series that would be over beyond the end is so at the end, where the disk leaves the face.
+    """
     nx, ny = side * shape.nx, side * shape.ny
     fall = nx * gx + ny * gy
     if not fall < 0.0:
         return NEVER
     gap = (nx * (x - shape.x) + ny * (y - shape.y)) - radius * shape.norm
     scale = shape.norm * (abs(x) + abs(y) + abs(shape.x) + abs(shape.y) + radius)
-    delay = rest_delay(gap, nx * vx + ny * vy, fall, scale, restitution, t)
+    across, upwards = nx * vx, ny * vy
+    blur = 0.0
+    if nx != 0.0 and ny != 0.0 and is_float(x):
+        blur = ROUNDED * (abs(across) + abs(upwards))
+    delay = rest_delay(gap, across + upwards, fall, scale, restitution, t, since, blur)
     if not delay < NEVER:
         return NEVER
     along = shape.ex * (x - shape.x) + shape.ey * (y - shape.y)
     if along < low or along > high:
         return NEVER
     ax, ay = slope(shape, gx, gy)
-    return delay if slide_delay(shape, low, high, x, y, vx, vy, ax, ay) > 0.0 else NEVER
+    end = slide_delay(shape, low, high, x, y, vx, vy, ax, ay)
+    if not end > 0.0:
+        return NEVER
+    return delay if delay < end else end
+
+
+def rebound(nx: Real, ny: Real, u: Real, w: Real, speed: Real) -> tuple[Real, Real]:
+    """The velocity (u, w) with its part along the normal such that n.v is `speed`; exact along an axis, where n has length 1."""
+    if nx == 0.0:
+        return u, ny * speed
+    if ny == 0.0:
+        return nx * speed, w
+    share = (nx * u + ny * w - speed) / (nx * nx + ny * ny)
+    return u - share * nx, w - share * ny
 
 
 def slide_delay(shape: Face, low: float, high: float, x: Real, y: Real, vx: Real, vy: Real, ax: Real, ay: Real) -> Real:
@@ -127,15 +220,6 @@ def slide_delay(shape: Face, low: float, high: float, x: Real, y: Real, vx: Real
     pull = shape.ex * ax + shape.ey * ay
     down, up = closing_delay(along - low, rate, pull), closing_delay(high - along, -rate, -pull)
     return down if down < up else up
-
-
-def resting_place(shape: Face, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
-    """Where a centre at (x, y) rests: exactly on contact where the face is along an axis, else where it is."""
-    if shape.ey == 0.0:
-        return x, shape.y + (side * shape.ny) * radius
-    if shape.ex == 0.0:
-        return shape.x + (side * shape.nx) * radius, y
-    return x, y
 
 
 def border_contact(
@@ -150,17 +234,29 @@ def border_contact(
     size: Real,
     restitution: Real,
     t: Real,
+    since: Real,
 ) -> tuple[Real, int]:
     """(delay, STRUCK or SUPPORTED) of the next event at a wall of the domain that keeps a coordinate at `target`.
 
-    size: the coordinates that matter for rounding.  supports: None in a scene without rest.
+    size: the coordinates that matter for rounding.  supports: None in a scene without rest.  since: see `rest_delay`.
     """
     if supports is not None:
         if held is not None and held.place == place and held.how == SUPPORTED:
             return NEVER, STRUCK
-        delay = rest_delay(side * (x - target), side * v, side * g, size, restitution, t)
-        if delay < NEVER:
-            return delay, SUPPORTED
+        return free_border_contact(side, target, x, v, g, size, restitution, t, since)
+    return crossing_delay(x, v, g, target, side), STRUCK
+
+
+def free_border_contact(
+    side: float, target: Real, x: Real, v: Real, g: Real, size: Real, restitution: Real, t: Real, since: Real
+) -> tuple[Real, int]:
+    """The same for a disk that does not rest there."""
+    rate, fall = side * v, side * g
+    delay = rest_delay(side * (x - target), rate, fall, size, restitution, t, since, 0.0)
+    if delay < NEVER:
+        return delay, SUPPORTED
+    if not since < 0.0 and fall < 0.0:
+        return hop_delay(rate, fall, since), STRUCK
     return crossing_delay(x, v, g, target, side), STRUCK
 
 
@@ -174,13 +270,16 @@ def shape_contact(
     met: int,
     restitution: Real,
     t: Real,
+    since: Real,
+    touches: bool,
 ) -> tuple[Real, int, int]:
     """(delay, side, how) of the next event at a shape inside the domain: an impact, coming to rest, or sliding over its end.
 
     flight: x, y, vx, vy and the acceleration that the disk has.  met: the side last met.  supports: None in a scene without rest.
+    since: see `rest_delay`.  touches: whether the flight begins on contact with the shape.
     """
     if supports is None:
-        return *shape.delay(*flight, radius, met), STRUCK
+        return *shape.delay(*flight, radius, met, touches), STRUCK
     if held is not None:
         on = supports[held.place]
         assert on is not None
@@ -191,10 +290,14 @@ def shape_contact(
     support = supports[place]
     if support is not None:
         side = met if met != 0 else face_side(support.face, *flight[:4])
-        delay = rest_on_face_delay(support.face, side, support.low, support.high, *flight, radius, restitution, t)
+        delay = rest_on_face_delay(support.face, side, support.low, support.high, *flight, radius, restitution, t, since)
         if delay < NEVER:
             return delay, side, SUPPORTED
-    return *shape.delay(*flight, radius, met), STRUCK
+        if not since < 0.0:
+            delay = hop_on_face_delay(support.face, side, *flight, since)
+            if delay < NEVER:
+                return delay, side, STRUCK
+    return *shape.delay(*flight, radius, met, touches), STRUCK
 
 
 def _is_beside(line: Face, shape: Shape, how: int) -> bool:

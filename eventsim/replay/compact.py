@@ -19,7 +19,7 @@ from eventsim.formulas.impulse import (
     wall_impulse,
     wall_update,
 )
-from eventsim.formulas.rest import STRUCK, SUPPORTED, resting_place
+from eventsim.formulas.rest import STRUCK, SUPPORTED, rebound
 from eventsim.formulas.simultaneous import JointContact, resolve_together
 from eventsim.formulas.walls.face import slope
 from eventsim.record.events import Column, Kind, Rows
@@ -150,7 +150,10 @@ class Expansion:
         restitution = self._restitution(self.stage.law.wall, t, a, a)
         u, w = before
         axis = self._contacts.boundary_axis(contact)
-        if self.stage.low_parts:
+        again = self._contacts.launched(contact)
+        if again > 0.0:
+            u, w = rebound(*self._contacts.normal(contact, place), u, w, restitution * again)
+        elif self.stage.low_parts:
             normal = self._contacts.normal(contact, place, disk.low_place)
             u, w, *low, _ = careful_wall_update(*normal, u, w, *disk.low, restitution)
             disk.low = low[0], low[1]
@@ -172,7 +175,7 @@ class Expansion:
         if contact.image[1] == SUPPORTED:
             support = supports[-1 - contact.b]
             assert support is not None
-            place = resting_place(support.face, contact.image[0], *place, self.disks[contact.a].radius)
+            place = support.face.touching(contact.image[0], *place, self.disks[contact.a].radius)
             speed = slope(support.face, *before)
         self._begin(contact, contact.a, t, place, speed)
         return float(wall_impulse(self._mass[contact.a], speed[0] - before[0], speed[1] - before[1]))

@@ -17,9 +17,9 @@ from eventsim.engines.exact_times import ExactTimes, Flight, exact_place
 from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.low_place import Low, apart, wide_border_delay, wide_pair_delay
-from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.rest import STRUCK, border_contact, shape_contact
+from eventsim.formulas.rest import STRUCK, border_contact, launch, shape_contact
 from eventsim.formulas.roots import Moment, order_of
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.shape import seen
@@ -91,14 +91,22 @@ class Contacts:
         return self._stage.normal(-1 - contact.b, contact.image[0], *place, low)
 
     def on_boundary(self, contact: Contact, place: tuple[float, float]) -> tuple[float, float]:
-        """Return the place of a disk, set exactly onto the boundary of the domain if that is what it meets."""
-        boundary, disk = self._stage.boundary(-1 - contact.b), self._disks[contact.a]
-        if boundary is None:
-            return place
-        if disk.low_place is not None:
+        """Return the place of a disk on the boundary of the domain, or on the support, if that is what it meets."""
+        number, disk = -1 - contact.b, self._disks[contact.a]
+        boundary = self._stage.boundary(number)
+        if boundary is not None and disk.low_place is not None:
             left = boundary.left_over(disk.radius)
             disk.low_place = (left, disk.low_place[1]) if boundary.axis == 0 else (disk.low_place[0], left)
-        return boundary.touching(*place, disk.radius)
+        return self._stage.touching(number, contact.image[0], *place, disk.radius)
+
+    def launched(self, contact: Contact) -> float:
+        """Return the speed, in terms of the normal, at which a disk left the straight wall that it falls back to; else 0."""
+        number, side, supports, disk = -1 - contact.b, contact.image[0], self._stage.supports, self._disks[contact.a]
+        if supports is None or supports[number] is None or (contact.b, side, STRUCK) not in disk.met:
+            return 0.0
+        nx, ny = self._stage.normal(number, side, disk.x, disk.y)
+        fall = nx * disk.gx + ny * disk.gy
+        return launch(nx * disk.vx + ny * disk.vy, fall, disk.since_met(contact.b)) if fall < 0.0 else 0.0
 
     def boundary_axis(self, contact: Contact) -> int | None:
         """Return the axis across which a boundary of the domain is met; None for other walls."""
@@ -120,23 +128,29 @@ class Contacts:
         one, other = self._disks[a].wraps, self._disks[b].wraps
         return image[0] + one[0] - other[0], image[1] + one[1] - other[1]
 
+    def _just_met(self, a: int, b: int, image: tuple[int, int]) -> bool:
+        """Return whether both disks remember each other, in an image, as what they met last."""
+        kx, ky = self._unwrapped(a, b, image)
+        return (b, kx, ky) in self._disks[a].met and (a, -kx, -ky) in self._disks[b].met
+
     def _pair_time(self, a: int, b: int, image: tuple[int, int]) -> float:
         """Return the remainder at which two disks meet in an image; NEVER where they just met."""
         one, other = self._disks[a], self._disks[b]
         t = max(one.t, other.t)
         if one.low_place is not None:
-            kx, ky = self._unwrapped(a, b, image)
-            if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
+            if self._just_met(a, b, image):
                 return NEVER
             return float(t + wide_pair_delay(*one.fine(), *other.fine(), *self._stage.shifts(image)))
         (ua, wa), (ub, wb) = one.speed(t), other.speed(t)
         dx, dy = self.apart(image, one.place(t), other.place(t))
         du, dw, reach = ua - ub, wa - wb, one.radius + other.radius
         if one.gx != other.gx or one.gy != other.gy:
-            first, _ = circle_delays(dx, dy, du, dw, one.gx - other.gx, one.gy - other.gy, reach, 1.0)
+            begun = one.t == other.t == one.contact_time == other.contact_time
+            touches = self._stage.settles and begun and self._just_met(a, b, image)
+            pull = one.gx - other.gx, one.gy - other.gy
+            first, _ = circle_delays(dx, dy, du, dw, *pull, reach, 1.0, ANY_OVERLAP, touches)
             return float(t + first)
-        kx, ky = self._unwrapped(a, b, image)
-        if (b, kx, ky) in one.met and (a, -kx, -ky) in other.met:
+        if self._just_met(a, b, image):
             return NEVER
         delay = screened_pair_delay(dx, dy, du, dw, reach)
         if math.isnan(delay) and one.gx is None:
@@ -165,7 +179,7 @@ class Contacts:
     def _wall_time(self, a: int, number: int) -> tuple[float, int, int]:
         """Return (remainder, side, how) of the next contact of a disk with a surface."""
         disk, stage = self._disks[a], self._stage
-        surface, e = stage.surfaces[number], stage.law.series()
+        surface, e, since = stage.surfaces[number], stage.law.series(), disk.since_met(-1 - number)
         if isinstance(surface, Boundary):
             axis, side = surface.axis, surface.side
             x, v, g = (disk.x, disk.vx, disk.gx) if axis == 0 else (disk.y, disk.vy, disk.gy)
@@ -174,13 +188,14 @@ class Contacts:
                 return disk.t + delay, int(side), STRUCK
             target = surface.target(disk.radius)
             size = abs(disk.x) + abs(disk.y) + abs(target)
-            delay, how = border_contact(stage.supports, disk.held, number, side, target, x, v, g, size, e, disk.t)
+            delay, how = border_contact(stage.supports, disk.held, number, side, target, x, v, g, size, e, disk.t, since)
             return disk.t + delay, int(side), how
         met = next((last[1] for last in disk.met if last[0] == -1 - number), 0)
         shape, x, y = seen(surface.shape, disk.x, disk.y, disk.low_place)
         flight = (x, y, disk.vx, disk.vy, disk.gx, disk.gy)
+        touches = stage.settles and since == 0.0
         delay, met_side, how = shape_contact(
-            stage.supports, disk.held, number, shape, flight, disk.radius, met, e, disk.t
+            stage.supports, disk.held, number, shape, flight, disk.radius, met, e, disk.t, since, touches
         )
         return disk.t + delay, met_side, how
 

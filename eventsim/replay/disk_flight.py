@@ -10,7 +10,7 @@ from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import NEVER, Acceleration
-from eventsim.formulas.rest import SUPPORTED, Held, held_by
+from eventsim.formulas.rest import NOT_LAST, STRUCK, SUPPORTED, Held, held_by
 from eventsim.replay.windows import Windows
 from eventsim.scene.stage import Stage
 
@@ -28,8 +28,8 @@ class DiskFlight:
     """
 
     __slots__ = (
-        "_free", "_supports", "contact_time", "gx", "gy", "held", "low", "low_place", "met", "radius", "t", "vx", "vy",
-        "window", "wraps", "x", "y",
+        "_boundaries", "_free", "_supports", "contact_time", "gx", "gy", "held", "low", "low_place", "met", "radius", "t",
+        "vx", "vy", "window", "wraps", "x", "y",
     )  # fmt: skip
 
     def __init__(self, stage: Stage, number: int, immovable: bool) -> None:
@@ -44,7 +44,7 @@ class DiskFlight:
         if stage.gravity is not None:
             self.gx, self.gy = (0.0, 0.0) if immovable else stage.gravity
         self.wraps = [0, 0]
-        self._free, self._supports = (self.gx, self.gy), stage.supports
+        self._free, self._supports, self._boundaries = (self.gx, self.gy), stage.supports, len(stage.boundaries)
         self.met: Met = ()
         self.held: Held | None = None
         self.contact_time = -math.inf
@@ -99,6 +99,10 @@ class DiskFlight:
             support = self._supports[self.held.place] if self.held is not None and rests else None
             self.gx, self.gy = self._free if support is None else (support.ax, support.ay)
 
+    def since_met(self, wall: int) -> float:
+        """Return how long before the flight began a wall, -1 - its place, was struck; NOT_LAST if it was not met last."""
+        return self.t - self.contact_time if any(met[0] == wall and met[2] == STRUCK for met in self.met) else NOT_LAST
+
     def fly(self, period: tuple[float | None, float | None], windows: Windows, window: int, remainder: float) -> None:
         """Follow the flight to (window, remainder): the last wrap or turnover before it becomes the anchor.
 
@@ -146,4 +150,4 @@ class DiskFlight:
         self.anchor(t, (place[0], place[1]), self.speed(t))
         self.wraps[axis] += step
         if self.held is None or self.held.how != SUPPORTED:
-            self.meet(tuple(met for met in self.met if met[0] >= 0))  # that wall can now be met again
+            self.meet(tuple(met for met in self.met if met[0] >= -self._boundaries))  # that shape can now be met again

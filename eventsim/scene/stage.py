@@ -123,6 +123,18 @@ class Stage:
         shape, x, y = seen(found.shape, x, y, low)
         return shape.normal(side, x, y)
 
+    def touching(self, surface: int, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
+        """The place of a disk on the surface that it meets: exactly on a boundary of the domain.
+
+        On a shape on contact but for the last bits, where disks settle or the shape supports them; else where it is.
+        """
+        found = self.surfaces[surface]
+        if isinstance(found, Boundary):
+            return found.touching(x, y, radius)
+        if self.settles or (self.supports is not None and self.supports[surface] is not None):
+            return found.shape.touching(side, x, y, radius)
+        return x, y
+
     @property
     def slopes(self) -> Floats:
         """(walls, 2) the acceleration that a disk has which rests on a wall; 0 for walls on which none does."""

@@ -30,6 +30,11 @@ def test_only_a_duration_makes_a_contact_depend_on_the_one_before(law):
     assert (soon, late) == ((0.5, 0.5) if law.duration is None else (1.0, 0.5))
 
 
+def test_the_loss_is_that_of_the_least_inelastic_contacts():
+    assert [law.loss() for law in EXAMPLES.values()] == [0.0, 0.25, 0.25]
+    assert [Inelastic(*shares, None).loss() for shares in ((1.0, 0.75), (0.75, 1.0), (1.0, 1.0))] == [0.25, 0.25, 0.0]
+
+
 def test_disks_come_to_rest_where_energy_is_lost_at_every_bounce():
     assert [(law.loses_energy(), law.comes_to_rest(), law.series()) for law in EXAMPLES.values()] == [
         (False, False, 1.0),

@@ -108,3 +108,26 @@ def test_what_rests_on_the_top_or_hangs_below():
     assert circle_delays(0.0, 1.0, 0.0, 0.0, 0.0, -2.0, 1.0, -1.0)[0] == pytest.approx(2.0**0.5, rel=1e-12)
     # as fast round the top as gravity bends the way: d.v = 0 and v^2 + d.a = 0, and it leaves
     assert circle_delays(0.0, 1.0, 2.0, 0.0, 0.0, -4.0, 1.0, 1.0)[0] == NEVER
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("speed", [1.0, 2.0**-20, 2.0**-60, 2.0**-300])
+def test_a_bounce_that_begins_on_the_circle_is_exact_however_low(side, speed):
+    """Straight up from a circle of radius 1, outside or inside: back after 2 v / g, wherever rounding has put the disk."""
+    for shift in (0.0, 2.0**-52, -(2.0**-52)):
+        flight = 0.0, side * (1.0 + shift), 0.0, speed, 0.0, -2.0, 1.0, side
+        delay, _ = circle_delays(*flight, ANY_OVERLAP, True)
+        assert delay == pytest.approx(speed, rel=2.0**-50)
+
+
+@given(value, st.floats(1e-9, 1.0), st.floats(-0.5, 0.5))
+def test_a_flight_from_the_circle_comes_back_where_the_distance_is_the_same(angle, speed, turned):
+    x, y = math.cos(angle), math.sin(angle)
+    u, w = speed * math.cos(angle + turned), speed * math.sin(angle + turned)
+    fall = -4.0 * x, -4.0 * y  # back onto it
+    delay, _ = circle_delays(x, y, u, w, *fall, 1.0, 1.0, ANY_OVERLAP, True)
+    assert 0.0 < delay < 1.0
+    gap = circle_gap(x, y, u, w, *fall, 1.0, 1.0, delay, True)
+    before = circle_gap(x, y, u, w, *fall, 1.0, 1.0, 0.5 * delay, True)
+    assert before > 0.0
+    assert abs(gap) <= 2.0**-40 * before

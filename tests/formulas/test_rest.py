@@ -19,7 +19,22 @@ SLOPE = face(1.0, 2.0, 5.0, 5.0)
 
 
 def test_what_is_compared_with_the_last_bits():
-    assert (rest.AT_ONCE, rest.TOUCHING, rest.LATEST) == (BIT, BIT, 1024.0)
+    assert (rest.AT_ONCE, rest.TOUCHING, rest.ROUNDED, rest.FLOORS) == (BIT, BIT, 2.0**-52, 32.0)
+    assert (rest.LEAST_LOSS, rest.LONGEST_INSTANT, rest.LONGEST_STILL) == (2.0**-20, 2.0**-32, 2.0**-30)
+
+
+@pytest.mark.parametrize(
+    ("loss", "instant", "way"),
+    [
+        (1.0, 2.0**-47, 2.0**-41),  # 32 last bits of the clock; 2 ulp, times 32 times 32
+        (0.5, 2.0**-46, 2.0**-40),
+        (2.0**-10, 2.0**-37, 2.0**-31),
+        (2.0**-11, 2.0**-36, 2.0**-30),
+        (2.0**-40, 2.0**-32, 2.0**-30),  # not longer, however little is lost
+    ],
+)
+def test_rounding_keeps_up_the_more_the_less_is_lost(loss, instant, way):
+    assert (rest.kept_up_instant(loss), rest.kept_up_way(loss)) == (instant, way)
 
 
 @pytest.mark.parametrize(
@@ -34,7 +49,8 @@ def test_what_is_compared_with_the_last_bits():
     ],
 )
 def test_a_flight_shorter_than_the_last_bits_of_its_place_is_none(flight, still):
-    assert rest.is_still(*flight) is still
+    assert rest.is_still(*flight, BIT) is still
+    assert rest.is_still(*flight, 2.0)
 
 
 @pytest.mark.parametrize(
@@ -53,6 +69,9 @@ def test_only_a_single_wall_holds_a_disk(met, held):
     assert rest.held_by(met) == held
 
 
+LATE = 2.0**-23
+"""The delay after which a disk pulled by 2 has fallen TOUCHING of 4: what rests, rests by then."""
+
 ZENO = [
     # gap, rate, fall, scale, restitution, t -> delay
     ((0.0, -1.0, 0.0, 4.0, 0.5, 8.0), NEVER),  # nothing pulls it
@@ -70,11 +89,11 @@ ZENO = [
     ((0.0, 8.0 * BIT, -2.0, 4.0, 0.5, 16.0), 16.0 * BIT),
     ((0.0, 8.0 * BIT, -2.0, 4.0, 0.75, 8.0), 32.0 * BIT),
     ((0.0, 8.0 * BIT, -2.0, 4.0, 0.0, 8.0), 8.0 * BIT),
-    # almost elastic: not later than 1024 instants
-    ((0.0, 8.0 * BIT, -2.0, 4.0, 1.0, 8.0), 8192.0 * BIT),
-    ((0.0, 8.0 * BIT, -2.0, 4.0, 1.0 - 2.0**-20, 8.0), 8192.0 * BIT),
-    ((0.0, 8.0 * BIT, -2.0, 4.0, 1.0 - 2.0**-9, 8.0), 4096.0 * BIT),
-    # a longer hop is flown, unless it is no higher than what rounding keeps up: loss v^2 against 8 |fall| gap
+    # almost elastic: before it would fall through the wall
+    ((0.0, 8.0 * BIT, -2.0, 4.0, 1.0, 8.0), LATE),
+    ((0.0, 8.0 * BIT, -2.0, 4.0, 1.0 - 2.0**-23, 8.0), LATE),
+    ((0.0, 8.0 * BIT, -2.0, 4.0, 1.0 - 2.0**-20, 8.0), 8.0 * 2.0**-28),
+    # a longer hop is flown, unless it is no higher than the gap that rounding has left: v^2 against 8 |fall| gap
     ((0.0, 9.0 * BIT, -2.0, 4.0, 0.5, 8.0), NEVER),
     ((0.0, 1.0, -2.0, 4.0, 0.5, 8.0), NEVER),
     ((0.0, -1.0, -2.0, 4.0, 0.5, 8.0), NEVER),
@@ -82,11 +101,9 @@ ZENO = [
     ((-BIT, -(2.0**-22), -2.0, 4.0, 0.0, 8.0), 0.0),
     ((BIT, -(2.0**-22), -1.5, 4.0, 0.0, 8.0), NEVER),
     ((-BIT, -(2.0**-22), -1.5, 4.0, 0.0, 8.0), NEVER),
-    ((BIT, -(2.0**-22), -1.5, 4.0, 0.5, 8.0), 0.0),  # 3/4 of it
-    ((BIT, -(2.0**-22), -1.25, 4.0, 0.5, 8.0), NEVER),
-    ((BIT, -(2.0**-22), -1.5, 4.0, 1.0, 8.0), NEVER),  # elastic: all of it
-    ((BIT, -(2.0**-22), -2.0, 4.0, 1.0, 8.0), 0.0),
-    ((BIT, -(2.0**-22), -1.875, 4.0, 0.0, 8.0), NEVER),
+    ((BIT, -(2.0**-22), -1.5, 4.0, 0.5, 8.0), NEVER),  # whatever is lost there
+    ((BIT, -(2.0**-22), -2.0, 4.0, 1.0 - 2.0**-40, 8.0), 0.0),
+    ((BIT, -(2.0**-22), -1.875, 4.0, 1.0 - 2.0**-40, 8.0), NEVER),
     ((BIT, 2.0**-22, -2.0, 4.0, 0.0, 8.0), 0.0),
     ((BIT, 2.0**-22, -1.5, 4.0, 0.0, 8.0), NEVER),
     ((0.0, 1.0, -(2.0**60), 4.0, 0.5, 1.0), 2.0**-58),
@@ -95,7 +112,73 @@ ZENO = [
 
 @pytest.mark.parametrize(("bounce", "delay"), ZENO)
 def test_a_disk_rests_at_its_zeno_time_or_at_once(bounce, delay):
-    assert rest.rest_delay(*bounce) == delay
+    assert rest.rest_delay(*bounce, rest.NOT_LAST, 0.0) == delay
+
+
+@pytest.mark.parametrize(
+    ("bounce", "since", "blur", "delay"),
+    [
+        ((0.0, 8.0 * BIT, -2.0, 4.0, 0.5, 8.0), 0.0, 0.0, 16.0 * BIT),
+        # 4 bits later it is at its apex, another 2 bits later on its way down: the same time of rest
+        ((BIT, 0.0, -2.0, 4.0, 0.5, 8.0), 4.0 * BIT, 0.0, 12.0 * BIT),
+        ((BIT, -4.0 * BIT, -2.0, 4.0, 0.5, 8.0), 6.0 * BIT, 0.0, 10.0 * BIT),
+        ((0.0, 9.0 * BIT, -2.0, 4.0, 0.5, 8.0), 0.0, 0.0, NEVER),
+        # a gap that rounding has left does not matter to who comes from the wall itself
+        ((BIT, 2.0**-22, -2.0, 4.0, 0.0, 8.0), 0.0, 0.0, NEVER),
+        ((BIT, -(2.0**-22), -2.0, 4.0, 0.0, 8.0), 2.0**-22, 0.0, NEVER),
+        # a rate of 64 bits is rounding if that is 1 bit, times 32, and half is lost
+        ((0.0, 63.0 * BIT, -2.0, 4.0, 0.5, 8.0), 0.0, BIT, 126.0 * BIT),
+        ((0.0, 64.0 * BIT, -2.0, 4.0, 0.5, 8.0), 0.0, BIT, NEVER),
+        ((0.0, 16.0 * BIT, -2.0, 4.0, 1.0, 8.0), 0.0, BIT, NEVER),  # elastic: nothing is lost
+        # however little is lost, 2^-20 of it counts
+        ((0.0, 2.0**-24, -2.0, 4.0, 1.0 - 2.0**-40, 8.0), 0.0, 0.5 * BIT, NEVER),
+        ((0.0, 2.0**-24, -2.0, 4.0, 1.0 - 2.0**-40, 8.0), 0.0, BIT, LATE),
+    ],
+)
+def test_a_series_is_told_by_the_speed_at_which_the_disk_left_the_wall(bounce, since, blur, delay):
+    assert rest.rest_delay(*bounce, since, blur) == delay
+
+
+@pytest.mark.parametrize(
+    ("rate", "fall", "since", "launched", "delay"),
+    [
+        (2.0, -2.0, 0.0, 2.0, 2.0),
+        (1.0, -2.0, 0.5, 2.0, 1.5),
+        (0.0, -2.0, 1.0, 2.0, 1.0),
+        (-2.0, -2.0, 2.0, 2.0, 0.0),
+        (-3.0, -2.0, 2.5, 2.0, 0.0),  # overdue
+        (2.0**-600, -2.0, 0.0, 2.0**-600, 2.0**-600),  # whose square is no float
+        (-1.0, -2.0, 0.0, -1.0, 0.0),
+    ],
+)
+def test_a_hop_lasts_as_long_as_its_launch_says(rate, fall, since, launched, delay):
+    assert rest.launch(rate, fall, since) == launched
+    assert rest.hop_delay(rate, fall, since) == delay
+
+
+@pytest.mark.parametrize(
+    ("shape", "side", "flight", "since", "delay"),
+    [
+        (FLOOR, 1, (3.0, 3.0 + BIT, 0.5, 2.0, 0.0, -2.0), 0.0, 2.0),
+        (FLOOR, 1, (3.0, 3.0 - BIT, -0.5, 2.0, 0.0, -2.0), 0.0, 2.0),
+        (FLOOR, 1, (3.0, 3.75, 0.5, 1.0, 0.0, -2.0), 0.5, 1.5),
+        (FLOOR, -1, (3.0, 1.0, 0.5, -2.0, 0.0, 2.0), 0.0, 2.0),
+        (FLOOR, 1, (3.0, 3.0, 1.0, 2.0, 0.0, -2.0), 0.0, 2.0),  # down at its very end
+        (FLOOR, 1, (3.0, 3.0, 1.25, 2.0, 0.0, -2.0), 0.0, NEVER),  # beside it
+        (FLOOR, 1, (3.0, 3.0, 0.0, 2.0, 0.0, 2.0), 0.0, NEVER),  # not pulled
+        (FLOOR, 1, (3.0, 3.0, 0.0, 2.0, 1.0, 0.0), 0.0, NEVER),
+        (SLOPE, 1, (3.0 - 0.6, 3.5 + 0.8, -0.75, 1.0, 0.0, -2.0), 0.0, 2.0 * 6.25 / 8.0),
+    ],
+)
+def test_a_hop_on_a_face_ends_where_that_goes_on(shape, side, flight, since, delay):
+    assert rest.hop_on_face_delay(shape, side, *flight, since) == delay
+
+
+def test_a_disk_leaves_a_wall_at_the_speed_that_is_said():
+    assert rest.rebound(0.0, 1.0, 3.0, -7.0, 2.0) == (3.0, 2.0)
+    assert rest.rebound(0.0, -1.0, 3.0, 7.0, 2.0) == (3.0, -2.0)
+    assert rest.rebound(-1.0, 0.0, 7.0, 3.0, 2.0) == (-2.0, 3.0)
+    assert rest.rebound(-3.0, 4.0, 0.0, -25.0, 50.0) == (-18.0, -1.0)  # n.v from -100 to 50
 
 
 @pytest.mark.parametrize(
@@ -132,12 +215,19 @@ def test_gravity_along_a_wall_is_its_projection():
     assert slope(face(0.0, 0.0, 1.0, 1.0), 3.0, 1.0) == (2.0, 2.0)
 
 
-def test_a_disk_rests_exactly_on_contact_where_that_is_a_coordinate():
-    assert rest.resting_place(FLOOR, 1, 3.0, 2.6, 0.5) == (3.0, 2.5)
-    assert rest.resting_place(FLOOR, -1, 3.0, 1.4, 0.5) == (3.0, 1.5)
-    assert rest.resting_place(WALL, 1, 0.4, 3.0, 0.5) == (0.5, 3.0)
-    assert rest.resting_place(WALL, -1, 1.6, 3.0, 0.5) == (1.5, 3.0)
-    assert rest.resting_place(SLOPE, 1, 0.4, 3.0, 0.5) == (0.4, 3.0)
+def test_a_disk_is_laid_exactly_on_contact_where_that_is_a_coordinate():
+    assert FLOOR.touching(1, 3.0, 2.6, 0.5) == (3.0, 2.5)
+    assert FLOOR.touching(-1, 3.0, 1.4, 0.5) == (3.0, 1.5)
+    assert WALL.touching(1, 0.4, 3.0, 0.5) == (0.5, 3.0)
+    assert WALL.touching(-1, 1.6, 3.0, 0.5) == (1.5, 3.0)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_disk_is_laid_onto_a_slope_along_its_normal(side):
+    x, y = on_slope(0.5, 1.0, side)
+    for shift in (0.0, 2.0**-20, -(2.0**-20)):
+        at = SLOPE.touching(side, x - 3.0 * shift, y + 4.0 * shift, 1.0)
+        assert at == pytest.approx((x, y), abs=2.0**-51)
 
 
 def on_slope(along, radius, side=1):
@@ -180,8 +270,27 @@ def on_slope(along, radius, side=1):
     ],
 )
 def test_a_disk_of_radius_1_rests_where_a_face_carries_it(shape, side, place, speed, gravity, delay):
-    found = rest.rest_on_face_delay(shape, side, 0.0, shape.along2, *place, *speed, *gravity, 1.0, 0.5, 8.0)
+    found = rest.rest_on_face_delay(shape, side, 0.0, shape.along2, *place, *speed, *gravity, 1.0, 0.5, 8.0, rest.NOT_LAST)
     assert found == delay
+
+
+def test_a_series_is_over_at_the_end_of_the_face_if_that_comes_first():
+    """Up with 8 bits it would rest 16 bits later; 8 bits before the end, at speed 1 or 1/4."""
+    flight = 5.0 - 8.0 * BIT, 3.0
+    ends = [
+        rest.rest_on_face_delay(FLOOR, 1, 0.0, 16.0, *flight, u, 8.0 * BIT, 0.0, -2.0, 1.0, 0.5, 8.0, 0.0)
+        for u in (1.0, 0.25, -1.0)
+    ]
+    assert ends == [8.0 * BIT, 16.0 * BIT, 16.0 * BIT]
+
+
+def test_a_slope_blurs_the_rate_by_the_speed_along_it():
+    """n.v = -3 u + 4 w; along the slope at 2^24 such a rate is rounding, at 1 it is a bounce."""
+    for along, rests in ((2.0**24, True), (1.0, False)):
+        speed = 4.0 * along - 3.0 * 2.0**-24, 3.0 * along + 4.0 * 2.0**-24
+        place = on_slope(0.5, 1.0)
+        found = rest.rest_on_face_delay(SLOPE, 1, -1e30, 1e30, *place, *speed, 0.0, -2.0, 1.0, 0.5, 8.0, 0.0)
+        assert (found < NEVER) is rests
 
 
 @pytest.mark.parametrize(
@@ -191,7 +300,7 @@ def test_a_disk_of_radius_1_rests_where_a_face_carries_it(shape, side, place, sp
 def test_touching_is_measured_by_all_coordinates(offset, touches):
     floor = face(-1.0, -4.0, -5.0, -4.0)  # normal (0, -1)
     place = -3.0, -5.0 - offset * BIT
-    delay = rest.rest_on_face_delay(floor, 1, 0.0, 16.0, *place, 0.0, 0.0, 0.0, 2.0, 1.0, 0.5, 8.0)
+    delay = rest.rest_on_face_delay(floor, 1, 0.0, 16.0, *place, 0.0, 0.0, 0.0, 2.0, 1.0, 0.5, 8.0, rest.NOT_LAST)
     assert delay == (0.0 if touches else NEVER)
 
 

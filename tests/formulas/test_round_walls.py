@@ -1,5 +1,7 @@
 """Posts, containers and arcs on numbers whose results are exact; along parabolas to some last bits."""
 
+import math
+
 import pytest
 
 from eventsim.formulas.contact import inner_delay
@@ -204,3 +206,23 @@ def test_a_falling_disk_meets_an_arc_where_it_is(shape, flight, gravity, radius,
     dx, dy, vx, vy = flight
     delay, side = arc_delay(shape, 2.0 + dx, dy - 1.0, vx, vy, *gravity, radius, met)
     assert (delay, side) == (pytest.approx(expected[0], rel=BITS), expected[1])
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 2.0, 4.0])
+def test_a_disk_is_laid_onto_a_round_wall_along_its_normal(angle):
+    along = math.cos(angle), math.sin(angle)
+    for shape, side, distance in (
+        (Post(1.0, 2.0), 1, 0.5),
+        (Container(1.0, 2.0, 3.0), -1, 2.5),
+        (arc(4.0, 2.0, 1.0, 5.0, -2.0, 2.0), 1, 3.5),
+        (arc(4.0, 2.0, 1.0, 5.0, -2.0, 2.0), -1, 2.5),
+    ):
+        x, y = 1.0 + distance * along[0], 2.0 + distance * along[1]
+        for shift in (0.0, 1e-6, -1e-6):
+            at = shape.touching(side, x + shift * along[0], y + shift * along[1], 0.5)
+            assert at == pytest.approx((x, y), abs=2.0**-50)
+
+
+def test_a_point_stays_where_it_meets_a_post():
+    assert Post(1.0, 2.0).touching(1, 1.0, 2.0, 0.0) == (1.0, 2.0)
+    assert Post(1.0, 2.0).touching(1, 1.0 + 2.0**-50, 2.0, 0.0) == (1.0 + 2.0**-50, 2.0)

@@ -6,7 +6,7 @@ import pytest
 
 from eventsim.formulas import rest
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, Held, Support
+from eventsim.formulas.rest import LEFT, NOT_LAST, STRUCK, SUPPORTED, Held, Support
 from eventsim.formulas.walls.face import face
 from eventsim.formulas.walls.post import Post
 
@@ -33,7 +33,7 @@ SUPPORTS = [None, Support(FLOOR, 0.0, 0.0, 0.0, 16.0), Support(SLOPE, -0.96, -0.
 )
 def test_a_wall_of_the_domain_is_struck_unless_it_carries_the_disk(supports, held, v, expected):
     # 4 + v t - t^2 at 1: from x = 4 to the target 1
-    assert rest.border_contact(supports, held, 1, 1.0, 1.0, 4.0, v, -2.0, 8.0, 0.5, 8.0) == expected
+    assert rest.border_contact(supports, held, 1, 1.0, 1.0, 4.0, v, -2.0, 8.0, 0.5, 8.0, NOT_LAST) == expected
 
 
 @pytest.mark.parametrize(
@@ -48,11 +48,18 @@ def test_a_wall_of_the_domain_is_struck_unless_it_carries_the_disk(supports, hel
     ],
 )
 def test_a_disk_comes_to_rest_on_a_wall_of_the_domain(side, target, v, g, expected):
-    found = rest.border_contact(SUPPORTS, None, 1, side, target, 4.0, v, g, 8.0, 0.5, 8.0)
+    found = rest.border_contact(SUPPORTS, None, 1, side, target, 4.0, v, g, 8.0, 0.5, 8.0, NOT_LAST)
     if expected[1] == SUPPORTED:
         assert found == expected
     else:
         assert found == (pytest.approx(expected[0]), STRUCK)
+
+
+@pytest.mark.parametrize(("since", "delay"), [(0.0, 2.0), (0.5, 2.5)])
+def test_a_wall_of_the_domain_is_struck_again_as_the_launch_says(since, delay):
+    """The place, here wrong, is not asked."""
+    found = rest.border_contact(SUPPORTS, None, 1, 1.0, 1.0, 1.75, 2.0, -2.0, 8.0, 0.5, 8.0, since)
+    assert found == (delay, STRUCK)
 
 
 NEXT_FLOOR = face(5.0, 2.0, 7.0, 2.0)
@@ -61,8 +68,9 @@ ANOTHER_STEP = face(5.0, 3.0, 7.0, 2.0)
 DOWN = 0.0, -2.0
 
 
-def contact(place, shape, flight, held=None, gravity=DOWN, met=0, radius=1.0):
-    return rest.shape_contact(SUPPORTS, held, place, shape, (*flight, *gravity), radius, met, 0.5, 8.0)
+def contact(place, shape, flight, held=None, gravity=DOWN, met=0, radius=1.0, since=NOT_LAST):
+    flight = *flight, *gravity
+    return rest.shape_contact(SUPPORTS, held, place, shape, flight, radius, met, 0.5, 8.0, since, since == 0.0)
 
 
 def test_a_free_disk_meets_a_face_or_comes_to_rest_on_it():
@@ -74,6 +82,15 @@ def test_a_free_disk_meets_a_face_or_comes_to_rest_on_it():
     assert contact(1, FLOOR, (3.0, 1.0, 0.0, -4.0 * BIT), gravity=(0.0, 2.0)) == (8.0 * BIT, -1, SUPPORTED)
     assert contact(1, FLOOR, (3.0, 2.0, 0.0, 0.0), met=1, radius=0.0) == (0.0, 1, SUPPORTED)
     assert contact(1, FLOOR, (3.0, 2.0, 0.0, 0.0), met=-1, radius=0.0, gravity=(0.0, 2.0)) == (0.0, -1, SUPPORTED)
+
+
+def test_a_disk_that_comes_from_a_face_is_back_as_the_launch_says():
+    """Whatever rounding has made of its place; a face that supports nobody knows that only of a flight that begins there."""
+    flight = 3.0, 3.0 + 2.0**-30, 0.0, 2.0
+    assert contact(1, FLOOR, flight, met=1, since=0.0) == (2.0, 1, STRUCK)
+    assert contact(0, FLOOR, flight, met=1, since=0.0) == (2.0, 1, STRUCK)
+    assert contact(1, FLOOR, (3.0, 3.75, 0.0, 1.0), met=1, since=0.5) == (1.5, 1, STRUCK)
+    assert contact(1, FLOOR, (3.0, 3.0, 2.0, 2.0), met=1, since=0.0) == (NEVER, 1, STRUCK)  # down beside it
 
 
 @pytest.mark.parametrize("side", [1, -1])

@@ -27,7 +27,7 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, store, word
-from eventsim.engines.fast.met import forget_walls
+from eventsim.engines.fast.met import forget_shapes
 from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.low_place import low_position, settled
 from eventsim.formulas.motion import position, velocity
@@ -146,7 +146,7 @@ def wrap(m, rules, i, code, t):
         y = 0.0 if step > 0 else rules.height
         store(m.disks, i * WORDS + WRAPS_Y, word(m.disks, i * WORDS + WRAPS_Y) + step)
     anchor(m, i, t, x, y, vx, vy)
-    forget_walls(m, i, m.supports)
+    forget_shapes(m, rules, i, m.supports)
 
 
 @inline

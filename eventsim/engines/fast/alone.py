@@ -165,7 +165,7 @@ def shape_time(m, rules, i, k, supports):
     f = i * REALS
     if supports is not None:
         delay, side, how = shape_rest(m, rules, i, k)
-        if how != STRUCK:
+        if how != STRUCK or delay < NEVER:
             return real(m.disks, f + T) + delay, side, how
     gx, gy = pulls(m, rules, i)
     delay, side = shape_delay(

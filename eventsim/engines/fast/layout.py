@@ -89,8 +89,8 @@ class Rules(NamedTuple):
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
     disks or tracers.  features: number of wall shapes; shapes: of each of the kinds of `shapes` whether there is one;
-    first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.  settles: flights can be as good as none.
-    tie_screen: see `formulas.doubt`, in the present window.
+    first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.  still: see `stillness_of`, None where
+    disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.
     """
 
     gx: object
@@ -111,7 +111,7 @@ class Rules(NamedTuple):
     first_feature: int
     instant: float
     at_once_limit: int
-    settles: object
+    still: object
     tie_screen: float
 
 

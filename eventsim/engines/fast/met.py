@@ -16,25 +16,25 @@ def remember(m, i, partner, kx, ky):
 
 
 @inline
-def forget_walls(m, i, supports):
-    """Let disk i forget the walls that it met last: on the other side of the domain it can meet them again.
+def forget_shapes(m, rules, i, supports):
+    """Let disk i forget the shapes that it met last: on the other side of the domain it can meet them again.
 
-    A wall that it rests on goes on there.
+    A wall of the domain, or one that it rests on, goes on there.
     """
     if supports is not None and word(m.disks, i * WORDS + FLAGS) & RESTING:
         return
     met = word(m.disks, i * WORDS + MET)
     if met == SEVERAL:
-        _forget_among_several(m, i)
-    elif met < NOBODY:
+        _forget_among_several(m, rules, i)
+    elif met <= -2 - rules.first_feature:
         store(m.disks, i * WORDS + MET, NOBODY)
 
 
 @part
-def _forget_among_several(m, i):
+def _forget_among_several(m, rules, i):
     row = word(m.disks, i * WORDS + MET_KX)
     while row >= 0:
-        if word(m.several, 4 * row) < NOBODY:
+        if word(m.several, 4 * row) <= -2 - rules.first_feature:
             store(m.several, 4 * row, NOBODY)
         row = word(m.several, 4 * row + 3)
 

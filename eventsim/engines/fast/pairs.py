@@ -6,6 +6,7 @@ from eventsim.engines.fast.advance import place, pulls
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import (
     CLASSES,
+    CONTACT_TIME,
     FLAGS,
     IMMOVABLE,
     RADIUS,
@@ -23,7 +24,7 @@ from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.low_place import wide_pair_delay
 from eventsim.formulas.motion import position, velocity
-from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER
 
 
@@ -126,13 +127,24 @@ def _or(classes, supports):
 def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, unlike):
     ri, rj = real(m.disks, i * REALS + RADIUS), real(m.disks, j * REALS + RADIUS)
     if ax is not None and unlike is not None and (ax != bx or ay != by):
-        return circle_delays(dx, dy, du, dw, ax - bx, ay - by, ri + rj, 1.0)[0]
+        touches = _touch(m, i, j, kx, ky, rules.still)
+        return circle_delays(dx, dy, du, dw, ax - bx, ay - by, ri + rj, 1.0, ANY_OVERLAP, touches)[0]
     delay = screened_pair_delay(dx, dy, du, dw, ri + rj)
     if delay == delay:
         return delay
     if ax is not None:
         return careful_pair_delay(dx, dy, du, dw, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
     return _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ri + rj)
+
+
+@inline
+def _touch(m, i, j, kx, ky, still):
+    """Whether the flights of both disks began at their contact with each other; told where disks settle."""
+    if still is None:
+        return False
+    begun = real(m.disks, i * REALS + T)
+    alike = begun == real(m.disks, j * REALS + T) and begun == real(m.disks, i * REALS + CONTACT_TIME)
+    return alike and begun == real(m.disks, j * REALS + CONTACT_TIME) and just_met(m, i, j, kx, ky)
 
 
 @part

@@ -15,9 +15,6 @@ from eventsim.engines.fast.layout import (
     OUTER_Y,
     RADIUS,
     REALS,
-    SUPPORT,
-    SUPPORT_HIGH,
-    SUPPORT_LOW,
     VX,
     VY,
     WALL,
@@ -25,10 +22,11 @@ from eventsim.engines.fast.layout import (
     T,
 )
 from eventsim.engines.fast.memory import real, store, word
-from eventsim.engines.fast.met import remember, unwrapped_x, unwrapped_y
+from eventsim.engines.fast.met import just_met, remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
+from eventsim.engines.fast.rest import is_support, launched, support_face
 from eventsim.engines.fast.rows import write_pair, write_wall
-from eventsim.engines.fast.shapes import WIDTH, shape_normal
+from eventsim.engines.fast.shapes import WIDTH, laid_on_shape, shape_normal
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
     contact_restitution,
@@ -41,7 +39,9 @@ from eventsim.formulas.impulse import (
 )
 from eventsim.formulas.low_place import finely_apart
 from eventsim.formulas.real import sqrt
-from eventsim.formulas.rest import is_still
+from eventsim.formulas.rest import AT_ONCE as SERIES_AT_ONCE
+from eventsim.formulas.rest import is_still, rebound
+from eventsim.formulas.walls.face import face_normal
 
 
 @inline
@@ -73,31 +73,48 @@ def _restitution(m, a, b, t, restitution, duration):
 
 
 @inline
-def _is_still(m, rules, i, t, settles):
+def _is_still(m, rules, i, t, share):
     """Whether disk i has not come further, since its flight began, than the last bits of its place."""
-    if settles is None:
+    if share is None:
         return False
     f = i * REALS
     x, y = place(m, rules, i, t)
     u, w = speed(m, rules, i, t)
-    return is_still(x, y, real(m.disks, f + VX), real(m.disks, f + VY), u, w, t - real(m.disks, f + T))
+    return is_still(x, y, real(m.disks, f + VX), real(m.disks, f + VY), u, w, t - real(m.disks, f + T), share)
 
 
 @inline
-def _is_series(m, i, place_, supports):
-    """Whether disk i met that straight wall already last."""
+def _are_still(m, rules, a, b, t, kx, ky, share):
+    """The same of both disks of a pair; not where they have just met, since their bounces are exact however low."""
+    if share is None or just_met(m, a, b, kx, ky):
+        return False
+    return _is_still(m, rules, a, t, share) and _is_still(m, rules, b, t, share)
+
+
+@inline
+def _is_series(m, i, place_, supports, still):
+    """Whether disk i met that wall already last, and bounces on it are exact however low."""
+    if still is None and not _ends(m, place_, supports):
+        return False
+    return word(m.disks, i * WORDS + MET) == -2 - place_
+
+
+@inline
+def _ends(m, place_, supports):
+    """Whether a series on a wall comes to an end: it is straight, and disks rest on it."""
     if supports is None:
         return False
-    at = SUPPORT * place_
-    straight = real(supports, at + SUPPORT_LOW) < real(supports, at + SUPPORT_HIGH)
-    return straight and word(m.disks, i * WORDS + MET) == -2 - place_
+    return is_support(m, place_)
 
 
 @inline
-def _note_time(m, rules, i, t, idle, still):
-    """Note a contact of disk i, to see that an instant does not end; idle ones, which change nothing, weigh more."""
+def _note_time(m, rules, i, t, idle, still, instant):
+    """Note a contact of disk i, to see that an instant does not end; idle ones, which change nothing, weigh more.
+
+    instant: the share of the clock within which contacts are at one instant.
+    """
     weight = rules.at_once_limit // 3 + 1 if idle else 1
-    if still or t - real(m.disks, i * REALS + CONTACT_TIME) <= rules.instant * t:
+    if still or t - real(m.disks, i * REALS + CONTACT_TIME) <= instant * t:
         weight += word(m.disks, i * WORDS + AT_ONCE)
     store(m.disks, i * WORDS + AT_ONCE, weight)
     store(m.disks, i * REALS + CONTACT_TIME, t)
@@ -164,15 +181,15 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     xa, ya, xb, yb, dx, dy = _finely(m, rules, a, b, t, kx, ky, xa, ya, xb, yb, dx, dy, m.low_places)
-    still = _is_still(m, rules, a, t, rules.settles) and _is_still(m, rules, b, t, rules.settles)
+    still = _are_still(m, rules, a, b, t, kx, ky, rules.still)
     ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)
     anchor(m, a, t, xa, ya, ua, wa)
     anchor(m, b, t, xb, yb, ub, wb)
     ux, uy = unwrapped_x(m, a, b, kx), unwrapped_y(m, a, b, ky)
     remember(m, a, b, ux, uy)
     remember(m, b, a, -ux, -uy)
-    _note_time(m, rules, a, t, q == 0.0, still)
-    _note_time(m, rules, b, t, q == 0.0, still)
+    _note_time(m, rules, a, t, q == 0.0, still, rules.instant)
+    _note_time(m, rules, b, t, q == 0.0, still, rules.instant)
     reduced = _reduced(a, b, m.mass, rules.common_mass)
     distance = sqrt(dx * dx + dy * dy)
     reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
@@ -238,7 +255,9 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     x, y = place(m, rules, i, t)
     u, w = speed(m, rules, i, t)
     u0, w0 = u, w
-    still = _is_still(m, rules, i, t, rules.settles) and not _is_series(m, i, place_, m.supports)
+    series = _is_series(m, i, place_, m.supports, rules.still)
+    still = _is_still(m, rules, i, t, rules.still) and not series
+    ends = series and _ends(m, place_, m.supports)
     e = _restitution(m, i, i, t, rules.wall_restitution, rules.duration)
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
@@ -253,14 +272,46 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         wall = place_
     else:
         u, w, wall = _against_shape(m, i, place_ - rules.first_feature, side, x, y, u, w, e, m.features, m.low)
+        x, y = _laid_on(m, rules, place_, side, x, y, r, rules.features, m.supports, rules.still)
+    u, w = _rebound(m, rules, i, place_, side, u0, w0, u, w, e, m.supports)
     anchor(m, i, t, x, y, u, w)
     remember(m, i, -2 - place_, side, 0)
-    _note_time(m, rules, i, t, u == u0 and w == w0, still)
+    _note_time(m, rules, i, t, u == u0 and w == w0, still, SERIES_AT_ONCE if ends else rules.instant)
     mass = mass_of(i, m.mass, rules.common_mass)
     if not math.isinf(mass):
         sums[OUTER_X] += mass * (u - u0)
         sums[OUTER_Y] += mass * (w - w0)
     write_wall(m, number, slot, i, wall, (x, y, u, w), wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
+
+
+@inline
+def _laid_on(m, rules, place_, side, x, y, r, features, supports, still):
+    """The place of a disk on a shape: on contact but for the last bits, where disks settle or the shape supports them."""
+    if features is None:
+        return x, y
+    if still is None and not _ends(m, place_, supports):
+        return x, y
+    return laid_on_shape(m, place_ - rules.first_feature, side, x, y, r)
+
+
+@inline
+def _rebound(m, rules, i, place_, side, u0, w0, u, w, e, supports):
+    """The velocity after contact: e times as fast as the disk left the wall, if that is straight and what it met last.
+
+    u0, w0: before the contact; u, w: after it, for another wall.
+    """
+    if supports is None:
+        return u, w
+    return _rebound_again(m, rules, i, place_, side, u0, w0, u, w, e)
+
+
+@part
+def _rebound_again(m, rules, i, place_, side, u0, w0, u, w, e):
+    if not is_support(m, place_):
+        return u, w
+    nx, ny = face_normal(support_face(m, place_), side, 0.0, 0.0)
+    again = launched(m, rules, i, place_, side, nx, ny)
+    return rebound(nx, ny, u0, w0, e * again) if again > 0.0 else (u, w)
 
 
 @inline

@@ -8,6 +8,7 @@ from __future__ import annotations
 from eventsim.engines.fast.advance import pulls
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import (
+    CONTACT_TIME,
     FLAGS,
     MET,
     MET_KX,
@@ -32,9 +33,18 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.met import side_met
 from eventsim.engines.fast.shapes import face_at, is_straight, lies_on
-from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, rest_delay, rest_on_face_delay, slide_delay
+from eventsim.formulas.rest import (
+    LEFT,
+    NOT_LAST,
+    STRUCK,
+    SUPPORTED,
+    free_border_contact,
+    hop_on_face_delay,
+    launch,
+    rest_on_face_delay,
+    slide_delay,
+)
 from eventsim.formulas.walls.face import face_side
 
 
@@ -50,6 +60,14 @@ def rests(m, i):
     return word(m.disks, i * WORDS + FLAGS) & RESTING != 0
 
 
+@inline
+def _since_met(m, i, place):
+    """How long before its flight began disk i struck a wall; NOT_LAST if it has met something else since."""
+    if side_met(m, i, place) == 0:
+        return NOT_LAST
+    return real(m.disks, i * REALS + T) - real(m.disks, i * REALS + CONTACT_TIME)
+
+
 @part
 def border_contact(m, rules, i, place, side, target, x, v, g):
     """(time, how) of the next event of disk i at a wall of the domain, which keeps its coordinate x at `target`."""
@@ -59,15 +77,13 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
         return NEVER, STRUCK
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
     restitution = _series(rules.wall_restitution, rules.duration)
-    delay = rest_delay(side * (x - target), side * v, side * g, size, restitution, t)
-    if delay < NEVER:
-        return t + delay, SUPPORTED
-    return t + crossing_delay(x, v, g, target, side), STRUCK
+    delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, _since_met(m, i, place))
+    return t + delay, how
 
 
 @part
 def shape_rest(m, rules, i, k):
-    """(delay, side, how) where the next event of disk i at the k-th shape is not an impact, how STRUCK where it may be.
+    """(delay, side, how) of the next event of disk i at the k-th shape; NEVER with STRUCK where the shape itself is to tell.
 
     NEVER with another `how`: a disk on the line of the shape, or at its end, passes it.
     """
@@ -85,17 +101,43 @@ def shape_rest(m, rules, i, k):
             return slide_delay(line, low, high, x, y, vx, vy, ax, ay), word(m.disks, w + MET_KX), LEFT
         if (how == SUPPORTED or is_straight(m, k)) and lies_on(m, k, line):
             return NEVER, 0, LEFT
-    support = SUPPORT * place
-    low, high = real(m.supports, support + SUPPORT_LOW), real(m.supports, support + SUPPORT_HIGH)
-    if not low < high:  # this one supports nobody
+    if not is_support(m, place):
         return NEVER, 0, STRUCK
-    face = face_at(m.supports, support + SUPPORT_FACE)
+    low, high = real(m.supports, SUPPORT * place + SUPPORT_LOW), real(m.supports, SUPPORT * place + SUPPORT_HIGH)
+    face = support_face(m, place)
     side = side_met(m, i, place)
     if side == 0:
         side = face_side(face, x, y, vx, vy)
-    restitution = _series(rules.wall_restitution, rules.duration)
-    delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t)
-    return delay, side, SUPPORTED if delay < NEVER else STRUCK
+    restitution, since = _series(rules.wall_restitution, rules.duration), _since_met(m, i, place)
+    delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t, since)
+    if delay < NEVER:
+        return delay, side, SUPPORTED
+    return NEVER if since < 0.0 else hop_on_face_delay(face, side, x, y, vx, vy, ax, ay, since), side, STRUCK
+
+
+@part
+def launched(m, rules, i, place, side, nx, ny):
+    """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""
+    if side_met(m, i, place) != side or rests(m, i):
+        return 0.0
+    ax, ay = pulls(m, rules, i)
+    fall = nx * ax + ny * ay
+    if not fall < 0.0:
+        return 0.0
+    f = i * REALS
+    return launch(nx * real(m.disks, f + VX) + ny * real(m.disks, f + VY), fall, _since_met(m, i, place))
+
+
+@inline
+def is_support(m, place):
+    """Whether a wall supports disks."""
+    return real(m.supports, SUPPORT * place + SUPPORT_LOW) < real(m.supports, SUPPORT * place + SUPPORT_HIGH)
+
+
+@inline
+def support_face(m, place):
+    """The face of a wall that supports disks."""
+    return face_at(m.supports, SUPPORT * place + SUPPORT_FACE)
 
 
 @part

@@ -9,7 +9,7 @@ import numpy as np
 from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
 from eventsim.engines.fast.shapes import CENTER, KINDS, WIDTH
-from eventsim.engines.reference.instants import instant_of
+from eventsim.engines.reference.instants import instant_of, stillness_of
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -39,7 +39,7 @@ def rules_of(stage: Stage) -> Rules:
         tuple(1 if kind in present else None for kind in KINDS),
         len(stage.boundaries),
         *instant_of(stage),
-        1 if stage.settles else None,
+        stillness_of(stage),
         stage.tie_screen,
     )
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 
 from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.layout import CONTACT_TIME, REALS, T
 from eventsim.engines.fast.memory import real
 from eventsim.engines.fast.met import side_met
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.walls.arc import Arc, arc_delay
-from eventsim.formulas.walls.container import Container, container_delay
-from eventsim.formulas.walls.face import Face, face_delay, face_normal, is_in_line
-from eventsim.formulas.walls.post import Post, post_delay, post_normal
+from eventsim.formulas.walls.arc import Arc, arc_delay, arc_touching
+from eventsim.formulas.walls.container import Container, container_delay, container_touching
+from eventsim.formulas.walls.face import Face, face_delay, face_normal, face_touching, is_in_line
+from eventsim.formulas.walls.post import Post, post_delay, post_normal, post_touching
 
 KINDS = (Face, Post, Container, Arc)
 """The shapes that the switches know, by the number that stands for them in the table."""
@@ -69,25 +70,35 @@ def arc_at(numbers, k):
 @part
 def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
+    touches = _touches(m, i, place, rules.still)
     faces, posts, containers, arcs = rules.shapes
-    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs)
+    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches)
 
 
 @inline
-def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs):
+def _touches(m, i, place, still):
+    """Whether the flight of disk i begins on contact with a wall: told where disks settle."""
+    if still is None:
+        return False
+    since = real(m.disks, i * REALS + T) - real(m.disks, i * REALS + CONTACT_TIME)
+    return since == 0.0 and side_met(m, i, place) != 0
+
+
+@inline
+def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches):
     met = side_met(m, i, place)
     row = m.features
     s = WIDTH * k
     kind = real(row, s)
     x, y = _seen_from(m, i, s, x, y, m.low_places)
     if faces is not None and kind == FACE:
-        return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
+        return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
     if posts is not None and kind == POST:
-        return post_delay(post_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
+        return post_delay(post_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
     if containers is not None and kind == CONTAINER:
-        return container_delay(container_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
+        return container_delay(container_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
     if arcs is not None and kind == ARC:
-        return arc_delay(arc_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met)
+        return arc_delay(arc_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
     return NEVER, 0
 
 
@@ -98,6 +109,23 @@ def _seen_from(m, i, s, x, y, low):
         return x, y
     row = m.features
     return (x - real(row, s + CENTER)) + real(low, 2 * i), (y - real(row, s + CENTER + 1)) + real(low, 2 * i + 1)
+
+
+@part
+def laid_on_shape(m, k, side, x, y, r):
+    """The place of a disk of radius r on the k-th shape, on contact but for the last bits."""
+    row = m.features
+    s = WIDTH * k
+    kind = real(row, s)
+    if kind == FACE:
+        return face_touching(face_at(row, s + 2), side, x, y, r)
+    if kind == POST:
+        return post_touching(post_at(row, s + 2), side, x, y, r)
+    if kind == CONTAINER:
+        return container_touching(container_at(row, s + 2), side, x, y, r)
+    if kind == ARC:
+        return arc_touching(arc_at(row, s + 2), side, x, y, r)
+    return math.nan, math.nan
 
 
 @part

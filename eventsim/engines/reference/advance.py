@@ -25,8 +25,8 @@ def wrap(state: EngineState, cells: Cells | None, event: Event, length: float) -
         y = entry
         state.wraps_y[i] += step
     state.anchor(i, t, x, y, vx, vy)
-    if state.support_of(i) is None:  # on this side of the domain it can meet the wall again that it met last
-        state.met[i] = tuple(met for met in state.met[i] if met[0] >= 0)
+    if state.support_of(i) is None:  # on this side of the domain it can meet the shape again that it met last
+        state.met[i] = tuple(met for met in state.met[i] if met[0] >= -state.boundaries)
     if cells is not None:
         cells.move(i, axis, step)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.real import Real
-from eventsim.formulas.rest import AT_ONCE, is_still
+from eventsim.formulas.rest import AT_ONCE, is_still, kept_up_instant, kept_up_way
 from eventsim.scene.stage import Stage
 
 AT_ONCE_ELASTIC, AT_ONCE_INELASTIC = 100_000, 100
@@ -25,7 +25,12 @@ contacts, whose number would be the inverse root of AT_ONCE before the clock sta
 
 
 def instant_of(stage: Stage) -> tuple[float, int]:
-    """(share of the clock, number): contacts of a disk closer than this are at one instant, and so many of them too many."""
+    """(share of the clock, number): contacts of a disk closer than this are at one instant, and so many of them too many.
+
+    Under gravity so are contacts after flights that rounding of the clock may keep up.
+    """
+    if stage.settles:
+        return kept_up_instant(stage.law.loss()), AT_ONCE_INELASTIC
     if stage.law.loses_energy():
         return AT_ONCE, AT_ONCE_INELASTIC
     most = AT_ONCE_ELASTIC
@@ -35,6 +40,11 @@ def instant_of(stage: Stage) -> tuple[float, int]:
             return AT_ONCE_SQUEEZED, most
         most = int(min(max(most, BETWEEN_HEAVY * math.sqrt(stage.mass_ratio)), MOST_AT_ONCE))
     return AT_ONCE, most
+
+
+def stillness_of(stage: Stage) -> float | None:
+    """The way, as a part of the coordinates, that a disk must come between two contacts to have flown; None: any."""
+    return kept_up_way(stage.law.loss()) if stage.settles else None
 
 
 class Instants:
@@ -47,29 +57,36 @@ class Instants:
         self._state = state
         usual, self.limit = instant_of(stage)
         self._share = usual if share is None else share
-        self._settles = stage.settles and share is None
+        self._share_of_series = AT_ONCE if share is None else share
+        self._stillness = stillness_of(stage) if share is None else None
+        self._settles = stage.settles
 
     def is_still(self, i: int, t: Real) -> bool:
         """Whether disk i has not come further, since its flight began, than the last bits of its place."""
         state = self._state
-        if not self._settles:
+        if self._stillness is None:
             return False
-        return is_still(*state.place(i, t), state.vx[i], state.vy[i], *state.speed(i, t), t - state.t[i])
+        flight = *state.place(i, t), state.vx[i], state.vy[i], *state.speed(i, t), t - state.t[i]
+        return is_still(*flight, self._stillness)
 
     def is_series(self, i: int, place: int) -> bool:
-        """Whether disk i met that straight wall already last."""
-        state = self._state
-        if state.supports is None or state.supports[place] is None:
-            return False
-        return len(state.met[i]) == 1 and state.met[i][0][0] == -1 - place
+        """Whether disk i met that wall already last, and bounces on it are exact however low."""
+        met = self._state.met[i]
+        return (self._settles or self.ends(place)) and len(met) == 1 and met[0][0] == -1 - place
 
-    def note(self, i: int, t: Real, idle: bool, still: bool) -> None:
+    def ends(self, place: int) -> bool:
+        """Whether a series on a wall comes to an end: it is straight, and disks rest on it."""
+        supports = self._state.supports
+        return supports is not None and supports[place] is not None
+
+    def note(self, i: int, t: Real, idle: bool, still: bool, ends: bool = False) -> None:
         """Note a contact of disk i; of idle ones, which change nothing, a third at the same instant is too many.
 
-        still: it is as good as at the instant of the one before, because the disk did not move in between.
+        still: it is as good as at the instant of the one before, because the disk did not move in between.  ends: it is of a
+        series on a straight wall, which rounding does not keep up.
         """
         state = self._state
         weight = self.limit // 3 + 1 if idle else 1
-        again = still or t - state.contact_time[i] <= self._share * t
+        again = still or t - state.contact_time[i] <= (self._share_of_series if ends else self._share) * t
         state.at_once[i] = state.at_once[i] + weight if again else weight
         state.contact_time[i] = t

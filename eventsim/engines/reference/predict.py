@@ -12,7 +12,7 @@ from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
-from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER, Real
 from eventsim.formulas.rest import STRUCK, border_contact, held_by, shape_contact
 from eventsim.formulas.walls.shape import Shape
@@ -43,6 +43,7 @@ class Predictor:
         self._features = tuple((first + k, feature.shape) for k, feature in enumerate(stage.features))
         self._shifts = stage.shifts
         self._falls = stage.gravity is not None
+        self._settles = stage.settles
         self._series_restitution = stage.law.series()
         self._unmoved = _classes(stage)
         everyone = list(range(stage.n))
@@ -68,10 +69,18 @@ class Predictor:
                 self._border(i, axis, -1)
             if high is None:
                 self._border(i, axis, 1)
-        for place, shape in self._features:
-            self._wall(i, place, shape)
+        self.predict_walls(i)
         if self._cells is not None:
             self._crossing(i, now)
+
+    def predict_walls(self, i: int) -> None:
+        """Push the contacts of disk i with shapes inside the domain."""
+        for place, shape in self._features:
+            self._wall(i, place, shape)
+
+    def predict_pairs(self, i: int, others: list[int]) -> None:
+        """Push the contacts of disk i with some others, not with images of them."""
+        self._contacts(i, [(others, (0, 0))])
 
     def predict_ahead(self, i: int, axis: int, step: int, now: Real) -> None:
         """Push what disk i can meet since it entered a new cell: the disks ahead of it, and the end of the domain."""
@@ -121,7 +130,9 @@ class Predictor:
                 if ky:
                     dy = dy - shift_y
                 if falls and (gx != hx or gy != hy):
-                    delay, _ = circle_delays(dx, dy, du, dw, gx - hx, gy - hy, reach_i + radius[j], 1.0)
+                    touches = self._settles and self._touch(i, j, kx, ky)
+                    pull = gx - hx, gy - hy
+                    delay, _ = circle_delays(dx, dy, du, dw, *pull, reach_i + radius[j], 1.0, ANY_OVERLAP, touches)
                     if not delay < NEVER:
                         continue
                 else:
@@ -157,6 +168,12 @@ class Predictor:
         ux, uy = kx + state.wraps_x[i] - state.wraps_x[j], ky + state.wraps_y[i] - state.wraps_y[j]
         return (j, ux, uy) in state.met[i] and (i, -ux, -uy) in state.met[j]
 
+    def _touch(self, i: int, j: int, kx: int, ky: int) -> bool:
+        """Whether the flights of both disks began at their contact with each other."""
+        state = self._state
+        both = state.begins_on_contact(i) and state.begins_on_contact(j)
+        return both and bool(state.t[i] == state.t[j]) and self._just_met(i, j, kx, ky)
+
     def _border(self, i: int, axis: int, step: int) -> None:
         """Push what happens to disk i at the low (-1) or high (+1) end of the domain: a contact, a wrap, or nothing."""
         border = self._borders[axis][step > 0]
@@ -171,8 +188,9 @@ class Predictor:
         else:
             size = abs(state.x[i]) + abs(state.y[i]) + abs(target)
             held, e = held_by(state.met[i]), self._series_restitution
+            since = state.since_met(i, -1 - place)
             delay, how = border_contact(
-                state.supports, held, place, -step, target, x[i], v[i], g[i], size, e, state.t[i]
+                state.supports, held, place, -step, target, x[i], v[i], g[i], size, e, state.t[i], since
             )
         if delay < NEVER:
             b, image = (axis, (step, 0)) if rank == WRAP else (-1 - place, (-step, how))
@@ -184,8 +202,11 @@ class Predictor:
         met = next((last[1] for last in state.met[i] if last[0] == -1 - place), 0)
         flight = state.x[i], state.y[i], state.vx[i], state.vy[i], state.gravity_x[i], state.gravity_y[i]
         held = None if state.supports is None else held_by(state.met[i])
+        since = state.since_met(i, -1 - place)
+        touches = self._settles and bool(since == 0.0)
+        e, t = self._series_restitution, state.t[i]
         delay, side, how = shape_contact(
-            state.supports, held, place, shape, flight, self._radius[i], met, self._series_restitution, state.t[i]
+            state.supports, held, place, shape, flight, self._radius[i], met, e, t, since, touches
         )
         if delay < NEVER:
             self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, how), state.count[i], 0))

@@ -16,6 +16,7 @@ from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_
 from eventsim.formulas.impulse import flat_update, pair_update, wall_update
 from eventsim.formulas.low_place import Low, apart
 from eventsim.formulas.real import Real, sqrt
+from eventsim.formulas.rest import STRUCK, launch, rebound
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
@@ -93,7 +94,8 @@ class Resolver:
         xa, ya = state.place(a, t)
         xb, yb = state.place(b, t)
         dx, dy = self._apart(event, xa, ya, xb, yb, state.low_place(a, t), state.low_place(b, t))
-        still = self._instants.is_still(a, t) and self._instants.is_still(b, t)
+        again = self._met(event, a) in state.met[a] and self._met(event, b) in state.met[b]
+        still = not again and self._instants.is_still(a, t) and self._instants.is_still(b, t)
         restitution = self._restitution(self._stage.law.pair, t, a, b)
         if state.low_parts:
             ua, wa, ub, wb, q = self._careful_pair(a, b, dx, dy, restitution)
@@ -142,10 +144,14 @@ class Resolver:
         x, y = state.place(i, t)
         u, w = state.speed(i, t)
         before = u, w
-        # A series on one straight wall is over when it is, and may well be lower than the last bits before.
-        still = not self._instants.is_series(i, place) and self._instants.is_still(i, t)
+        # A series on one wall is over when it is, and may well be lower than the last bits before.
+        series = self._instants.is_series(i, place)
+        still = not series and self._instants.is_still(i, t)
         restitution = self._restitution(stage.law.wall, t, i, i)
-        if state.low_parts:
+        again = self._launched(i, place, side)
+        if again > 0.0:
+            u, w = rebound(*stage.normal(place, side, x, y), u, w, restitution * again)
+        elif state.low_parts:
             u, w = self._careful_wall(i, *stage.normal(place, side, x, y, state.low_place(i, t)), restitution)
         elif (boundary := stage.boundary(place)) is None:
             u, w, _ = wall_update(*stage.normal(place, side, x, y, state.low_place(i, t)), u, w, restitution)
@@ -153,15 +159,26 @@ class Resolver:
             u, _ = flat_update(u, boundary.side, restitution)
         else:
             w, _ = flat_update(w, boundary.side, restitution)
-        x, y = self._place_on(place, i, x, y)
+        x, y = self._place_on(place, side, i, x, y)
         self._rests.free(i, t)
         state.anchor(i, t, x, y, u, w)
         state.meet(i, (self._met(event, i),))
-        self._instants.note(i, t, (u, w) == before, still)
+        self._instants.note(i, t, (u, w) == before, still, series and self._instants.ends(place))
         impulse = self._ledger.book_wall(i, u - before[0], w - before[1])
         self._counters.wall_contacts += 1
         self._ledger.log(t, Kind.WALL, i, -1, stage.surfaces[place].wall, impulse, -1)
         return [i]
+
+    def _launched(self, i: int, place: int, side: int) -> Real:
+        """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""
+        state = self._state
+        if state.supports is None or state.supports[place] is None or (-1 - place, side, STRUCK) not in state.met[i]:
+            return 0.0
+        nx, ny = self._stage.normal(place, side, state.x[i], state.y[i])
+        fall = nx * state.gravity_x[i] + ny * state.gravity_y[i]
+        if not fall < 0.0:
+            return 0.0
+        return launch(nx * state.vx[i] + ny * state.vy[i], fall, state.since_met(i, -1 - place))
 
     def _careful_wall(self, i: int, nx: Real, ny: Real, restitution: Real) -> tuple[Real, Real]:
         """The velocity of disk i after contact with a wall; its low part is set."""
@@ -207,7 +224,7 @@ class Resolver:
             x, y = at[number[i]] if low[number[i]] is None else state.place(i, t)
             for k in active:
                 if component[k].a == i and component[k].b < 0:
-                    x, y = self._place_on(-1 - component[k].b, i, x, y)
+                    x, y = self._place_on(-1 - component[k].b, component[k].image[0], i, x, y)
             self._rests.free(i, t)
             state.anchor(i, t, x, y, *outcome.velocities[number[i]])
             state.forget_low_parts(i)
@@ -254,14 +271,12 @@ class Resolver:
         """The vector from b (its image) to a; low_a, low_b: the low parts of their places."""
         return apart((xa, ya), (xb, yb), self._stage.shifts(event.image), low_a, low_b)
 
-    def _place_on(self, place: int, i: int, x: Real, y: Real) -> tuple[Real, Real]:
-        """The place of disk i, exactly on a boundary of the domain that it meets; its low part, if it has one, is set."""
+    def _place_on(self, place: int, side: int, i: int, x: Real, y: Real) -> tuple[Real, Real]:
+        """The place of disk i on the wall that it meets; its low part, if it has one, is set."""
         state, boundary = self._state, self._stage.boundary(place)
-        if boundary is None:
-            return x, y
-        if state.low_places:
+        if state.low_places and boundary is not None:
             (state.low_x, state.low_y)[boundary.axis][i] = boundary.left_over(self._radius[i])
-        return boundary.touching(x, y, self._radius[i])
+        return self._stage.touching(place, side, x, y, self._radius[i])
 
     def _restitution(self, restitution: float, t: Real, a: int, b: int) -> Real:
         law, state = self._stage.law, self._state

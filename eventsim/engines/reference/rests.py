@@ -8,7 +8,7 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.real import Real
-from eventsim.formulas.rest import LEFT, SUPPORTED, held_by, resting_place
+from eventsim.formulas.rest import LEFT, SUPPORTED, held_by
 from eventsim.formulas.walls.face import slope
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
@@ -70,7 +70,7 @@ class Rests:
         self.free(i, t)
         x, y = state.place(i, t)
         u, w = before = state.speed(i, t)
-        x, y = resting_place(support.face, side, x, y, self._radius[i])
+        x, y = support.face.touching(side, x, y, self._radius[i])
         still = self._instants.is_still(i, t)
         u, w = slope(support.face, u, w)
         state.anchor(i, t, x, y, u, w)

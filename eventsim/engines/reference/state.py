@@ -9,7 +9,7 @@ from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
 from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Acceleration, Real
-from eventsim.formulas.rest import SUPPORTED, Support, held_by
+from eventsim.formulas.rest import NOT_LAST, STRUCK, SUPPORTED, Support, held_by
 from eventsim.scene.stage import Stage
 
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
@@ -50,7 +50,7 @@ class EngineState:
         self.low_y = [0.0] * n if self.low_places else []
         self.gravity_x, self.gravity_y = _accelerations(stage)
         self._free_x, self._free_y = self.gravity_x, self.gravity_y
-        self.supports = stage.supports
+        self.supports, self.boundaries = stage.supports, len(stage.boundaries)
         if stage.supports is not None:
             self.gravity_x, self.gravity_y = list(self._free_x), list(self._free_y)
         self.now: Real = number(0.0)
@@ -113,6 +113,18 @@ class EngineState:
         self.met[i] = met
         if self.supports is not None:
             self._pull(i)
+
+    def since_met(self, i: int, wall: int) -> Real:
+        """How long before its flight began disk i struck a wall, -1 - its place; NOT_LAST if it has met something else since."""
+        if not any(met[0] == wall and met[2] == STRUCK for met in self.met[i]):
+            return NOT_LAST
+        begun, struck = self.t[i], self.contact_time[i]
+        return 0.0 if begun is struck else begun - struck
+
+    def begins_on_contact(self, i: int) -> bool:
+        """Whether the present flight of disk i began at its last contact."""
+        begun, struck = self.t[i], self.contact_time[i]
+        return bool(begun is struck or begun == struck)
 
     def _pull(self, i: int) -> None:
         support = self.support_of(i)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from eventsim.formulas.contact import circle_delay, leaving_delay
-from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, circle_delays
+from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, circle_delays, on_circle
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
 from eventsim.formulas.roots import Line, Moment, less_number, reaches
 from eventsim.formulas.walls.face import Face
@@ -32,7 +32,16 @@ class Arc(NamedTuple):
         return "arc"
 
     def delay(
-        self, x: Real, y: Real, vx: Real, vy: Real, gx: Acceleration, gy: Acceleration, radius: Real, met: int
+        self,
+        x: Real,
+        y: Real,
+        vx: Real,
+        vy: Real,
+        gx: Acceleration,
+        gy: Acceleration,
+        radius: Real,
+        met: int,
+        touches: bool = False,
     ) -> tuple[Real, int]:
         """(delay, side) of the next contact with the arc: with its outside at radius R + r, with its inside at R - r.
 
@@ -51,7 +60,8 @@ class Arc(NamedTuple):
             if not reach > 0.0 and not (reach == 0.0 and face_side > 0):
                 continue
             overlap = PRESENT_OVERLAP if face_side == side else NO_OVERLAP
-            first, second = circle_delays(dx, dy, vx, vy, gx, gy, reach, float(face_side), overlap)
+            on_it = touches and face_side == side
+            first, second = circle_delays(dx, dy, vx, vy, gx, gy, reach, float(face_side), overlap, on_it)
             for delay in (first, second):
                 if delay < best and on_arc(
                     self, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
@@ -62,6 +72,10 @@ class Arc(NamedTuple):
     def normal(self, side: int, x: Real, y: Real) -> tuple[Real, Real]:
         """The normal, of any length, that points to a disk at (x, y): away from the centre outside, to it inside."""
         return side * (x - self.x), side * (y - self.y)
+
+    def touching(self, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
+        """The centre of a disk on contact, next to (x, y), but for the last bits."""
+        return on_circle(self.x, self.y, self.radius + side * radius, x, y)
 
     def nearest(self, x: Real, y: Real) -> tuple[Real, Real, Real]:
         """(nx, ny, distance): the unit normal that points to a centre, and its distance; NEVER beside the arc."""
@@ -155,5 +169,5 @@ def _inner_from(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real, 
     return leaving_delay(x, y, vx, vy, radius, shape.x, shape.y, shape.radius)
 
 
-arc_delay, arc_nearest = Arc.delay, Arc.nearest
+arc_delay, arc_nearest, arc_touching = Arc.delay, Arc.nearest, Arc.touching
 """The same for kernels; the normal is that of a post."""

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from eventsim.formulas.contact import leaving_delay
-from eventsim.formulas.parabola import circle_delays
+from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays, on_circle
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
 from eventsim.formulas.roots import Line, Moment, less_number, reaches
 from eventsim.formulas.walls.face import Face
@@ -26,18 +26,31 @@ class Container(NamedTuple):
         return "container"
 
     def delay(
-        self, x: Real, y: Real, vx: Real, vy: Real, gx: Acceleration, gy: Acceleration, radius: Real, met: int
+        self,
+        x: Real,
+        y: Real,
+        vx: Real,
+        vy: Real,
+        gx: Acceleration,
+        gy: Acceleration,
+        radius: Real,
+        met: int,
+        touches: bool = False,
     ) -> tuple[Real, int]:
         """(delay, -1) of the next contact with the container from inside."""
         if gx is None:
             return leaving_delay(x, y, vx, vy, radius, self.x, self.y, self.radius), -1
         if gx == 0.0 and gy == 0.0:  # an immovable disk, on which gravity does not act
             return leaving_delay(x, y, vx, vy, radius, self.x, self.y, self.radius), -1
-        return circle_delays(x - self.x, y - self.y, vx, vy, gx, gy, self.radius - radius, -1.0)[0], -1
+        return circle_delays(x - self.x, y - self.y, vx, vy, gx, gy, self.radius - radius, -1.0, ANY_OVERLAP, touches)[0], -1
 
     def normal(self, side: int, x: Real, y: Real) -> tuple[Real, Real]:
         """The normal, of any length, that points to a disk at (x, y): from inside to the centre."""
         return side * (x - self.x), side * (y - self.y)
+
+    def touching(self, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
+        """The centre of a disk on contact, next to (x, y), but for the last bits."""
+        return on_circle(self.x, self.y, self.radius + side * radius, x, y)
 
     def nearest(self, x: Real, y: Real) -> tuple[Real, Real, Real]:
         """(nx, ny, distance): the unit normal that points to a centre, and its distance; NEVER in the middle."""
@@ -69,5 +82,5 @@ class Container(NamedTuple):
         return Container(*map(number, self))
 
 
-container_delay, container_nearest = Container.delay, Container.nearest
+container_delay, container_nearest, container_touching = Container.delay, Container.nearest, Container.touching
 """The same for kernels; the normal is that of a post."""

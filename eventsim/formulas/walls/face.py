@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from eventsim.formulas.crossing import closing_delay, reopening_delay
-from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
+from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
 from eventsim.formulas.roots import Line, Moment, falls_to, less_number
 
 TOUCHING = 2.0**-48
@@ -34,7 +34,16 @@ class Face(NamedTuple):
         return "straight face"
 
     def delay(
-        self, x: Real, y: Real, vx: Real, vy: Real, gx: Acceleration, gy: Acceleration, radius: Real, met: int
+        self,
+        x: Real,
+        y: Real,
+        vx: Real,
+        vy: Real,
+        gx: Acceleration,
+        gy: Acceleration,
+        radius: Real,
+        met: int,
+        touches: bool = False,
     ) -> tuple[Real, int]:
         """(delay, side) of the next contact with the face; met: the side last met, 0 if another contact came since."""
         if gx is None and met != 0:
@@ -45,17 +54,17 @@ class Face(NamedTuple):
         side = met if met != 0 else face_side(self, x, y, vx, vy)
         if gx is None:
             delay = closing_delay(side * distance - width, side * rate, None)
-            if delay < NEVER and _within(self, x + vx * delay, y + vy * delay):
+            if delay < NEVER and is_within(self, x + vx * delay, y + vy * delay):
                 return delay, side
             return NEVER, side
         fall = self.nx * gx + self.ny * gy
-        delay = closing_delay(side * distance - width, side * rate, side * fall)
-        if delay < NEVER and _within(
+        delay = closing_delay(0.0 if touches else side * distance - width, side * rate, side * fall)
+        if delay < NEVER and is_within(
             self, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
         ):
             return delay, side
         delay = reopening_delay(-(side * distance) - width, -(side * rate), -(side * fall))
-        if delay < NEVER and _within(
+        if delay < NEVER and is_within(
             self, x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
         ):
             return delay, -side
@@ -64,6 +73,18 @@ class Face(NamedTuple):
     def normal(self, side: int, x: Real, y: Real) -> tuple[Real, Real]:
         """The normal, of any length, that points to the disk."""
         return side * self.nx, side * self.ny
+
+    def touching(self, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
+        """The centre of a disk on contact, next to (x, y): exactly where the face is along an axis."""
+        if self.ey == 0.0:
+            return x, self.y + (side * self.ny) * radius
+        if self.ex == 0.0:
+            return self.x + (side * self.nx) * radius, y
+        if not is_float(x):  # nothing is rounded: it is there
+            return x, y
+        nx, ny = side * self.nx, side * self.ny
+        share = ((nx * (x - self.x) + ny * (y - self.y)) - radius * self.norm) / self.norm2
+        return x - share * nx, y - share * ny
 
     def nearest(self, x: Real, y: Real) -> tuple[Real, Real, Real]:
         """(nx, ny, distance): the unit normal that points to a centre, and its distance; NEVER beyond an end."""
@@ -102,7 +123,7 @@ class Face(NamedTuple):
         return exact._replace(norm=sqrt(norm2), norm2=norm2, along2=exact.ex * exact.ex + exact.ey * exact.ey)
 
 
-face_delay, face_normal, face_nearest = Face.delay, Face.normal, Face.nearest
+face_delay, face_normal, face_nearest, face_touching = Face.delay, Face.normal, Face.nearest, Face.touching
 """The same for kernels."""
 
 
@@ -129,7 +150,7 @@ def face_side(shape: Face, x: Real, y: Real, vx: Real, vy: Real) -> int:
     return 1 if shape.nx * vx + shape.ny * vy > 0.0 else -1
 
 
-def _within(shape: Face, x: Real, y: Real) -> bool:
+def is_within(shape: Face, x: Real, y: Real) -> bool:
     """Whether the foot of a centre lies on the segment, ends included."""
     along = shape.ex * (x - shape.x) + shape.ey * (y - shape.y)
     return bool(not along < 0.0 and not along > shape.along2)

@@ -37,12 +37,28 @@ class Shape(Protocol):
         """What messages call one such shape."""
 
     def delay(
-        self, x: Real, y: Real, vx: Real, vy: Real, gx: Acceleration, gy: Acceleration, radius: Real, met: int
+        self,
+        x: Real,
+        y: Real,
+        vx: Real,
+        vy: Real,
+        gx: Acceleration,
+        gy: Acceleration,
+        radius: Real,
+        met: int,
+        touches: bool = False,
     ) -> tuple[Real, int]:
-        """(delay, side) of the next contact of a disk; met: the side last met, 0 if another contact came since."""
+        """(delay, side) of the next contact of a disk; met: the side last met, 0 if another contact came since.
+
+        touches: the flight, under gravity, begins on contact with that side, wherever rounding has put the disk: then no bounce
+        is too low for the digits of its place.
+        """
 
     def normal(self, side: int, x: Real, y: Real) -> tuple[Real, Real]:
         """The normal, of any length, that points to a disk at (x, y)."""
+
+    def touching(self, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
+        """The centre of a disk on contact, next to (x, y), but for the last bits."""
 
     def nearest(self, x: Real, y: Real) -> tuple[Real, Real, Real]:
         """(nx, ny, distance): the unit normal that points to a centre, and its distance; NEVER beside the shape."""
