@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.formulas.rest import AT_ONCE
+from eventsim.formulas.rest import AT_ONCE, kept_up_instant
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene.stage import Stage
 
@@ -24,11 +24,14 @@ TAIL = 1024
 SETTLED = 2.0**-20
 """A last round shorter than this part of the first one was not cut off by the digits of the positions."""
 
+CLEAN = 2.0**10
+"""Rounds so many times as long as the last ones are known well enough to tell their ratio, which the last digits blur."""
+
 MANY_DISKS = 8
 """More disks are counted, not named."""
 
 LAST_ROUNDS = 4
-"""The ratio is that of so many rounds at the end, where it has settled."""
+"""The ratio is that of so many rounds, the last ones that are known well, where it has settled."""
 
 
 LIES_STILL = (
@@ -43,6 +46,7 @@ class Rounds(NamedTuple):
 
     disks: those that meet at the last instant.  number: how many rounds followed each other ever faster.  ratio: how long the
     last ones took, each in terms of the one before; nan where there were none.  first, last: the longest and the shortest.
+    ends_now: whether a series with this ratio is over within what the clock can tell.
     """
 
     disks: list[int]
@@ -50,6 +54,7 @@ class Rounds(NamedTuple):
     ratio: float
     first: float
     last: float
+    ends_now: bool
 
 
 def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -> tuple[str, str] | None:
@@ -57,7 +62,8 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
 
     clock, time: that instant, (epoch, remainder) and on the scene's clock.
     """
-    rounds = rounds_before_the_end(rows, stage.epoch_length, clock)
+    instant = kept_up_instant(stage.law.loss()) if stage.settles else AT_ONCE
+    rounds = rounds_before_the_end(rows, stage.epoch_length, clock, instant)
     if rounds is None or (rounds.number < 2 and stage.gravity is not None):  # what rests there has no rounds to show
         return None
     names = named(rounds.disks)
@@ -69,7 +75,7 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
     series = (
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
-    if rounds.last < SETTLED * rounds.first:
+    if rounds.ends_now or rounds.last < SETTLED * rounds.first:
         return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {stage.law.remedy()}"
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
@@ -77,14 +83,20 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
     )
 
 
-def rounds_before_the_end(rows: Rows, epoch_length: float, clock: tuple[int, float]) -> Rounds | None:
-    """The rounds of the disks that met at the last instant; None where nothing came before it, or no row is of it."""
+def rounds_before_the_end(
+    rows: Rows, epoch_length: float, clock: tuple[int, float], instant: float = AT_ONCE
+) -> Rounds | None:
+    """The rounds of the disks that met at the last instant; None where nothing came before it, or no row is of it.
+
+    instant: the share of the clock within which contacts are at one instant.
+    """
     rows = rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)][-TAIL:]
     if len(rows) == 0:
         return None
     # Times before the end: epochs are whole numbers, so nothing is lost by a late clock.
     before = (clock[0] - rows["epoch"]) * epoch_length + (clock[1] - rows["remainder"])
-    at_once = before <= len(rows) * AT_ONCE * clock[1]
+    end = len(rows) * instant * clock[1]
+    at_once = before <= end
     if not at_once[-1]:
         return None
     disks = _connected(rows[at_once])
@@ -94,24 +106,43 @@ def rounds_before_the_end(rows: Rows, epoch_length: float, clock: tuple[int, flo
     mine = rows[inside]
     times = -np.concatenate([before[inside & ~at_once], before[inside & at_once][:1]])
     period = len(set(zip(mine["a"].tolist(), mine["b"].tolist(), mine["wall"].tolist(), strict=True)))
-    return _rounds(disks, times[period:] - times[:-period] if len(times) > period else times[:0], period)
+    return _rounds(disks, times[period:] - times[:-period] if len(times) > period else times[:0], period, end)
 
 
-def _rounds(disks: list[int], lengths: Floats, period: int) -> Rounds:
-    """The rounds that became shorter and shorter; the last ones of all, which are noise, may be left out."""
-    best, end = 0, len(lengths)
-    for skipped in range(min(2 * period + 1, len(lengths))):
-        last = len(lengths) - skipped
-        count = 1
-        while count < last and 0.0 < lengths[last - count] < lengths[last - count - 1]:
-            count += 1
-        if count > best:
-            best, end = count, last
+def _rounds(disks: list[int], lengths: Floats, period: int, end: float) -> Rounds:
+    """The longest series of rounds that became shorter and shorter; none of those after it, which are noise, was as long.
+
+    end: a time that is as good as none.
+    """
+    best, last, count, longest = 0, 0, 0, 0.0
+    counts = []
+    for k, length in enumerate(lengths.tolist()):
+        count = count + 1 if k and 0.0 < length < lengths[k - 1] else 1
+        counts.append(count)
+    for k in reversed(range(len(counts))):
+        if lengths[k] > longest:
+            longest = float(lengths[k])
+            if counts[k] > best:
+                best, last = counts[k], k
     if best < 2 * period:
-        return Rounds(disks, best // period, math.nan, math.nan, math.nan)
-    whole = min((best - 1) // period, LAST_ROUNDS)
-    ratio = float(lengths[end - 1] / lengths[end - 1 - whole * period]) ** (1.0 / whole)
-    return Rounds(disks, best // period, ratio, float(lengths[end - best]), float(lengths[end - 1]))
+        return Rounds(disks, best // period, math.nan, math.nan, math.nan, False)
+    series = lengths[last + 1 - best : last + 1]
+    ratio = _ratio(series, period, CLEAN * float(lengths[last:].min()))
+    ends_now = float(series[-1]) * ratio <= (1.0 - ratio) * 2.0 * end
+    return Rounds(disks, best // period, ratio, float(series[0]), float(series[-1]), ends_now)
+
+
+def _ratio(series: Floats, period: int, clean: float) -> float:
+    """How long rounds took in terms of the one before: the last ones of a series of which none, if possible, is below `clean`."""
+    whole = (len(series) - 1) // period
+    while True:
+        known = (int((series >= clean).sum()) - 1) // period
+        if known >= min(whole, LAST_ROUNDS):
+            break
+        clean *= 0.5
+    rounds = min(known, LAST_ROUNDS)
+    end = 1 + int(np.flatnonzero(series >= clean)[-1])
+    return math.pow(series[end - 1] / series[end - 1 - rounds * period], 1.0 / rounds)
 
 
 def _connected(rows: Rows) -> list[int]:
