@@ -15,6 +15,7 @@ from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_
 from eventsim.engines.fast.machine import FOREVER, Machine
 from eventsim.engines.fast.rules import kind_of
 from eventsim.engines.fast.rulings import Rulings
+from eventsim.engines.reference.ahead import meets_again
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, remainder_since, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import Rows
@@ -139,13 +140,19 @@ class FastSession(Session):
                         return "quiet"
                 elif empty or not machine.renew_stale():
                     self._pass_to(until)
-                    return "quiet" if empty else "until"
+                    return "quiet" if empty or not self._meets_again() else "until"
         return None
 
     @property
     def memory(self) -> int:
         """Bytes of the arrays that kernels work in."""
         return self._machine.memory
+
+    def _meets_again(self) -> bool:
+        """Whether more is ahead than passages from cell to cell."""
+        if self.stage.size is not None or self._machine.next_contact() < math.inf:
+            return True
+        return meets_again(self.stage, self.snapshot(), self.motion())
 
     def _only_looks(self) -> bool:
         """Whether nothing is ahead but looking for smaller disks, which on the open plane has no end."""

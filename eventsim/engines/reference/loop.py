@@ -13,6 +13,7 @@ from eventsim.engines.collapse import LIES_STILL, named
 from eventsim.engines.drift import only_wraps
 from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.advance import cross, refill, wrap
+from eventsim.engines.reference.ahead import meets_again
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
 from eventsim.engines.reference.generation import Ties, components
@@ -90,7 +91,7 @@ class ReferenceSession(Session):
                 return "quiet"
             if due > until:
                 self._pass_to(until)
-                return "until"
+                return "until" if self._meets_again() else "quiet"
             state.now = due
             if event.rank == WRAP:
                 calendar.pop()
@@ -193,6 +194,12 @@ class ReferenceSession(Session):
         """When the earliest contact that is predicted is due, rounded; inf without one."""
         ahead = (event.time for event in self.calendar if event.rank == CONTACT and not self.is_stale(event))
         return min(map(float, ahead), default=float("inf"))
+
+    def _meets_again(self) -> bool:
+        """Whether more is ahead than passages from cell to cell."""
+        if self.stage.size is not None or any(e.rank != CROSSING and not self.is_stale(e) for e in self.calendar):
+            return True
+        return meets_again(self.stage, self.snapshot(), self.motion())
 
     def _drifts(self) -> bool:
         """Whether disks will wrap for ever, and never meet anything again."""
