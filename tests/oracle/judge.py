@@ -49,8 +49,8 @@ RIGHT, REFUSED, WRONG, UNJUDGED = "right", "refused", "wrong", "unjudged"
 STOPS = ("collapse", "digits")
 """Words for a stop with a reason."""
 
-MOST_LOW = 15.0
-"""Bounces that an engine may add to the oracle's, times 1 - e: flights become shorter by a factor of a million in them."""
+MOST_LOW = 25.0
+"""Bounces that an engine may add to the oracle's, times 1 - e: in them flights become shorter by a factor of 1e11."""
 
 NOTICED = 1e-5
 """Where there is no answer any more a run must stop within such a part of the time in which a disk flies its own length."""
