@@ -9,7 +9,6 @@ from tests.oracle.families import FAMILIES
 from tests.oracle.judge import REFUSED, UNJUDGED, WRONG
 
 KNOWN = {
-    "P1-floors": "FAULTS A1, A5",
     "P1-polygons": "FAULTS A1, A9",
     "P1-joints": "FAULTS A1, A9",
     "P3-kicked": "FAULTS A3",
@@ -24,10 +23,8 @@ KNOWN = {
 
 KNOWN_OF_MANY = {
     **KNOWN,
-    "P5-segments": "FAULTS A5",
-    "P5-vertices": "FAULTS A5",
-    "P6-skims": "FAULTS A5",
-    "slopes": "FAULTS A5, A6",
+    "P1-floors": "FAULTS A1",
+    "slopes": "FAULTS A6",
     "containers": "FAULTS A1",
     "P2-walls": "FAULTS A2",
     "P4-three": "FAULTS A4",
