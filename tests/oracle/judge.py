@@ -226,6 +226,8 @@ class _Judge:
         for name, part in zip("ab", self._parts(expected, disks), strict=False):
             self._compare(number, name, row, part, expected, time)
             self.counts[part.disk] += 1
+            if expected.kind == REST:
+                self.low[part.disk] = 0
             self.velocity[part.disk] = float(row[f"vx{name}"]), float(row[f"vy{name}"])
         self.judged += 1
 
