@@ -27,12 +27,21 @@ SETTLED = 2.0**-20
 CLEAN = 2.0**10
 """Rounds so many times as long as the last ones are known well enough to tell their ratio, which the last digits blur."""
 
+CLEAN_OF_SUNK = 2.0
+"""The same of a series that was stopped when its gaps had a few last bits left."""
+
 MANY_DISKS = 8
 """More disks are counted, not named."""
 
 LAST_ROUNDS = 4
 """The ratio is that of so many rounds, the last ones that are known well, where it has settled."""
 
+
+STEADY = 1.005
+"""Ratios of rounds that differ by no more than this factor are one; near the critical restitution they drift by more."""
+
+RECENT = 6
+"""The disks of a series are those that are connected through so many rows at its end."""
 
 LIES_STILL = (
     "what lies still on another disk, on several walls or on a round one is not modelled; begin with gaps, and with a "
@@ -46,7 +55,7 @@ class Rounds(NamedTuple):
 
     disks: those that meet at the last instant.  number: how many rounds followed each other ever faster.  ratio: how long the
     last ones took, each in terms of the one before; nan where there were none.  first, last: the longest and the shortest.
-    ends_now: whether a series with this ratio is over within what the clock can tell.
+    ends_now: whether a series with this ratio is over within what the clock can tell.  steady: whether the ratio has settled.
     """
 
     disks: list[int]
@@ -55,6 +64,7 @@ class Rounds(NamedTuple):
     first: float
     last: float
     ends_now: bool
+    steady: bool
 
 
 def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -> tuple[str, str] | None:
@@ -66,16 +76,35 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
     rounds = rounds_before_the_end(rows, stage.epoch_length, clock, instant)
     if rounds is None or (rounds.number < 2 and stage.gravity is not None):  # what rests there has no rounds to show
         return None
-    names = named(rounds.disks)
     if rounds.number < 2:
         return "digits", (
-            f"the contacts of {names} at time {time:.9g} follow one another faster than the digits of float64 can tell, "
-            f"without a steady ratio before: they may or may not end; {stage.law.remedy()}"
+            f"the contacts of {named(rounds.disks)} at time {time:.9g} follow one another faster than the digits of float64 can "
+            f"tell, without a steady ratio before: they may or may not end; {stage.law.remedy()}"
         )
+    return _of_rounds(rounds, stage, time, rounds.ends_now or rounds.last < SETTLED * rounds.first)
+
+
+def diagnosis_of_sunk(rows: Rows, stage: Stage, time: float) -> tuple[str, str] | None:
+    """The same of a run that stops because a gap has sunk below the digits; None where no rounds came before.
+
+    A series whose ratio has become steady is a collapse: the ratio is the eigenvalue of the matrix that a round is.
+    """
+    rows = rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)][-TAIL:]
+    if len(rows) == 0:
+        return None
+    disks = _connected(rows[-RECENT:])
+    mine = rows[np.isin(rows["a"], disks) & ((rows["b"] < 0) | np.isin(rows["b"], disks))]
+    times = (mine["epoch"] - mine["epoch"][-1]) * stage.epoch_length + mine["remainder"]
+    rounds = _series(disks, mine, times, 0.0, CLEAN_OF_SUNK)
+    return None if rounds.number < 2 else _of_rounds(rounds, stage, time, rounds.steady)
+
+
+def _of_rounds(rounds: Rounds, stage: Stage, time: float, collapses: bool) -> tuple[str, str]:
+    names = named(rounds.disks)
     series = (
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
-    if rounds.ends_now or rounds.last < SETTLED * rounds.first:
+    if collapses:
         return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {stage.law.remedy()}"
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
@@ -105,14 +134,19 @@ def rounds_before_the_end(
         return None
     mine = rows[inside]
     times = -np.concatenate([before[inside & ~at_once], before[inside & at_once][:1]])
-    period = len(set(zip(mine["a"].tolist(), mine["b"].tolist(), mine["wall"].tolist(), strict=True)))
-    return _rounds(disks, times[period:] - times[:-period] if len(times) > period else times[:0], period, end)
+    return _series(disks, mine, times, end, CLEAN)
 
 
-def _rounds(disks: list[int], lengths: Floats, period: int, end: float) -> Rounds:
+def _series(disks: list[int], rows: Rows, times: Floats, end: float, clean: float) -> Rounds:
+    """The rounds of rows at these times: as many rows as there are different contacts make one."""
+    period = len(set(zip(rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True)))
+    return _rounds(disks, times[period:] - times[:-period] if len(times) > period else times[:0], period, end, clean)
+
+
+def _rounds(disks: list[int], lengths: Floats, period: int, end: float, clean: float) -> Rounds:
     """The longest series of rounds that became shorter and shorter; none of those after it, which are noise, was as long.
 
-    end: a time that is as good as none.
+    end: a time that is as good as none.  clean: see CLEAN.
     """
     best, last, count, longest = 0, 0, 0, 0.0
     counts = []
@@ -125,11 +159,18 @@ def _rounds(disks: list[int], lengths: Floats, period: int, end: float) -> Round
             if counts[k] > best:
                 best, last = counts[k], k
     if best < 2 * period:
-        return Rounds(disks, best // period, math.nan, math.nan, math.nan, False)
+        return Rounds(disks, best // period, math.nan, math.nan, math.nan, False, False)
     series = lengths[last + 1 - best : last + 1]
-    ratio = _ratio(series, period, CLEAN * float(lengths[last:].min()))
+    ratio = _ratio(series, period, clean * float(lengths[last:].min()))
     ends_now = float(series[-1]) * ratio <= (1.0 - ratio) * 2.0 * end
-    return Rounds(disks, best // period, ratio, float(series[0]), float(series[-1]), ends_now)
+    return Rounds(disks, best // period, ratio, float(series[0]), float(series[-1]), ends_now, _is_steady(series, period))
+
+
+def _is_steady(series: Floats, period: int) -> bool:
+    """Whether the last rounds all took the same share of the one before."""
+    ratios = series[period:] / series[:-period]
+    last = ratios[-4 * period : -period]  # the very last gaps have lost most of their digits
+    return len(last) >= 2 * period and float(last.max()) <= STEADY * float(last.min())
 
 
 def _ratio(series: Floats, period: int, clean: float) -> float:

@@ -27,6 +27,21 @@ CLOCK_BITS = 1.0 + 2.0**-50
 """What the clock rounds: 4 to 8 units in the last place of a contact time; each is right to about two."""
 
 
+BELOW = 2.0**-50
+"""A gap that is a smaller part of the places it is the difference of is below the digits: four to eight of their last bits.
+
+Each of two places is rounded where its flight begins and where the gap is looked at, and the contact before was off by as much.
+"""
+
+
+def is_sunk(approach: Real, lag: Real, size: Real) -> Real:
+    """Whether the gap that closed at speed `approach` for a time `lag` was one of the last bits of places of that size.
+
+    What closed at once was no open gap.
+    """
+    return (lag > 0.0) & (approach * lag <= BELOW * size)
+
+
 def tie_screen(size: float, slowest: float, between: float) -> float:
     """The span of time within which contacts that share a disk are ordered exactly.
 

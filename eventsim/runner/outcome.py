@@ -9,7 +9,7 @@ import numpy as np
 
 from eventsim import __version__
 from eventsim.engines.base import Counters, Session, Stop
-from eventsim.engines.collapse import diagnosis
+from eventsim.engines.collapse import diagnosis, diagnosis_of_sunk
 from eventsim.engines.trajectory import Trajectory
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, State
@@ -60,9 +60,11 @@ class Outcome:
 def diagnosed(session: Session, stopped: str, last_rows: Rows) -> tuple[str, str | None]:
     """Why a run stopped, and the sentence about it; a sequence that does not end is told from its last rows."""
     stage = session.stage
-    if stopped != "collapse" or not stage.law.loses_energy() or session.refused:
+    if stopped not in ("collapse", "digits") or not stage.law.loses_energy() or session.refused:
         return stopped, session.reason
     time = clock_time(*session.clock, stage.epoch_length, stage.start_time)
+    if stopped == "digits":
+        return diagnosis_of_sunk(last_rows, stage, time) or (stopped, session.reason)
     return diagnosis(last_rows, stage, session.clock, time) or (stopped, session.reason)
 
 

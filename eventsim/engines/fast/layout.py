@@ -90,7 +90,7 @@ class Rules(NamedTuple):
     wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
     disks or tracers.  features: number of wall shapes; shapes: of each of the kinds of `shapes` whether there is one;
     first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.  still: see `stillness_of`, None where
-    disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.
+    disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.  sinks: gaps can sink below the digits.
     """
 
     gx: object
@@ -113,6 +113,7 @@ class Rules(NamedTuple):
     at_once_limit: int
     still: object
     tie_screen: float
+    sinks: object
 
 
 class Grid(NamedTuple):

@@ -70,6 +70,7 @@ from eventsim.engines.fast.levels import home_of, level_of, place_in
 from eventsim.engines.fast.memory import pointer, real, store, word
 from eventsim.engines.fast.predict import predict
 from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
+from eventsim.engines.fast.sunk import pair_may_be_sunk, wall_may_be_sunk
 
 
 @inline
@@ -160,7 +161,9 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             if is_stale(m, i):
                 stale += 1
                 take(m, i)
-            elif word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS:
+            elif word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS or pair_may_be_sunk(
+                m, rules, i, code, now, rules.sinks
+            ):
                 status = STATUS_TIE
                 break
             else:
@@ -172,7 +175,9 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 predict(m, grid, rules, code, now, now)
                 room, deadline = push_later(m, grid, code, day, room, deadline, grid.look_ahead)
         elif code <= WALL:
-            if word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS:
+            if word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS or wall_may_be_sunk(
+                m, rules, i, code, now, rules.gx, rules.sinks
+            ):
                 status = STATUS_TIE
                 break
             take(m, i)

@@ -17,6 +17,7 @@ from eventsim.engines.reference.generation import Ties, components, disks_of, ro
 from eventsim.engines.reference.loop import endless, refused
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
+from eventsim.engines.reference.sunk import Sunk
 from eventsim.formulas.doubt import latest_tie
 from eventsim.formulas.simultaneous import SqueezedError
 
@@ -33,6 +34,7 @@ class Rulings:
         self.reason: str | None = None
         self.refused = False
         self._ties = Ties(machine.stage, machine.state)
+        self._sunk = Sunk(machine.stage, machine.state)
         self._spent: set[Event] = set()
         self._found, self._times = np.empty((64, 4), np.int64), np.empty(64)
         self._resolver: Resolver | None = None
@@ -44,6 +46,9 @@ class Rulings:
         machine.flush()
         near = self._contacts_until(latest_tie(now, machine.rules.tie_screen))
         generation = self._ties.settle(near) if any(event.time == now for event in near) else []
+        if (sunk := self._sunk.reason(generation)) is not None:
+            self.reason = sunk
+            return "digits"
         resolver = self._opened_resolver()
         waiting = [int(state.labels[i]) for i in self._find(due_at, machine.counts, now)[:, 0]]
         changed: list[int] = []

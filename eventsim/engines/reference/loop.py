@@ -22,6 +22,7 @@ from eventsim.engines.reference.predict import Predictor
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
+from eventsim.engines.reference.sunk import Sunk
 from eventsim.engines.reference.wide import WidePredictor
 from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
 from eventsim.formulas.doubt import latest_tie, screen_in
@@ -60,6 +61,7 @@ class ReferenceSession(Session):
         self._predictor = (WidePredictor if fine else self.predictor)(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
         self._ties = Ties(stage, self.state)
+        self._sunk = Sunk(stage, self.state)
         self._predict_afresh()
 
     def _new_calendar(self) -> Calendar:
@@ -114,6 +116,9 @@ class ReferenceSession(Session):
     def _resolve_instant(self) -> str | None:
         """Resolve the contacts of the earliest instant that are predicted by now, then predict their disks anew."""
         generation = self._pop_generation()
+        if (sunk := self._sunk.reason(generation)) is not None:
+            self.reason = sunk
+            return "digits"
         changed: list[int] = []
         for component in components(generation):
             try:

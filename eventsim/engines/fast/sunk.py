@@ -1,0 +1,61 @@
+"""Contacts that may close a gap below the digits: a screen, behind which the reference engine's rule decides."""
+
+from __future__ import annotations
+
+from eventsim.engines.fast.advance import place, speed
+from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.layout import RADIUS, REALS, WALL, T
+from eventsim.engines.fast.memory import real
+from eventsim.engines.fast.pairs import images, shifts
+from eventsim.engines.fast.shapes import shape_normal
+from eventsim.formulas.doubt import is_sunk
+
+WIDER = 2.0
+"""How much wider the screen is than the rule, whose numbers it has but for their last bits."""
+
+
+@inline
+def pair_may_be_sunk(m, rules, i, j, now, sinks):
+    """Whether two disks that meet now were as good as in contact when the later of their flights began."""
+    return False if sinks is None else _pair_may_be_sunk(m, rules, i, j, now)
+
+
+@inline
+def wall_may_be_sunk(m, rules, i, code, now, gx, sinks):
+    """The same of a disk and the wall that the code of its event stands for; under gravity no gap to a wall is sunk."""
+    return False if sinks is None or gx is not None else _wall_may_be_sunk(m, rules, i, code, now)
+
+
+@part
+def _pair_may_be_sunk(m, rules, i, j, now):
+    t, other = real(m.disks, i * REALS + T), real(m.disks, j * REALS + T)
+    xi, yi = place(m, rules, i, now)
+    xj, yj = place(m, rules, j, now)
+    ui, wi = speed(m, rules, i, now)
+    uj, wj = speed(m, rules, j, now)
+    shift_x, shift_y = shifts(rules, *images(m, rules, i, j, now, xi, yi))
+    dx, dy = (xi - xj) - shift_x, (yi - yj) - shift_y
+    reach = real(m.disks, i * REALS + RADIUS) + real(m.disks, j * REALS + RADIUS)
+    size = abs(dx) * max(abs(xi), abs(xj)) + abs(dy) * max(abs(yi), abs(yj)) + reach * reach
+    return is_sunk(-(dx * (ui - uj) + dy * (wi - wj)), now - max(t, other), WIDER * size)
+
+
+@part
+def _wall_may_be_sunk(m, rules, i, code, now):
+    wall, side = (WALL - code) // 2, -1 if (WALL - code) % 2 else 1
+    x, y = place(m, rules, i, now)
+    u, w = speed(m, rules, i, now)
+    nx, ny = _normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
+    size = abs(nx * x) + abs(ny * y) + max(abs(nx), abs(ny)) * real(m.disks, i * REALS + RADIUS)
+    return is_sunk(-(nx * u + ny * w), now - real(m.disks, i * REALS + T), WIDER * size)
+
+
+@inline
+def _normal(m, rules, i, wall, side, x, y, wall_x, wall_y, features):
+    if wall_x is not None and wall_x <= wall < wall_x + 2:
+        return float(side), 0.0
+    if wall_y is not None and wall_y <= wall < wall_y + 2:
+        return 0.0, float(side)
+    if features is None:
+        return 0.0, 0.0
+    return shape_normal(m, i, wall - rules.first_feature, side, x, y)

@@ -1,0 +1,98 @@
+"""Gaps below the digits: contacts that only the last bits of rounded places predict.
+
+A contact that takes energy leaves disks slow and close.  Where the gap to what comes next has sunk to the last bits of the places
+that it is the difference of, nobody knows when that contact comes, or whether another one comes first.  Then a run stops.
+"""
+
+from __future__ import annotations
+
+import math
+
+from eventsim.engines.collapse import named
+from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.generation import disks_of
+from eventsim.engines.reference.state import EngineState
+from eventsim.formulas.doubt import is_sunk
+from eventsim.scene.stage import Stage
+
+
+class Sunk:
+    """Knows which contacts of one run close a gap that is below the digits."""
+
+    def __init__(self, stage: Stage, state: EngineState) -> None:
+        self._stage = stage
+        self._state = state
+        self._looks = can_sink(stage)
+        self._start = list(zip(stage.x.tolist(), stage.y.tolist(), strict=True))
+
+    def reason(self, generation: list[Event]) -> str | None:
+        """Why contacts of an instant cannot be resolved: a sentence on the first gap below the digits; None where they can."""
+        if not self._looks:
+            return None
+        for event in generation:
+            gap = self._gap(event)
+            if gap is not None:
+                return self._sentence(event, gap)
+        return None
+
+    def _gap(self, event: Event) -> float | None:
+        """The gap that a contact closes, as it was when the later of the flights began; None where it is known.
+
+        It is known where no contact has taken energy from the later flight, and where both places are still those of the start.
+        """
+        state, disks = self._state, disks_of(event)
+        begin = max(state.t[i] for i in disks)
+        if not any(state.t[i] == begin and self._has_lost(i) for i in disks):
+            return None
+        if all((state.x[i], state.y[i]) == self._start[i] for i in disks):
+            return None
+        approach, size = self._of_pair(event) if event.b >= 0 else self._of_wall(event)
+        lag = event.time - begin
+        return approach * lag if is_sunk(approach, lag, size) else None
+
+    def _has_lost(self, i: int) -> bool:
+        """Whether the flight of disk i began at a contact that took energy."""
+        state, law = self._state, self._stage.law
+        if state.contact_time[i] != state.t[i]:
+            return False
+        return any((law.pair if met[0] >= 0 else law.wall) < 1.0 for met in state.met[i])
+
+    def _of_pair(self, event: Event) -> tuple[float, float]:
+        """(approach, size): the speed at which the gap of two disks closes, and the size of what it is the difference of."""
+        state, radius = self._state, self._stage.radius
+        a, b, t = event.a, event.b, event.time
+        if state.gravity_x[a] != state.gravity_x[b] or state.gravity_y[a] != state.gravity_y[b]:
+            return math.inf, 0.0  # gravity opens and closes gaps of its own
+        (xa, ya), (xb, yb) = state.place(a, t), state.place(b, t)
+        (ua, wa), (ub, wb) = state.speed(a, t), state.speed(b, t)
+        shift_x, shift_y = self._stage.shifts(event.image)
+        dx, dy = (xa - xb) - shift_x, (ya - yb) - shift_y
+        distance = math.hypot(dx, dy)
+        size = abs(dx) * max(abs(xa), abs(xb)) + abs(dy) * max(abs(ya), abs(yb))
+        return -(dx * (ua - ub) + dy * (wa - wb)) / distance, size / distance + float(radius[a] + radius[b])
+
+    def _of_wall(self, event: Event) -> tuple[float, float]:
+        """The same of a disk and a wall; nothing sinks there under gravity, where disks come to rest."""
+        if self._stage.gravity is not None:
+            return math.inf, 0.0
+        i, surface = event.a, -1 - event.b
+        x, y = self._state.place(i, event.time)
+        u, w = self._state.speed(i, event.time)
+        nx, ny = self._stage.normal(surface, event.image[0], x, y)
+        length = math.hypot(nx, ny)
+        if not length > 0.0:
+            return math.inf, 0.0  # a point on a post
+        return -(nx * u + ny * w) / length, (abs(nx * x) + abs(ny * y)) / length + float(self._stage.radius[i])
+
+    def _sentence(self, event: Event, gap: float) -> str:
+        wall = self._stage.wall_names[self._stage.surfaces[-1 - event.b].wall] if event.b < 0 else None
+        who = named(disks_of(event)) if wall is None else f"disk {event.a} and {wall}"
+        return (
+            f"the gap of {who} has sunk to {gap:.2g}, the last bits of their places, behind contacts that take energy: which "
+            f"contact comes next, and when, float64 cannot tell any more; {self._stage.law.remedy()}"
+        )
+
+
+def can_sink(stage: Stage) -> bool:
+    """Whether contacts take energy at any distance in time, so that gaps can sink below the digits."""
+    return stage.law.loses_energy() and stage.law.duration is None

@@ -1,0 +1,62 @@
+"""Behind contacts that take energy a gap of a few last bits is no contact that anybody knows: the run stops and says so."""
+
+import pytest
+
+import eventsim as es
+
+ENGINES = ["reference", "fast"]
+
+
+def wall_and_two(restitution):
+    """A wall and two disks, whose critical restitution is 3 - 2 sqrt 2 = .17157."""
+    disks = es.Disks([(1.0, 0.0), (3.0, 0.0)], [(0.0, 0.0), (-1.0, 0.0)], 0.5)
+    wall = es.Segment((-0.5, -9.0), (-0.5, 9.0))
+    return es.Scene(disks, es.Open(), [wall], restitution=restitution)
+
+
+def bent_three(height):
+    """Three disks nearly in line."""
+    disks = es.Disks([(0.0, 0.0), (2.0, height), (3.7, 0.0)], [(1.0, 0.0), (0.0, 0.0), (-0.7, 0.0)], 0.5)
+    return es.Scene(disks, es.Open(), restitution=0.0728)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("restitution", "true", "end"), [(0.1717, 137, 4.951), (0.17, 10**9, 4.1637064)])
+def test_a_series_near_the_critical_restitution_stops_before_rounding_makes_it_up(engine, restitution, true, end):
+    run = es.simulate(wall_and_two(restitution), until=1e6, engine=engine)
+    assert run.stopped in ("collapse", "digits")
+    assert 20 < run.counters.events < true
+    assert run.time < end
+    assert "the gaps sank below the digits" in run.reason or "collapse of disks 0, 1" in run.reason
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("restitution", "contacts"), [(0.175, 26), (0.19, 11)])
+def test_a_series_that_ends_within_the_digits_is_counted(engine, restitution, contacts):
+    run = es.simulate(wall_and_two(restitution), until=1e6, engine=engine)
+    assert (run.counters.events, run.stopped) == (contacts, "quiet")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_no_contacts_are_made_up_behind_the_last_true_one(engine):
+    """25 contacts in exact arithmetic; rounding would add four at one time."""
+    run = es.simulate(bent_three(0.001), until=1e4, engine=engine)
+    assert run.stopped in ("collapse", "digits")
+    assert run.counters.events <= 25
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("keys", [{}, {"restitution": 0.0728, "contact_duration": 1e-3}])
+def test_elastic_scenes_and_the_tc_model_go_on(engine, keys):
+    scene = bent_three(0.001)
+    run = es.simulate(es.Scene(scene.disks, scene.domain, **keys), until=1e4, engine=engine)
+    assert run.stopped == "quiet"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("gap", [2.0**-52, 2.0**-50])
+def test_a_gap_of_a_last_bit_at_the_start_is_known(engine, gap):
+    """Places that no contact has rounded are what they are, so the second contact comes; what follows that may be below them."""
+    disks = es.Disks([(-2.0, 0.0), (0.0, 0.0), (1.0 + gap, 0.0)], [(1.0, 0.0), (0.0, 0.0), (0.0, 0.0)], 0.5)
+    run = es.simulate(es.Scene(disks, es.Open(), restitution=0.9), until=10.0, engine=engine, log=True)
+    assert list(zip(run.log.a.tolist(), run.log.b.tolist(), strict=True))[:2] == [(0, 1), (1, 2)]
