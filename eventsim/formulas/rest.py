@@ -117,18 +117,27 @@ def hop_on_face_delay(
 
 
 def rest_delay(
-    gap: Real, rate: Real, fall: Real, scale: Real, restitution: Real, t: Real, since: Real, blur: Real
+    gap: Real,
+    rate: Real,
+    fall: Real,
+    scale: Real,
+    restitution: Real,
+    t: Real,
+    since: Real,
+    rounds: bool = False,
+    blur: Real = 0.0,
 ) -> Real:
     """The delay until a disk that touches a flat wall has come to rest there; NEVER if it is to bounce on.
 
     gap, rate, fall: of its distance from contact, in terms of the wall's normal.  scale: the coordinates that the gap was
     calculated from.  t: the clock at the beginning of the flight.  since: the time from the contact with the wall until then,
-    NOT_LAST if something else was met since.  blur: what rounding may do to the rate, 0 where that is one component.
+    NOT_LAST if something else was met since.  rounds: whether rounding moves a disk that touches the wall.  blur: what it may
+    do to the rate, 0 where that is one component.
 
     It rests at its Zeno time where the next bounce is over at the same instant of the clock, or so slow that rounding may keep it
     up; earlier if until then it would fall through the wall by more than the last bits of its place (a share of the whole series
-    as small as that of the last bounce).  At once where it does not leave the wall, or comes to it no faster than from the gap
-    that rounding may have left.
+    as small as that of the last bounce).  On a wall where those are rounded the series is cut once it would not fall so far.
+    At once where it does not leave the wall, or comes to it no faster than from the gap that rounding may have left.
     """
     if not fall < 0.0:
         return NEVER
@@ -140,9 +149,10 @@ def rest_delay(
         if not speed > 0.0:
             return 0.0
         flight = (2.0 * speed) / -fall
-        if not flight > AT_ONCE * t or _is_blurred(speed, restitution, blur):
-            late = sqrt((2.0 * TOUCHING) * scale / -fall)
-            delay = (flight / (1.0 - restitution) if flight < (1.0 - restitution) * late else late) - lag
+        late = sqrt((2.0 * TOUCHING) * scale / -fall)
+        ends = flight < (1.0 - restitution) * late
+        if (rounds and ends) or not flight > AT_ONCE * t or _is_blurred(speed, restitution, blur):
+            delay = (flight / (1.0 - restitution) if ends else late) - lag
             return delay if delay > 0.0 else 0.0
         if not since < 0.0:
             return NEVER
@@ -190,7 +200,7 @@ def rest_on_face_delay(
     blur = 0.0
     if nx != 0.0 and ny != 0.0 and is_float(x):
         blur = ROUNDED * (abs(across) + abs(upwards))
-    delay = rest_delay(gap, across + upwards, fall, scale, restitution, t, since, blur)
+    delay = rest_delay(gap, across + upwards, fall, scale, restitution, t, since, True, blur)
     if not delay < NEVER:
         return NEVER
     along = shape.ex * (x - shape.x) + shape.ey * (y - shape.y)
@@ -252,7 +262,7 @@ def free_border_contact(
 ) -> tuple[Real, int]:
     """The same for a disk that does not rest there."""
     rate, fall = side * v, side * g
-    delay = rest_delay(side * (x - target), rate, fall, size, restitution, t, since, 0.0)
+    delay = rest_delay(side * (x - target), rate, fall, size, restitution, t, since)
     if delay < NEVER:
         return delay, SUPPORTED
     if not since < 0.0 and fall < 0.0:

@@ -41,7 +41,7 @@ def test_f23_a_bounce_ends_at_its_zeno_time(engine, walls):
     domain = es.Open() if walls else None
     run = es.simulate(dropped(walls, domain), until=10.0, engine=engine, log=True)
     impacts, last = run.log.time[:-1], run.log.time[-1]
-    assert len(impacts) >= 40
+    assert len(impacts) >= (20 if walls else 40)  # the place on a segment is rounded
     assert impacts.tolist() == [3.0 - 2.0 ** (2 - n) for n in range(1, len(impacts) + 1)]
     assert kinds(run)[-1] == "rest"
     assert last == 3.0

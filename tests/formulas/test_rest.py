@@ -112,7 +112,7 @@ ZENO = [
 
 @pytest.mark.parametrize(("bounce", "delay"), ZENO)
 def test_a_disk_rests_at_its_zeno_time_or_at_once(bounce, delay):
-    assert rest.rest_delay(*bounce, rest.NOT_LAST, 0.0) == delay
+    assert rest.rest_delay(*bounce, rest.NOT_LAST) == delay
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,16 @@ def test_a_disk_rests_at_its_zeno_time_or_at_once(bounce, delay):
     ],
 )
 def test_a_series_is_told_by_the_speed_at_which_the_disk_left_the_wall(bounce, since, blur, delay):
-    assert rest.rest_delay(*bounce, since, blur) == delay
+    assert rest.rest_delay(*bounce, since, False, blur) == delay
+
+
+@pytest.mark.parametrize(
+    ("rate", "restitution", "delay"),
+    [(2.0**-25, 0.5, 2.0**-24), (2.0**-24, 0.5, NEVER), (2.0**-26, 0.75, 2.0**-24), (2.0**-25, 0.75, NEVER)],
+)
+def test_where_places_are_rounded_a_series_is_over_before_they_could_tell_it_from_a_fall(rate, restitution, delay):
+    assert rest.rest_delay(0.0, rate, -2.0, 4.0, restitution, 8.0, 0.0, True) == delay
+    assert rest.rest_delay(0.0, rate, -2.0, 4.0, restitution, 8.0, 0.0) == NEVER
 
 
 @pytest.mark.parametrize(
