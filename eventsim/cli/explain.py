@@ -187,7 +187,8 @@ def _why_all_pairs(needs: Needs) -> str:
 def _clock(needs: Needs) -> str:
     exponent = math.frexp(needs.epoch_length)[1] - 1
     start = "" if needs.start_time == 0.0 else f"starts at {short(needs.start_time)}; "
-    return f"{start}counts epochs of 2^{exponent} = {short(needs.epoch_length)} and a remainder, so late times keep their digits"
+    counts = f"{start}counts epochs of 2^{exponent} = {short(needs.epoch_length)} and a remainder"
+    return f"{counts} that begins anew after idle time, so late events have the digits of early ones"
 
 
 def _engine(needs: Needs) -> str:

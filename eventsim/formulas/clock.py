@@ -13,6 +13,11 @@ FEW, MANY = 8, 32
 """Rows per disk and window below which the next window is doubled, above which it is halved."""
 
 
+EARLY = 0.25
+"""Part of an epoch that the clock keeps between the epoch it jumps to and what is due there: however its time is rounded, it
+comes behind the jump."""
+
+
 def next_window(exponent: int, rows: int, n: int, cap: int) -> int:
     """The exponent of the next window, from the number of rows logged in the one that ends; n is the number of disks.
 
@@ -23,6 +28,29 @@ def next_window(exponent: int, rows: int, n: int, cap: int) -> int:
     if rows > MANY * n:
         return max(exponent - 1, 0)
     return exponent
+
+
+def window_after_idle(exponent: int, wrapped: bool, cap: int) -> int:
+    """The exponent of the window behind one without a row; wrapped: whether a disk passed a periodic boundary in that.
+
+    It does not grow while nothing happens, so what comes after a long time finds a young clock; who only wraps has windows
+    long enough to pay for their turnovers.
+    """
+    return cap if wrapped else max(1, min(exponent, cap))
+
+
+def epochs_before(due: float, exponent: int, epoch_length: float) -> int:
+    """How many whole epochs the clock jumps to what is due (a remainder) behind the end of a window without a row.
+
+    That is at most EARLY epochs and one before it, and not before the end of the window.
+    """
+    epochs = due / epoch_length - EARLY
+    return max(math.floor(epochs), 1 << exponent) if epochs < 2 * MOST_EPOCHS else 2 * MOST_EPOCHS
+
+
+def end_of_epoch(time: float, epoch_length: float) -> float:
+    """Where the epoch ends that a time lies in, or begins with; both are remainders."""
+    return (time // epoch_length + 1.0) * epoch_length
 
 
 def window_length(exponent: int, epoch_length: float) -> float:

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import NamedTuple, TypeAlias
 
+import numpy as np
+
 from eventsim.errors import LogError
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.doubt import latest_tie, screen_in
@@ -26,8 +28,9 @@ from eventsim.record.events import Column, Kind, Rows
 from eventsim.record.provenance import Provenance
 from eventsim.replay.contacts import Contact, Contacts
 from eventsim.replay.disk_flight import DiskFlight
-from eventsim.replay.windows import Windows
-from eventsim.scene.stage import Stage, stage_of
+from eventsim.replay.flight import Flights, start_flights
+from eventsim.replay.windows import Windows, stage_of_log
+from eventsim.scene.stage import Stage
 
 Numbers: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 MISSING = math.nan
@@ -36,7 +39,7 @@ BLOCK = 1 << 14
 
 
 class Entry(NamedTuple):
-    """What a compact row says, its epoch as the window of the clock."""
+    """What a compact row says."""
 
     event: int
     kind: int
@@ -44,7 +47,7 @@ class Entry(NamedTuple):
     b: int
     wall: int
     joint: int
-    window: int
+    epoch: int
     remainder: float
 
 
@@ -64,10 +67,12 @@ class Disks(dict[int, DiskFlight]):
 class Expansion:
     """The disks of a compact log on their way from row to row."""
 
-    def __init__(self, provenance: Provenance, rows: Rows) -> None:
-        stage = self.stage = stage_of(provenance.scene)
+    def __init__(self, provenance: Provenance, rows: Rows, schedule: type[Windows] = Windows) -> None:
+        """schedule: of the clock."""
+        stage = self.stage = stage_of_log(provenance)
         self._rows = rows
-        self.windows = Windows(stage, rows["epoch"])
+        self.windows = schedule(stage, rows, self._changes, lambda row: self._set[int(rows["event"][row])])
+        self.windows.resolved = 0
         masses = [stage.common_mass] * stage.n if stage.mass is None else stage.mass.tolist()
         self._mass: list[float] = masses
         self.disks = Disks(stage, masses)
@@ -80,9 +85,10 @@ class Expansion:
         for joint, group in groupby(entries, key=lambda entry: (entry.joint, entry.event * (entry.joint < 0))):
             cluster = list(group)
             for entry in cluster:
+                window = self.windows.window_at(entry.epoch)
                 for i in (entry.a, entry.b):
                     if i >= 0:
-                        self.disks[i].fly(self.stage.period, self.windows, entry.window, entry.remainder)
+                        self.disks[i].fly(self.stage.period, self.windows, window, entry.remainder)
             if joint[0] >= 0:
                 impulses = self._resolve_cluster(cluster)
             elif cluster[0].kind == Kind.KICK:
@@ -91,6 +97,8 @@ class Expansion:
                 impulses = [self._resolve_pair(cluster[0])]
             else:
                 impulses = [self._resolve_wall(cluster[0])]
+            first += len(cluster)
+            self.windows.resolved = first
             for entry, impulse in zip(cluster, impulses, strict=True):
                 one = self.disks[entry.a]
                 other = (MISSING, MISSING, MISSING, MISSING)
@@ -102,9 +110,21 @@ class Expansion:
     def _entries(self, rows: Rows) -> Iterator[Entry]:
         for first in range(0, len(rows), BLOCK):
             block = rows[first : first + BLOCK]
-            columns: list[Column] = [block[name] for name in ("event", "kind", "a", "b", "wall", "joint")]
-            columns += [self.windows.index_of(block["epoch"]), block["remainder"]]
+            columns: list[Column] = [block[name] for name in Entry._fields]
             yield from map(Entry, *(column.tolist() for column in columns))
+
+    def _changes(self, windows: Windows, first: int, last: int) -> tuple[Column, Flights]:
+        """How the disks fly that are in some rows."""
+        rows = self._rows[first:last]
+        disks = np.unique(np.concatenate([rows["a"], rows["b"][rows["b"] >= 0]])).astype(np.int64)
+        flights = start_flights(self.stage).take(disks)
+        for k, i in enumerate(disks.tolist()):
+            disk = self.disks[i]
+            flights.window[k], flights.t[k] = disk.window, disk.t
+            flights.x[k], flights.y[k], flights.vx[k], flights.vy[k] = disk.x, disk.y, disk.vx, disk.vy
+            if flights.gx is not None and flights.gy is not None:
+                flights.gx[k], flights.gy[k] = disk.gx, disk.gy
+        return disks, flights
 
     def _set_velocity(self, entry: Entry) -> float:
         disk, mass = self.disks[entry.a], self._mass[entry.a]
@@ -211,7 +231,7 @@ class Expansion:
     def _together(self, cluster: list[Entry]) -> list[Contact]:
         """Return the contacts, at exactly one time, of the pairs and walls that the rows of a cluster name."""
         t = cluster[0].remainder
-        length = self.windows.length[cluster[0].window]
+        length = self.windows.length[self.windows.window_at(cluster[0].epoch)]
         latest = latest_tie(t, screen_in(self.stage.tie_screen, length, self.stage.epoch_length))
         span = t - (latest - t), latest
         wanted = Counter((entry.a, entry.b, entry.wall) for entry in cluster)

@@ -113,7 +113,7 @@ class DiskFlight:
             raise LogError("the log does not fit its scene: a disk's events run backwards in time")
         while True:
             behind = self.window < window
-            limit = windows.length[self.window] if behind else remainder
+            limit = windows.end[self.window] if behind else remainder
             if periodic:
                 due, axis, step = self._next_wrap(period)
                 if due < limit or (due == limit and not behind):
@@ -121,10 +121,11 @@ class DiskFlight:
                     continue
             if not behind:
                 return
-            self.low_place = self.low_place_at(limit)
-            self.anchor(0.0, self.place(limit), self.speed(limit))
-            self.contact_time -= limit
             self.window += 1
+            begin = windows.begin[self.window]
+            self.low_place = self.low_place_at(limit)
+            self.anchor(begin, self.place(limit), self.speed(limit))
+            self.contact_time -= limit - begin
 
     def _next_wrap(self, period: tuple[float | None, float | None]) -> tuple[float, int, int]:
         """Return when the disk next passes a periodic boundary: (remainder, axis, direction)."""

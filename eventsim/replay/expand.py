@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventsim.compiler import has_compiler
+from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows
 from eventsim.record.provenance import Provenance
 from eventsim.record.times import clock_times
 from eventsim.replay.compact import BLOCK, Expansion, Numbers
 from eventsim.replay.disk_flight import DiskFlight
+from eventsim.replay.flight import Flights, start_flights
+from eventsim.replay.windows import Windows, schedules_of
 from eventsim.scene.stage import Stage
 
 if TYPE_CHECKING:
@@ -28,7 +31,16 @@ def expand_rows(provenance: Provenance, compact: Rows) -> Rows:
 
     Raises LogError where the rows do not follow from the scene.
     """
-    expansion = Expansion(provenance, compact)
+    misfits = []
+    for schedule in schedules_of(provenance):
+        try:
+            return _expanded(Expansion(provenance, compact, schedule), compact)
+        except LogError as misfit:
+            misfits.append(misfit)
+    raise misfits[0]
+
+
+def _expanded(expansion: Expansion, compact: Rows) -> Rows:
     if len(compact) >= MANY_ROWS and expansion.stage.supports is None and has_compiler():
         return _expanded_by_kernels(expansion, compact)
     rows = compact.copy()
@@ -52,26 +64,38 @@ def _expanded_by_kernels(expansion: Expansion, compact: Rows) -> Rows:
 
     rows = np.empty(len(compact), ROW)
     windows = expansion.windows
-    kind, a, b, wall, joint, remainder = (
-        np.ascontiguousarray(compact[name]) for name in ("kind", "a", "b", "wall", "joint", "remainder")
-    )
-    entries = Entries(kind, a, b, wall, joint, windows.index_of(compact["epoch"]), remainder)
-    lengths, epochs = np.array(windows.length), np.array(windows.start, dtype=np.int64)
-    retracer = Retracer(expansion.stage, entries, lengths, epochs, rows)
-    row = window = 0
-    while True:
-        row, window = retracer.follow(row, window)
-        if row == len(rows):
-            return rows
-        end = row + _cluster_size(joint, row)
-        disks = sorted({int(i) for i in (*a[row:end], *b[row:end]) if i >= 0})
-        for i in disks:
-            _lend(retracer.state, i, expansion.disks[i], window)
-        rows[row:end] = compact[row:end]
-        _fill(rows[row:end], list(expansion.numbers(row, end)), expansion.stage)
-        for i in disks:
-            _take_back(retracer.state, i, expansion.disks[i])
-        row = end
+    columns = [np.ascontiguousarray(compact[name]) for name in Entries._fields]
+    joint, a, b = compact["joint"], compact["a"], compact["b"]
+    retracer = Retracer(expansion.stage, Entries(*columns), rows)
+    row = window = known = 0
+
+    def changes(_: Windows, first: int, last: int) -> tuple[Column, Flights]:
+        return np.arange(expansion.stage.n), _flights(retracer.state, expansion.stage, window)
+
+    windows.flights_from(changes)
+    while row < len(rows):
+        windows.resolved = row
+        known = windows.reach(row)
+        row, window = retracer.follow(row, known, window, windows)
+        if row < known:
+            end = row + _cluster_size(joint, row)
+            disks = sorted({int(i) for i in (*a[row:end], *b[row:end]) if i >= 0})
+            for i in disks:
+                _lend(retracer.state, i, expansion.disks[i], window)
+            rows[row:end] = compact[row:end]
+            _fill(rows[row:end], list(expansion.numbers(row, end)), expansion.stage)
+            for i in disks:
+                _take_back(retracer.state, i, expansion.disks[i])
+            row = end
+    return rows
+
+
+def _flights(s: FastState, stage: Stage, window: int) -> Flights:
+    """The flights of the kernels' disks, whose clock is in a window."""
+    flights = start_flights(stage)
+    flights.window[:] = window
+    flights.t, flights.x, flights.y, flights.vx, flights.vy = (each.every() for each in (s.t, s.x, s.y, s.vx, s.vy))
+    return flights
 
 
 def _lend(s: FastState, i: int, flight: DiskFlight, window: int) -> None:

@@ -6,16 +6,18 @@ NumPy's float64 operations are those of Python's floats, so the bits are those o
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines.turnover import Anchors, next_wraps
 from eventsim.formulas.motion import position, velocity
-from eventsim.formulas.real import NEVER
 from eventsim.record.events import Column, Floats
-from eventsim.replay.windows import Windows
 from eventsim.scene.stage import Stage
+
+if TYPE_CHECKING:
+    from eventsim.replay.windows import Windows
 
 
 @dataclass(slots=True)
@@ -43,8 +45,13 @@ class Flights:
 
     def put(self, chosen: Column, others: Flights) -> None:
         """Replace some of the flights."""
-        for name in ("window", "t", "x", "y", "vx", "vy"):
-            getattr(self, name)[chosen] = getattr(others, name)
+        for field in fields(self):
+            if getattr(self, field.name) is not None:
+                getattr(self, field.name)[chosen] = getattr(others, field.name)
+
+    def anchors(self) -> Anchors:
+        """Return the flights as those of one window."""
+        return Anchors(self.t, self.x, self.y, self.vx, self.vy, self.gx, self.gy)
 
     def advance(self, t: Floats) -> None:
         """Take every flight to its remainder t in its window."""
@@ -66,56 +73,33 @@ def start_flights(stage: Stage) -> Flights:
 
 def fly(flights: Flights, stage: Stage, windows: Windows, window: int, remainder: float) -> None:
     """Take every flight to (window, remainder), through the wraps and turnovers on its way, as the engine does."""
-    lengths = np.array(windows.length[: window + 1])
+    follow(flights, stage, windows, window, remainder, True)
+    flights.advance(np.full(stage.n, remainder))
+
+
+def follow(flights: Flights, stage: Stage, windows: Windows, window: int, limit: float, inclusive: bool) -> None:
+    """Let every flight begin at its last wrap or turnover before a remainder of a window, or up to it (inclusive)."""
+    least = int(flights.window.min())
+    ends, begins = np.array([*windows.end[least:window], limit]), np.array([*windows.begin[least : window + 1], 0.0])
     busy = np.arange(len(flights.t))
     while len(busy):
         now = flights.take(busy)
         behind = now.window < window
-        limit = np.where(behind, lengths[now.window], remainder)
+        limits = ends[now.window - least]
         wraps = np.zeros(len(busy), dtype=np.bool_)
         if stage.periodic:
-            due, axis, edge = next_wrap(now, stage.period)
-            wraps = np.where(behind, due < limit, due <= limit)  # at the same time, the clock turns over first
-            limit = np.where(wraps, due, limit)
-        now.advance(limit)
+            due, axis, edge = next_wraps(now.anchors(), stage.period)
+            early = due < limits  # at the same time, the clock turns over first
+            wraps = early | (~behind & (due == limits)) if inclusive else early
+            limits = np.where(wraps, due, limits)
+        goes = behind | wraps
+        now.advance(np.where(goes, limits, now.t))
         if stage.periodic:
             now.x[wraps & (axis == 0)] = edge[wraps & (axis == 0)]
             now.y[wraps & (axis == 1)] = edge[wraps & (axis == 1)]
         turns = behind & ~wraps
-        now.t[turns] = 0.0
         now.window[turns] += 1
-        flights.put(busy, now)
-        busy = busy[behind | wraps]
-
-
-def next_wrap(flights: Flights, period: tuple[float | None, float | None]) -> tuple[Floats, Column, Floats]:
-    """Return, for every flight, when it next passes a periodic boundary, along which axis, and where it comes in."""
-    count = len(flights.t)
-    due, axis, edge = np.full(count, np.inf), np.zeros(count, dtype=np.int8), np.zeros(count)
-    coordinates = ((flights.x, flights.vx, flights.gx), (flights.y, flights.vy, flights.gy))
-    for number, (length, (x, v, g)) in enumerate(zip(period, coordinates, strict=True)):
-        if length is None:
-            continue
-        for target, side in ((length, -1.0), (0.0, 1.0)):
-            time = flights.t + crossing_delays(x, v, g, target, side)
-            sooner = time < due
-            due[sooner] = time[sooner]
-            axis[sooner] = number
-            edge[sooner] = length - target
-    return due, axis, edge
-
-
-def crossing_delays(x: Floats, v: Floats, g: Floats | None, target: float, side: float) -> Floats:
-    """Return `formulas.crossing.crossing_delay` of many coordinates."""
-    gap, rate = side * (x - target), side * v
-    falling, closed = rate < 0.0, ~(gap > 0.0)
-    with np.errstate(all="ignore"):  # the branches that are not taken are computed, too
-        if g is None:
-            return np.where(falling, np.where(closed, 0.0, gap / -rate), NEVER)
-        pull = side * g
-        discriminant = rate * rate - (2.0 * pull) * gap
-        crosses = discriminant > 0.0
-        root = np.sqrt(discriminant)
-        direct = np.where(closed, 0.0, np.where(crosses, (2.0 * gap) / (root - rate), NEVER))
-        returning = np.where(crosses, (rate + root) / -pull, rate / -pull)
-        return np.where(falling, direct, np.where(pull < 0.0, returning, NEVER))
+        now.t[turns] = begins[now.window[turns] - least]
+        going = np.flatnonzero(goes)
+        flights.put(busy[going], now.take(going))
+        busy = busy[going]

@@ -14,8 +14,8 @@ from eventsim.record.events import Column, Floats, Kind, Rows, State
 from eventsim.record.places import on_scene_axes
 from eventsim.replay.flight import Flights, fly, start_flights
 from eventsim.replay.log import EventLog
-from eventsim.replay.windows import Windows
-from eventsim.scene.stage import Stage, stage_of
+from eventsim.replay.windows import Windows, changes_in, stage_of_log, windows_of
+from eventsim.scene.stage import Stage
 
 ENDLESS = ("quiet",)
 """Reasons to stop after which the disks fly on: there is no event ahead."""
@@ -30,10 +30,17 @@ class Replay:
     def __init__(self, log: EventLog) -> None:
         """Index the rows of each disk: O(rows log rows) time, 16 bytes per row and disk in it."""
         self.log = log.expand()
-        self.stage: Stage = stage_of(log.scene)
-        self.windows = Windows(self.stage, log.epoch)
-        self._window = self.windows.index_of(log.epoch)
+        self.stage: Stage = stage_of_log(log.provenance)
+        self.windows: Windows = windows_of(log.provenance, self.stage, self.log.rows, self._changes, self._velocity)
+        self._window = self.windows.known(log.epoch)
         self._rows, self._first = _rows_of_disks(self.log.rows, self.stage.n)
+
+    def _changes(self, windows: Windows, first: int, last: int) -> tuple[Column, Flights]:
+        rows = self.log.rows[first:last]
+        return changes_in(self.stage, rows, windows.known(rows["epoch"]))
+
+    def _velocity(self, row: int) -> tuple[float, float]:
+        return float(self.log.rows["vxa"][row]), float(self.log.rows["vya"][row])
 
     def state_at(self, time: float) -> State:
         """Return the state at a time on the scene's clock; at the time of an event, the state after it.

@@ -10,10 +10,10 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from eventsim.engines.base import Snapshot
-from eventsim.formulas.clock import window_length
 from eventsim.formulas.motion import position
 from eventsim.formulas.rest import SUPPORTED, held_by
 from eventsim.record.events import Floats
+from eventsim.scene.clock import LONGEST_WINDOW
 from eventsim.scene.stage import Stage
 
 Packed: TypeAlias = Any
@@ -93,11 +93,10 @@ def demand_fit(snapshot: Snapshot, stage: Stage) -> None:
         held = held_by(met)
         if held is not None and stage.supports is not None and stage.supports[held.place] is None:
             raise ValueError(f"disk {i} cannot rest on {met[0][0]}")
-    if not (0 <= snapshot.epoch < 2**62 and 0 <= snapshot.window <= stage.window_cap and snapshot.window_rows >= 0):
+    if not (0 <= snapshot.epoch < 2**62 and 0 <= snapshot.window <= LONGEST_WINDOW and snapshot.window_rows >= 0):
         raise ValueError("its clock cannot stand there")
-    end = window_length(snapshot.window, stage.epoch_length)
     t = np.array(snapshot.t)
-    if not (0.0 <= snapshot.now <= end and np.all((t >= 0.0) & (t <= snapshot.now))):
+    if not (0.0 <= snapshot.now <= LARGEST and np.all((t >= 0.0) & (t <= snapshot.now))):
         raise ValueError("its flights begin before their window, or after the present")
     _demand_inside(snapshot, stage, t)
 

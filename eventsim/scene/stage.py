@@ -19,6 +19,7 @@ from eventsim.formulas.real import Real
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.shape import seen
+from eventsim.scene.clock import SceneClock, clock_of
 from eventsim.scene.disks import Floats
 from eventsim.scene.domain import Open
 from eventsim.scene.numbers import Point
@@ -30,21 +31,12 @@ WIDE = 2.0**16
 """Diameters of the largest disk across a domain from which on places carry their low parts: a coordinate there has lost 16 of the
 53 bits that a gap between two disks could have, and with them a third of the events that float64 follows."""
 
-LONGEST_PERIODIC_WINDOW = 13
-"""A window of 2**13 epochs: a disk that only wraps keeps its digits, and a gas that has cooled is not slowed much."""
-
 UNEVEN = 2.0**16
 """Ratio of masses M/m from which on velocities carry their low parts: the roundings of the pi sqrt(M/m) contacts that a light
 disk can have with a heavy one add up to about 2**-53 (M/m)**.75 of a small final velocity, here 2**-41."""
 
 EXTREME = 2.0**400
 """Masses beyond it, or below its inverse, leave the range of error-free arithmetic."""
-
-LONGEST_WINDOW = 900
-"""Without wraps nothing accumulates between contacts, so a quiet scene may have windows of any length."""
-
-SHORTEST_EPOCH, LONGEST_EPOCH = -1000, 960
-"""Exponents of the epoch's length; so MOST_EPOCHS of the longest ones, and a window more, are still a float."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +63,7 @@ class Stage:
         wall_names: the names that the walls have in an event log.
         corner: what to add to a position to have it on the scene's axes.
         start_time: what the scene's clock shows at remainder 0 of epoch 0.
-        epoch_length: time, a power of two.
-        window_cap: the largest exponent of a window.
+        clock: how long its epochs and its windows are.
         tie_screen: the span of time within which contacts that share a disk are ordered exactly, in the first window.
     """
 
@@ -98,9 +89,13 @@ class Stage:
     wall_names: tuple[str, ...]
     corner: Point
     start_time: float
-    epoch_length: float
-    window_cap: int
+    clock: SceneClock
     tie_screen: float
+
+    @property
+    def epoch_length(self) -> float:
+        """The length of an epoch of the clock: time, a power of two."""
+        return self.clock.epoch_length
 
     @property
     def periodic(self) -> bool:
@@ -149,6 +144,13 @@ class Stage:
         """Whether disks end up lying on something: gravity, and bounces that become ever lower."""
         return self.gravity is not None and self.law.comes_to_rest()
 
+    @property
+    def goes_on_as_fast(self) -> bool:
+        """Whether something moves that neither leaves nor slows down, so that there is no end of events."""
+        confined = self.size is not None or bool(self.features)
+        moves = self.gravity is not None or bool(np.any(self.vx) or np.any(self.vy))
+        return confined and moves and not self.law.loses_energy()
+
 
 def stage_of(scene: Scene) -> Stage:
     """The stage of a scene."""
@@ -161,17 +163,10 @@ def stage_of(scene: Scene) -> Stage:
     features = features_of(scene.walls, float(disks.radius.max()), corner, domain.period, len(names))
     restitution = scene.restitution
     law = law_of(None if restitution is None else (restitution.pair, restitution.wall), scene.contact_duration)
-    periodic = domain.period[0] is not None
-    moves = bool(np.any(disks.velocity != 0.0))
     lightest, heaviest = _extreme_masses(disks.mass)
-    epoch_length = _epoch_length(x, y, vx, vy, disks.radius, size, scene.gravity)
-    longest_periodic = LONGEST_PERIODIC_WINDOW
     diameter = 2.0 * float(disks.radius.max())
     low_places = size is not None and scene.gravity is None and 0.0 < diameter < max(size) / WIDE
-    if low_places:  # a crowd in a corner of the domain has the clock of a crowd
-        longest_periodic += math.frexp(epoch_length)[1]
-        epoch_length = _epoch_length(x, y, vx, vy, disks.radius, (diameter, diameter), None)
-        longest_periodic -= math.frexp(epoch_length)[1]
+    clock = clock_of(scene, low_places)
     return Stage(
         n=len(disks),
         x=x,
@@ -200,9 +195,8 @@ def stage_of(scene: Scene) -> Stage:
         wall_names=(*names, *feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,
-        epoch_length=epoch_length,
-        window_cap=longest_periodic if periodic and (moves or scene.gravity) else LONGEST_WINDOW,
-        tie_screen=tie_screen(_extent(scene, x, y, corner, features), _slowest(vx, vy), epoch_length / len(disks)),
+        clock=clock,
+        tie_screen=tie_screen(_extent(scene, x, y, corner, features), _slowest(vx, vy), clock.epoch_length / len(disks)),
     )
 
 
@@ -259,26 +253,3 @@ def _supports(
         if not any(one is not None and any_lies(one, flights, disks.radius[falls], gravity) for one in supports):
             return None
     return supports if any(supports) else None
-
-
-def _epoch_length(
-    x: Floats, y: Floats, vx: Floats, vy: Floats, radius: Floats, size: Point | None, gravity: Point | None
-) -> float:
-    """About the time in which the fastest disk flies from one disk to the next: a power of two.
-
-    Only exponents enter, so that a scene with all velocities times 2**k has an epoch of exactly 2**-k times the length.
-    """
-    width, height = size if size is not None else (float(x.max()), float(y.max()))
-    extent = max(math.sqrt(width) * math.sqrt(height), float(radius.max()))
-    if size is None:
-        extent = max(extent, width, height)
-    length = math.frexp(extent / math.sqrt(len(x)) or 1.0)[1]
-    speeds = []
-    fastest = max(float(np.abs(vx).max()), float(np.abs(vy).max()))
-    if fastest > 0.0:
-        speeds.append(math.frexp(fastest)[1])
-    if gravity is not None:
-        pull = max(abs(gravity[0]), abs(gravity[1]))
-        speeds.append((math.frexp(pull)[1] + length) // 2)
-    exponent = length - max(speeds, default=0)
-    return math.ldexp(1.0, max(SHORTEST_EPOCH, min(exponent, LONGEST_EPOCH)))

@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import math
+from typing import Never
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eventsim.engines.turnover import crossing_delays
 from eventsim.errors import LogError
-from eventsim.formulas.clock import FIRST_WINDOW
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.record import Ending, Kind
 from eventsim.record.events import blank_rows
 from eventsim.replay.disk_flight import DiskFlight
-from eventsim.replay.flight import crossing_delays, fly, start_flights
+from eventsim.replay.flight import fly, start_flights
 from eventsim.replay.log import EventLog
 from eventsim.replay.replay import Replay
 from eventsim.replay.windows import Windows
 from eventsim.scene import Box, Disks, Domain, Open, Periodic, Scene
-from eventsim.scene.stage import stage_of
+from eventsim.scene.stage import Stage, stage_of
 from tests.record.logs import provenance
 
 
@@ -114,21 +115,20 @@ def test_an_epoch_at_which_no_window_begins_says_so() -> None:
 
 def test_a_periodic_flight_wraps_exactly_and_turns_its_clock_over() -> None:
     scene = one_disk(Periodic((4.0, 2.0)), (2.0, -1.0))
-    stage = stage_of(scene)
-    end = 100.0
-    replay = Replay(empty_log(scene, Ending(*_clock(stage.epoch_length, end), "until")))
-    for time in np.linspace(0.0, end, 401).tolist():
+    windows, end = windows_without_rows(stage_of(scene)), 400.0
+    window, remainder = windows.place(end)
+    replay = Replay(empty_log(scene, Ending(windows.start[window], remainder, "until")))
+    for time in np.linspace(0.0, end, 21).tolist():
         state = replay.state_at(time)
         assert state.position.tolist() == [[(1.0 + 2.0 * time) % 4.0, (1.0 - time) % 2.0]]  # all dyadic, hence exact
     assert len(replay.windows.start) > 2
 
 
-def _clock(epoch_length: float, time: float) -> tuple[int, float]:
-    """The start of the window that holds `time` in a scene without events, and the remainder."""
-    epoch, exponent = 0, FIRST_WINDOW
-    while time >= (epoch + 2**exponent) * epoch_length:
-        epoch, exponent = epoch + 2**exponent, exponent + 1
-    return epoch, time - epoch * epoch_length
+def windows_without_rows(stage: Stage) -> Windows:
+    def nobody(*_: object) -> Never:
+        raise AssertionError("there are no rows")
+
+    return Windows(stage, blank_rows(0), nobody, nobody)
 
 
 numbers = st.floats(-8.0, 8.0)
@@ -159,11 +159,11 @@ def test_many_fly_like_one(
     table = np.array(places)
     scene = Scene(Disks(table[:, :2], table[:, 2:], radius=0.0, mass=0.0), Periodic((4.0, 2.0)), gravity=gravity)
     stage = stage_of(scene)
-    windows = Windows(stage, np.empty(0, dtype=np.int64))
-    windows.window_at(windows.start[0])
-    while len(windows.start) <= window:
-        windows.place((windows.start[-1] + 1) * stage.epoch_length + windows.length[-1])
-    remainder = share * windows.length[window]
+    windows = windows_without_rows(stage)
+    if window:
+        windows.place(33 * stage.epoch_length)
+        window = len(windows.start) - 1
+    remainder = share * (8 if window else 32) * stage.epoch_length
     flights = start_flights(stage)
     fly(flights, stage, windows, window, remainder)
     for i in range(stage.n):

@@ -255,12 +255,12 @@ def _first_day(m, grid, now):
 
 
 @kernel
-def turn_over(arrays, grid, rules, end):
-    """Advance every disk to the end of the window, which becomes time 0."""
+def turn_over(arrays, grid, rules, end, shift):
+    """Advance every disk to a time in the window; its clock goes on from `shift`, which becomes time 0."""
     m = pointers(arrays)
     for i in range(grid.n):
         x, y = place(m, rules, i, end)
         vx, vy = speed(m, rules, i, end)
         keep_low_place(m, i, end, m.low_places)
-        anchor(m, i, end - end, x, y, vx, vy)
-        store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - end)
+        anchor(m, i, end - shift, x, y, vx, vy)
+        store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - shift)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from eventsim.engines.fast.order import along_a_curve
 from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortest_day
 from eventsim.engines.fast.rules import features_of, rules_of, supports_of
 from eventsim.engines.fast.state import FastState
-from eventsim.formulas.clock import next_window, window_length
+from eventsim.formulas.clock import window_length
 from eventsim.formulas.doubt import screen_in
 from eventsim.formulas.expansion import two_sum
 from eventsim.record.events import ROW, Floats, Rows
@@ -97,24 +98,44 @@ class Machine:
         self.state.now = now
         self.sums[layout.NOW] = now
 
-    def turn_over(self) -> None:
-        """Let the clock turn over, at the end of its window."""
+    def turn_over(self, end: float, epochs: int, exponent: int) -> None:
+        """Let the clock turn over at a time of its window, by some epochs; the cells are those of the disks then.
+
+        exponent: of the new window.
+        """
+        self._turn_over(end, epochs, exponent)
+        if self.grid.day_length < shortest_day(self._latest_day()):
+            self._choose_days()
+        schedule(self.arrays, self.grid, self.counts, self.state.now)
+        self._predict(0, self.state.n, self.state.now)
+
+    def jump(self, end: float, epochs: int, exponent: int) -> None:
+        """The same, where disks may have left the cells that they are in at that time."""
+        self._turn_over(end, epochs, exponent)
+        self.predict_afresh()
+
+    def _turn_over(self, end: float, epochs: int, exponent: int) -> None:
         state = self.state
-        turn_over(self.arrays, self.grid, self.rules, state.window_end)
-        self.set_epoch(state.epoch + (1 << state.window))
-        state.window = next_window(state.window, state.window_rows, state.n, state.window_cap)
-        state.window_end = window_length(state.window, state.epoch_length)
+        shift = epochs * state.epoch_length
+        turn_over(self.arrays, self.grid, self.rules, end, shift)
+        self.set_epoch(state.epoch + epochs)
+        state.begin_window(exponent)
         state.window_rows = 0
         self.choose_screen()
-        self.set_now(0.0)
-        if self.grid.day_length < shortest_day(state.window_end):
-            self._choose_days()
-        schedule(self.arrays, self.grid, self.counts, 0.0)
-        self._predict(0, state.n, 0.0)
+        self.set_now(end - shift)
+
+    def _latest_day(self) -> float:
+        """A time up to which days have numbers."""
+        state = self.state
+        end: float = state.window_end
+        if math.isinf(end):
+            ahead = float(self.due[np.isfinite(self.due)].max(initial=0.0))
+            end = 2.0 * max(state.now, ahead, window_length(state.window, state.epoch_length))
+        return end
 
     def choose_screen(self) -> None:
         """Set within which span contacts are ordered exactly, as it is in the present window."""
-        stage, length = self.stage, self.state.window_end
+        stage, length = self.stage, window_length(self.state.window, self.state.epoch_length)
         self.rules = self.rules._replace(tie_screen=screen_in(stage.tie_screen, length, stage.epoch_length))
 
     def choose_cells(self, motion: Motion) -> None:
@@ -211,7 +232,7 @@ class Machine:
         schedule(self.arrays, self.grid, self.counts, self.state.now)
 
     def _choose_days(self) -> None:
-        day = day_length(self.due, self.state.now, self.state.window_end, self.state.n)
+        day = day_length(self.due, self.state.now, self._latest_day(), self.state.n)
         self.grid = self.grid._replace(day_length=day, days_per_time=1.0 / day)
 
     def flush(self) -> None:

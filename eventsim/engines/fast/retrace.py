@@ -7,7 +7,7 @@ Contacts of equal time, and velocities that were set, are left to `eventsim.repl
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,24 +53,36 @@ NO_CODE = 0
 
 
 class Entries(NamedTuple):
-    """The columns of a compact log (R,); the epoch as the window of the clock."""
+    """The columns of a compact log (R,)."""
 
     kind: NDArray[np.int8]
     a: NDArray[np.int32]
     b: NDArray[np.int32]
     wall: NDArray[np.int32]
     joint: NDArray[np.int64]
-    window: NDArray[np.int64]
+    epoch: NDArray[np.int64]
     remainder: Floats
 
 
 class Timetable(NamedTuple):
-    """Windows of the clock: length; epoch; where that begins on the scene's clock, as a sum of two numbers."""
+    """Windows of the clock: where each ends and begins on its own clock; its epoch; where that begins on the scene's clock.
 
-    length: Floats
-    epoch: NDArray[np.int64]
+    The latter as a sum of two numbers.
+    """
+
+    end: Floats
     begin: Floats
-    error: Floats
+    epoch: NDArray[np.int64]
+    epoch_begin: Floats
+    epoch_error: Floats
+
+
+class Schedule(Protocol):
+    """Windows of the clock, as far as they are known."""
+
+    start: list[int]
+    begin: list[float]
+    end: list[float]
 
 
 class Crowd(NamedTuple):
@@ -82,8 +94,8 @@ class Crowd(NamedTuple):
 class Retracer:
     """The disks of a log on their way from row to row, in the records of the fast engine."""
 
-    def __init__(self, stage: Stage, entries: Entries, lengths: Floats, epochs: NDArray[np.int64], rows: Rows) -> None:
-        """lengths, epochs: of the windows; rows (R,): where the full rows go."""
+    def __init__(self, stage: Stage, entries: Entries, rows: Rows) -> None:
+        """rows (R,): where the full rows go."""
         self._memory = link()
         self._counts = np.zeros(13, np.int64)
         self._sums = np.zeros(6)
@@ -97,12 +109,14 @@ class Retracer:
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._features = features_of(stage)
         self._entries = entries
-        begin, error = two_sum(epochs * np.float64(stage.epoch_length), stage.start_time)
-        self._timetable = Timetable(lengths, epochs, begin, error)
+        self._stage = stage
         self._rows = rows.view(np.uint8)
 
-    def follow(self, first: int, window: int) -> tuple[int, int]:
-        """Complete rows from `first` on, the clock being in `window`: (the first row that is not for kernels, its window)."""
+    def follow(self, first: int, last: int, window: int, windows: Schedule) -> tuple[int, int]:
+        """Complete rows first, ..., last - 1, the clock being in `window`: (the first row that is not for kernels, its window).
+
+        windows: those of these rows.
+        """
         arrays = Arrays(
             disks=self.state.memory,
             slots=np.zeros(1, np.int32),  # as if there were cells: the image of a pair is the nearest one
@@ -118,25 +132,30 @@ class Retracer:
         )
         crowd = Crowd(self.state.n)
         places = self.state.place_of
-        row, window = retrace(
-            arrays, crowd, self._rules, self._sums, self._entries, self._timetable, places, first, window
-        )
-        return int(row), int(window)
+        entries = Entries._make(column[:last] for column in self._entries)
+        timetable = self._timetable(windows, window)
+        row, ended = retrace(arrays, crowd, self._rules, self._sums, entries, timetable, places, first, 0)
+        return int(row), window + int(ended)
+
+    def _timetable(self, windows: Schedule, first: int) -> Timetable:
+        epochs = np.array(windows.start[first:], dtype=np.int64)
+        begin, error = two_sum(epochs * np.float64(self._stage.epoch_length), self._stage.start_time)
+        return Timetable(np.array(windows.end[first:]), np.array(windows.begin[first:]), epochs, begin, error)
 
 
 @kernel
 def retrace(arrays, crowd, rules, sums, entries, timetable, place_of, row, window):
     """Complete rows from `row` on as long as they are contacts by themselves: (the first other row, its window)."""
     m = pointers(arrays)
-    clock = timetable.epoch[window], timetable.begin[window], timetable.error[window]
+    clock = timetable.epoch[window], timetable.epoch_begin[window], timetable.epoch_error[window]
     while row < len(entries.a):
-        while window < entries.window[row]:
-            end = timetable.length[window]
+        while timetable.epoch[window] < entries.epoch[row]:
+            end = timetable.end[window]
             for i in range(crowd.n):
                 _fly(m, rules, i, end, False)
-            turn_over(arrays, crowd, rules, end)
+            turn_over(arrays, crowd, rules, end, end - timetable.begin[window + 1])
             window += 1
-            clock = timetable.epoch[window], timetable.begin[window], timetable.error[window]
+            clock = timetable.epoch[window], timetable.epoch_begin[window], timetable.epoch_error[window]
         t, i = entries.remainder[row], place_of[entries.a[row]]
         if entries.joint[row] >= 0 or t < real(m.disks, i * REALS + T):
             break

@@ -39,6 +39,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.plan import days_of
 from eventsim.engines.reference.state import EngineState, Met
+from eventsim.engines.turnover import Anchors
 from eventsim.errors import EventsimError
 from eventsim.formulas.rest import SUPPORTED, held_by
 from eventsim.record.events import Floats
@@ -226,7 +227,6 @@ class FastState(EngineState):
         self.supports = stage.supports
         self.gravity_x, self.gravity_y = AccelerationColumn(self, 0, stage), AccelerationColumn(self, 1, stage)
         self.epoch_length = stage.epoch_length
-        self.window_cap = stage.window_cap
 
     @property
     def labels(self) -> Integers:
@@ -241,6 +241,11 @@ class FastState(EngineState):
     @window_rows.setter
     def window_rows(self, rows: int) -> None:
         self._counts[WINDOW_ROWS] = rows
+
+    def anchors(self) -> Anchors:
+        """Where all flights begin."""
+        columns = (self.t, self.x, self.y, self.vx, self.vy, self.gravity_x, self.gravity_y)
+        return Anchors(*(column.every() for column in columns))
 
     def meet(self, i: int, met: Met) -> None:
         """Let disk i remember whom it met; its record says as well whether it rests."""

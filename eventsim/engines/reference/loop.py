@@ -24,8 +24,10 @@ from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
 from eventsim.engines.reference.sunk import Sunk
 from eventsim.engines.reference.wide import WidePredictor
-from eventsim.formulas.clock import MOST_EPOCHS, remainder_since
+from eventsim.engines.turnover import epochs_to_kick, epochs_to_wrap, exponent_after, exponent_kicked
+from eventsim.formulas.clock import EARLY, MOST_EPOCHS, epochs_before, remainder_since, window_length
 from eventsim.formulas.doubt import latest_tie, screen_in
+from eventsim.formulas.real import Real
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.record.events import Floats, Rows
 from eventsim.scene.stage import Stage
@@ -57,6 +59,10 @@ class ReferenceSession(Session):
         self._check = options.check
         self._idle = 0.0  # time since the end of the last window that had rows
         self._behind: Snapshot | None = None  # where the last flight began, in an earlier window
+        self._before: Snapshot | None = None  # the open window, when the clock has jumped to a contact that is still to come
+        self._awaited: Real = 0.0  # when that contact is due in the open window
+        self._missed: Real = -1.0  # when one is due in it that does not come where the clock jumps to
+        self._clear: Real = 0.0  # none is due in it before
         fine = self.state.low_places and self.predictor is Predictor
         self._predictor = (WidePredictor if fine else self.predictor)(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
@@ -71,7 +77,8 @@ class ReferenceSession(Session):
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
         until, for_ever = self._remainder(stop.until), stop.until is None
         state, calendar, counters, cells = self.state, self.calendar, self.counters, self.cells
-        for _ in range(budget):
+        while budget > 0 or self._before is not None:
+            budget -= 1
             if stop.events is not None and counters.events >= stop.events:
                 return "events"
             event = calendar.first()
@@ -80,6 +87,11 @@ class ReferenceSession(Session):
                 counters.stale += 1
                 continue
             due = float("inf") if event is None else event.time
+            if self._before is not None and (due > until or due >= self._latest):
+                if self._jump_back(until, stop.until):
+                    return "until"
+                until = self._remainder(stop.until)
+                continue
             if due >= state.window_end <= until and not (event is None and for_ever):
                 stopped = self._end_window(for_ever)
                 if stopped is not None:
@@ -92,8 +104,16 @@ class ReferenceSession(Session):
                     self._go_back()
                 return "quiet"
             if due > until:
+                if state.opened and (contact := self._contact_near(until)) is not None and self._jump(contact):
+                    until = self._remainder(stop.until)
+                    continue
                 self._pass_to(until)
                 return "until" if self._meets_again() else "quiet"
+            if state.opened and event.rank == CONTACT and due != self._missed:
+                if not self._jump(due):
+                    return self._stop_at_the_end(due, for_ever)
+                until = self._remainder(stop.until)
+                continue
             state.now = due
             if event.rank == WRAP:
                 calendar.pop()
@@ -101,17 +121,24 @@ class ReferenceSession(Session):
                 wrap(state, cells, event, self.stage.period[event.b])  # type: ignore[arg-type]
                 self._predictor.predict(event.a, due)
             elif event.rank == CROSSING:
-                calendar.pop()
-                counters.crossings += 1
-                cross(cells, event)  # type: ignore[arg-type]
-                self._predictor.predict_ahead(event.a, event.b, event.image[0], due)
+                self._cross(event)
             else:
                 stopped = self._resolve_instant()
+                if state.window_rows:
+                    self._before = None
+                    state.close()
                 if stopped is not None:
                     return stopped
             if self._check:
                 check_invariants(self)
         return None
+
+    def _cross(self, event: Event) -> None:
+        """Let a disk enter the next cell."""
+        self.calendar.pop()
+        self.counters.crossings += 1
+        cross(self.cells, event)  # type: ignore[arg-type]
+        self._predictor.predict_ahead(event.a, event.b, event.image[0], event.time)
 
     def _resolve_instant(self) -> str | None:
         """Resolve the contacts of the earliest instant that are predicted by now, then predict their disks anew."""
@@ -157,7 +184,8 @@ class ReferenceSession(Session):
     @property
     def tie_screen(self) -> float:
         """The span of time within which contacts that share a disk are ordered exactly."""
-        return screen_in(self.stage.tie_screen, self.state.window_end, self.stage.epoch_length)
+        length = window_length(self.state.window, self.stage.epoch_length)
+        return screen_in(self.stage.tie_screen, length, self.stage.epoch_length)
 
     def is_stale(self, event: Event) -> bool:
         """Whether a disk of the event has begun another flight since the prediction."""
@@ -167,26 +195,109 @@ class ReferenceSession(Session):
         return event.rank == CONTACT and event.b >= 0 and count[event.b] != event.count_b
 
     def _end_window(self, for_ever: bool) -> str | None:
-        """Let the clock turn over; the reason to stop where it has come to its end, or where nothing is ahead but wraps."""
+        """Let the clock turn over, or the window stay open if it had no row.
+
+        Why the run stops there: the clock has come to its end, or nothing is ahead but wraps.
+        """
         state = self.state
+        if not (state.window_rows or state.opened) and state.epoch < MOST_EPOCHS:
+            epochs = self._epochs_to_wrap()
+            if epochs is None or epochs > 1 << state.window:
+                state.stay_open(epochs)
+                self._clear, self._missed = 0.0, -1.0
+                return None
         if state.epoch >= MOST_EPOCHS:  # nothing more can be logged
-            end = state.window_end
-            word, self.reason = at_the_last_epoch(self.stage, state.epoch, end, self._next_contact())
-            if word != "quiet":
-                self._pass_to(end)
-            elif for_ever:
-                self._go_back()
-            return word
+            return self._stop_at_the_end(self._next_contact(), for_ever)
         idles = for_ever and not state.window_rows
         self._idle = self._idle + float(state.window_end) if idles else 0.0
         self._remember(for_ever)
-        self.counters.turnovers += 1
-        state.turn_over()
-        self._predict_afresh()
+        self._turn_over(state.window_end, int(state.window_end / state.epoch_length))
         if idles and self._drifts():
             self._go_back()
             return "quiet"
         return None
+
+    def _epochs_to_wrap(self) -> int | None:
+        return epochs_to_wrap(self.stage, self.state.epoch, self.state.window, self.state.anchors())
+
+    def _stop_at_the_end(self, due: Real, for_ever: bool) -> str:
+        """Stop at the end of the clock, at or before a time at which the next contact is due: why."""
+        state = self.state
+        end = min(state.window_end, (MOST_EPOCHS - state.epoch) * state.epoch_length) if state.opened else state.window_end
+        word, self.reason = at_the_last_epoch(self.stage, state.epoch, end, float(due))
+        if word != "quiet":
+            self._pass_to(end)
+        elif for_ever:
+            self._go_back()
+        return word
+
+    def _turn_over(self, end: Real, epochs: int) -> None:
+        """Let the clock go on by some epochs, at the time `end` of its window."""
+        state = self.state
+        self.counters.turnovers += 1
+        state.turn_over(end, epochs, exponent_after(self.stage, state.window, state.window_rows, state.anchors))
+        self._predict_afresh()
+
+    def _jump(self, due: Real) -> bool:
+        """Let the clock jump from an open window to a contact that is due there; whether it counts so far.
+
+        All disks are advanced to shortly before it, and predicted anew.  If no row comes there, the clock jumps back.
+        """
+        state = self.state
+        epochs = epochs_before(float(due), state.window, state.epoch_length)
+        if state.epoch + epochs > MOST_EPOCHS:
+            return False
+        self._before, self._awaited = state.snapshot(), due
+        self._turn_over(epochs * state.epoch_length, epochs)
+        return True
+
+    def _jump_back(self, until: Real, stop: float | None) -> bool:
+        """Be in the open window again where the contact does not come, or not until the stop; whether that is reached."""
+        assert self._before is not None
+        before, self._before = self._before, None
+        stops = bool(until < self._latest)
+        self._missed = -1.0 if stops else self._awaited
+        self.counters.turnovers -= 1
+        self.state.restore(before)
+        self._be_at(before, max(before.now, self._remainder(stop)) if stops else before.now)
+        return stops
+
+    @property
+    def _latest(self) -> float:
+        """The time behind a jump at which the contact that it was for has come, or does not come."""
+        return 2.0 * self.state.epoch_length
+
+    def _be_at(self, saved: Snapshot, now: Real) -> None:
+        """Be at a time of the open window that a snapshot was taken in."""
+        self.state.restore(replace(saved, now=now))
+        self.state.stay_open(self._epochs_to_wrap())
+        self._predict_afresh()
+
+    def _contact_near(self, until: Real) -> Real | None:
+        """The time of a contact that is due behind `until`, but for which the clock jumps to a time before it; else None.
+
+        After the jump the same contact may come until then, since the times are rounded.  To find it disks enter cells that are
+        ahead of them.
+        """
+        state, calendar = self.state, self.calendar
+        ahead = (float(until) // state.epoch_length + 1.0 + EARLY) * state.epoch_length
+        goal = min(ahead, state.window_end)
+        if goal <= self._clear:
+            return None
+        saved, crossings, found = state.snapshot(), self.counters.crossings, None
+        while found is None and (event := calendar.first()) is not None and event.time < goal:
+            if self.is_stale(event):
+                calendar.pop()
+            elif event.rank == CONTACT:
+                found = event.time
+            else:
+                state.now = event.time
+                self._cross(event)
+        if self.counters.crossings > crossings:
+            self._be_at(saved, until)
+        if found is None:
+            self._clear = goal
+        return None if found == self._missed else found
 
     def _predict_afresh(self) -> None:
         """Fill cells and calendar from the flights."""
@@ -261,8 +372,21 @@ class ReferenceSession(Session):
 
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of disk i from outside, now."""
+        self._shorten_window(i, vx, vy)
         self._resolver.kick(i, vx, vy)
         self._predictor.predict(i, self.state.now)
+
+    def _shorten_window(self, i: int, vx: float, vy: float) -> None:
+        """Let the clock turn over at a kick before which nothing happened for long, or whose disk is too fast for the window."""
+        stage, state = self.stage, self.state
+        exponent = exponent_kicked(stage, state.window, lambda: state.anchors().kicked(i, vx, vy))
+        epochs = epochs_to_kick(stage, state.epoch, state.now, state.window_rows, exponent < state.window)
+        if epochs:
+            self.counters.turnovers += 1
+            state.turn_over(state.now, epochs, exponent)
+            self._predict_afresh()
+        elif state.now < state.epoch_length:
+            state.begin_window(exponent)
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
@@ -275,7 +399,8 @@ class ReferenceSession(Session):
     def restore(self, saved: Snapshot) -> None:
         """Go on from a snapshot, this engine's or another's."""
         self.state.restore(saved)
-        self._idle, self._behind = 0.0, None
+        self._idle, self._behind, self._before = 0.0, None, None
+        self._clear, self._missed = 0.0, -1.0
         self._predict_afresh()
 
 

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from eventsim.engines.base import Snapshot
-from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
+from eventsim.engines.turnover import Anchors
+from eventsim.formulas.clock import FIRST_WINDOW, end_of_epoch, window_length
 from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Acceleration, Real
@@ -24,7 +27,8 @@ class EngineState:
     (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.  number: makes
     a number of the engine's type from a float.  low_parts: whether velocities carry what their rounding at a contact left, in
     low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.  low_places: the same for what
-    the rounding of places left, in low_x and low_y.
+    the rounding of places left, in low_x and low_y.  window: the exponent of its length; window_end: where the window ends,
+    later where it stayed open because it had no row (opened).
     """
 
     def __init__(self, stage: Stage, number: Any = float) -> None:
@@ -56,10 +60,8 @@ class EngineState:
         self.now: Real = number(0.0)
         self.epoch = 0
         self.epoch_length = stage.epoch_length
-        self.window = FIRST_WINDOW
-        self.window_cap = stage.window_cap
-        self.window_end = window_length(self.window, self.epoch_length)
         self.window_rows = 0
+        self.begin_window(FIRST_WINDOW)
 
     def place(self, i: int, t: Real) -> tuple[Real, Real]:
         """The centre of disk i at time t of its present flight."""
@@ -138,21 +140,47 @@ class EngineState:
         held = held_by(self.met[i])
         return None if held is None or held.how != SUPPORTED else self.supports[held.place]
 
-    def turn_over(self) -> None:
-        """Begin a new window: every disk is advanced to the end of the old one, which becomes time 0."""
-        end = self.window_end
+    def anchors(self) -> Anchors:
+        """Where all flights begin, rounded."""
+        t, x, y, vx, vy = (np.array(list(map(float, each))) for each in (self.t, self.x, self.y, self.vx, self.vy))
+        falls = self.gravity_x[0] is not None
+        gx, gy = (np.array(each, dtype=float) if falls else None for each in (self.gravity_x, self.gravity_y))
+        return Anchors(t, x, y, vx, vy, gx, gy)
+
+    def turn_over(self, end: Real, epochs: int, window: int) -> None:
+        """Begin a new window some epochs later: every disk is advanced to `end`, a time in the old one.
+
+        window: the exponent of the new one.
+        """
+        shift = epochs * self.epoch_length
         for i in range(self.n):
             x, y = self.place(i, end)
             vx, vy = self.speed(i, end)
             if (low := self.low_place(i, end)) is not None:
                 self.low_x[i], self.low_y[i] = low
-            self.anchor(i, end - end, x, y, vx, vy)
-            self.contact_time[i] = self.contact_time[i] - end
-        self.now = end - end
-        self.epoch += 1 << self.window
-        self.window = next_window(self.window, self.window_rows, self.n, self.window_cap)
-        self.window_end = window_length(self.window, self.epoch_length)
+            self.anchor(i, end - shift, x, y, vx, vy)
+            self.contact_time[i] = self.contact_time[i] - shift
+        self.now = end - shift
+        self.epoch += epochs
+        self.begin_window(window)
         self.window_rows = 0
+
+    def begin_window(self, exponent: int) -> None:
+        """Set how long the window is, which is not open beyond its end."""
+        self.window = exponent
+        self.window_end = window_length(exponent, self.epoch_length)
+        self.opened = False
+
+    def stay_open(self, epochs: int | None) -> None:
+        """Let the window, which had no row until its end, be open until so many epochs after its beginning, or for ever."""
+        self.window_end = float("inf") if epochs is None else epochs * self.epoch_length
+        self.opened = True
+
+    def close(self) -> None:
+        """Let a window in which a row has come beyond its end, end with the present epoch."""
+        if self.opened or (self.window_rows and self.now >= self.window_end):
+            self.window_end = end_of_epoch(float(self.now), self.epoch_length)
+            self.opened = False
 
     def snapshot(self) -> Snapshot:
         """A copy of all that the future depends on."""
@@ -179,8 +207,9 @@ class EngineState:
 
     def restore(self, saved: Snapshot) -> None:
         """Go back (or on) to a snapshot; predictions made before are stale."""
-        self.epoch, self.window, self.window_rows, self.now = saved.epoch, saved.window, saved.window_rows, saved.now
-        self.window_end = window_length(self.window, self.epoch_length)
+        self.epoch, self.window_rows, self.now = saved.epoch, saved.window_rows, saved.now
+        self.begin_window(saved.window)
+        self.close()
         self.t, self.x, self.y = list(saved.t), list(saved.x), list(saved.y)
         self.vx, self.vy = list(saved.vx), list(saved.vy)
         self.wraps_x, self.wraps_y = list(saved.wraps_x), list(saved.wraps_y)

@@ -72,7 +72,7 @@ class StepClock:
         stage = self._stage
         while time >= self._window_end:
             self.epoch += 1 << self.window
-            self.window = next_window(self.window, self.window_rows, stage.n, stage.window_cap)
+            self.window = next_window(self.window, self.window_rows, stage.n, stage.clock.window_cap)
             self.window_rows = 0
 
 
