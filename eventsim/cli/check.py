@@ -43,6 +43,7 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
       gravity, restitution, contact_duration
                                   null without; restitution [pair, wall]
       low_parts                   whether velocities carry what their rounding leaves (very uneven masses)
+      points                      whether disks are so small that they remember on which side of a wall they are
       low_places                  whether places do (a very wide domain without gravity)
       start_time, epoch_length    of the clock
       search                      {kind, side, columns, rows, giants}: "all pairs" or "cells"

@@ -26,6 +26,12 @@ MANY = 10
 
 SHAPE_WORDS = {kind.__name__.lower(): kind.word() for kind in SHAPES}
 
+POINTS = (
+    "a point stays on its side of a wall, to the last bit; one that hits a vertex or a free end exactly turns round"
+    " (the limit of a central hit)"
+)
+"""What disks without a radius do at walls."""
+
 
 def page(asked: str, name: str | None, needs: Needs) -> str:
     """Return the whole page that `eventsim check` prints."""
@@ -99,7 +105,8 @@ def _walls(needs: Needs) -> str:
     named = ", ".join(f"{name} ({kind})" for name, kind in needs.walls.items())
     shapes = ", ".join(plural(count, SHAPE_WORDS[shape]) for shape, count in needs.shapes.items())
     images = ", periodic images included" if needs.domain in ("periodic", "channel") else ""
-    return f"{named}; made of {shapes}{images}, each tried by every disk"
+    text = f"{named}; made of {shapes}{images}, each tried by every disk"
+    return f"{text}; {POINTS}" if needs.points else text
 
 
 def _table(table: tuple[float, float, float]) -> str:

@@ -74,6 +74,7 @@ class Needs:
         gravity, restitution, contact_duration: None without; restitution (pair, wall).
         low_parts: whether masses are so uneven that velocities carry what their rounding leaves.
         low_places: whether the domain is so wide that places carry what their rounding leaves.
+        points: whether disks are so small that they have to remember on which side of a wall they are.
         epoch_length: time, a power of two.
         search: all pairs or cells.
         images: in how many periodic images a disk can be met from inside the domain: 1, 3 or 9.
@@ -107,6 +108,7 @@ class Needs:
     contact_duration: float | None
     low_parts: bool
     low_places: bool
+    points: bool
     start_time: float
     epoch_length: float
     search: Search
@@ -152,6 +154,7 @@ def needs_of(scene: Scene) -> Needs:
         contact_duration=stage.law.duration,
         low_parts=stage.low_parts,
         low_places=stage.low_places,
+        points=stage.points,
         start_time=scene.start_time,
         epoch_length=stage.epoch_length,
         search=_search(stage),

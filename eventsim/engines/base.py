@@ -27,7 +27,8 @@ class Stop:
 class Snapshot:
     """All that the future of a run depends on, whichever engine holds it; see `EngineState` for the meaning of the names.
 
-    low_vx, low_vy: empty where velocities have no low parts; low_x, low_y: where places have none.
+    low_vx, low_vy: empty where velocities have no low parts; low_x, low_y: where places have none;
+    sides: where no disk is a point to a wall.
     Calendars and cells are no part of it: they follow from the flights.
     """
 
@@ -49,6 +50,7 @@ class Snapshot:
     low_vy: tuple[float, ...] = ()
     low_x: tuple[float, ...] = ()
     low_y: tuple[float, ...] = ()
+    sides: tuple[Any, ...] = ()
 
 
 @dataclass(slots=True)

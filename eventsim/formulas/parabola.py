@@ -5,6 +5,8 @@ derivative is a quadratic: so the roots of the quadratic bracket those of the cu
 quartic, every one on a monotone piece, where bisection cannot miss.  No root formula of degree 4, hence no cancellation.
 """
 
+from typing import NamedTuple
+
 from eventsim.formulas.real import NEVER, Real, is_float, sqrt
 
 BISECTIONS = 200
@@ -16,6 +18,17 @@ DOUBLINGS = 2000
 
 ANY_OVERLAP, PRESENT_OVERLAP, NO_OVERLAP = 2, 1, 0
 """Which falling pieces that begin with a closed gap are contacts: all; only one that falls already now; none."""
+
+
+class Round(NamedTuple):
+    """A circle seen from a point: its centre at (x, y), the square of its radius less that of the centre's distance.
+
+    So a circle through the point has the excess 0, however large it is, and one around the point its radius squared.
+    """
+
+    x: Real
+    y: Real
+    excess: Real
 
 
 def circle_gap(
@@ -30,16 +43,8 @@ def circle_gap(
     t: Real,
     touches: bool = False,
 ) -> Real:
-    """h = side (|d + v t + a t^2/2|^2 - radius^2) at delay t; side is +1 outside the circle, -1 inside.
-
-    touches: |d| is the radius but for rounding, so that the difference is t (v + a t/2).(2 d + t (v + a t/2)).
-    """
-    if touches:
-        mx, my = du + (0.5 * ax) * t, dw + (0.5 * ay) * t
-        return side * (t * (mx * (2.0 * dx + t * mx) + my * (2.0 * dy + t * my)))
-    px = dx + t * (du + (0.5 * ax) * t)
-    py = dy + t * (dw + (0.5 * ay) * t)
-    return side * ((px * px + py * py) - radius * radius)
+    """h = side (|d + v t + a t^2/2|^2 - radius^2) at delay t; side is +1 outside the circle, -1 inside."""
+    return round_gap(dx, dy, du, dw, ax, ay, Round(0.0, 0.0, radius * radius), side, touches, t)
 
 
 def on_circle(cx: Real, cy: Real, reach: Real, x: Real, y: Real) -> tuple[Real, Real]:
@@ -52,11 +57,36 @@ def on_circle(cx: Real, cy: Real, reach: Real, x: Real, y: Real) -> tuple[Real, 
     return cx + share * dx, cy + share * dy
 
 
-def circle_rate(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, side: float, t: Real) -> Real:
-    """Half the rate of change of the gap h at delay t: side (d(t) . v(t))."""
+def round_gap(
+    dx: Real,
+    dy: Real,
+    du: Real,
+    dw: Real,
+    ax: Real,
+    ay: Real,
+    circle: Round,
+    side: float,
+    touches: bool,
+    t: Real,
+) -> Real:
+    """h = side (p^2 - 2 p.c - excess), p = d + v t + a t^2/2, at delay t; side is +1 outside the circle, -1 inside.
+
+    touches: h is 0 at the beginning but for rounding, so that it is t (v + a t/2).(2 (d - c) + t (v + a t/2)).
+    """
+    if touches:
+        mx, my = du + (0.5 * ax) * t, dw + (0.5 * ay) * t
+        cx, cy = dx - circle.x, dy - circle.y
+        return side * (t * (mx * (2.0 * cx + t * mx) + my * (2.0 * cy + t * my)))
     px = dx + t * (du + (0.5 * ax) * t)
     py = dy + t * (dw + (0.5 * ay) * t)
-    return side * (px * (du + ax * t) + py * (dw + ay * t))
+    return side * (((px * px + py * py) - 2.0 * (px * circle.x + py * circle.y)) - circle.excess)
+
+
+def round_rate(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, circle: Round, side: float, t: Real) -> Real:
+    """Half the rate of change of the gap h at delay t: side ((p - c) . v(t))."""
+    px = dx + t * (du + (0.5 * ax) * t)
+    py = dy + t * (dw + (0.5 * ay) * t)
+    return side * ((px - circle.x) * (du + ax * t) + (py - circle.y) * (dw + ay * t))
 
 
 def circle_delays(
@@ -73,31 +103,50 @@ def circle_delays(
 ) -> tuple[Real, Real]:
     """The first two delays >= 0 at which the gap h to a circle is <= 0 and falling; NEVER where there is none.
 
-    (dx, dy), (du, dw), (ax, ay): position, velocity and acceleration (not zero) relative to the centre.  A quartic has at
-    most two falling pieces; the second is for arcs, which may be open where the first one crosses them: there a disk can be
-    on the far side of the circle without overlapping it, and `overlap` says which closed gaps count.  touches: the flight
+    (dx, dy), (du, dw), (ax, ay): position, velocity and acceleration (not zero) relative to the centre.  touches: the flight
     begins on the circle, wherever rounding has put the disk: then no bounce is too low for the digits of its place.
+    """
+    return round_delays(dx, dy, du, dw, ax, ay, Round(0.0, 0.0, radius * radius), radius, side, overlap, touches)
+
+
+def round_delays(
+    dx: Real,
+    dy: Real,
+    du: Real,
+    dw: Real,
+    ax: Real,
+    ay: Real,
+    circle: Round,
+    radius: Real,
+    side: float,
+    overlap: int,
+    touches: bool,
+) -> tuple[Real, Real]:
+    """The same for a circle that is seen from another point than its centre; radius: about its radius.
+
+    A quartic has at most two falling pieces; the second is for arcs, which may be open where the first one crosses them: there a
+    disk can be on the far side of the circle without overlapping it, and `overlap` says which closed gaps count.
     """
     q2 = 1.5 * (ax * ax + ay * ay)
     q1 = 3.0 * (du * ax + dw * ay)
-    q0 = (du * du + dw * dw) + (dx * ax + dy * ay)
+    q0 = (du * du + dw * dw) + ((dx - circle.x) * ax + (dy - circle.y) * ay)
     first, second = _positive_roots(q2, q1, q0)
     start = 0.0
-    rate = circle_rate(dx, dy, du, dw, ax, ay, side, start)
+    rate = round_rate(dx, dy, du, dw, ax, ay, circle, side, start)
     falls = rate < 0.0 or (rate == 0.0 and side * q0 < 0.0)
     fall = 0.0
     late = overlap == ANY_OVERLAP
     counts = overlap != NO_OVERLAP
     found = NEVER
-    far = _far(dx, dy, du, dw, ax, ay, radius, side, touches, second)
+    far = _far(dx, dy, du, dw, ax, ay, circle, radius, side, touches, second)
     for end in (first, second, far):
         if not end > start:
             continue
-        falls_then = circle_rate(dx, dy, du, dw, ax, ay, side, end) < 0.0
+        falls_then = round_rate(dx, dy, du, dw, ax, ay, circle, side, end) < 0.0
         if falls != falls_then:
-            turn = _turn(dx, dy, du, dw, ax, ay, side, start, end, falls)
+            turn = _turn(dx, dy, du, dw, ax, ay, circle, side, start, end, falls)
             if falls:
-                delay = _closing(dx, dy, du, dw, ax, ay, radius, side, touches, fall, turn, counts)
+                delay = _closing(dx, dy, du, dw, ax, ay, circle, side, touches, fall, turn, counts)
                 if delay < NEVER:
                     if found < NEVER:
                         return found, delay
@@ -108,7 +157,7 @@ def circle_delays(
         start = end
         falls = falls_then
     if falls:
-        delay = _closing(dx, dy, du, dw, ax, ay, radius, side, touches, fall, far, counts)
+        delay = _closing(dx, dy, du, dw, ax, ay, circle, side, touches, fall, far, counts)
         if found < NEVER:
             return found, delay
         found = delay
@@ -136,6 +185,7 @@ def _far(
     dw: Real,
     ax: Real,
     ay: Real,
+    circle: Round,
     radius: Real,
     side: float,
     touches: bool,
@@ -144,11 +194,12 @@ def _far(
     """A delay after which the gap only opens (outside) or stays closed (inside)."""
     speed = sqrt(du * du + dw * dw)
     acceleration = sqrt(ax * ax + ay * ay)
-    distance = sqrt(dx * dx + dy * dy) + radius
+    cx, cy = dx - circle.x, dy - circle.y
+    distance = sqrt(cx * cx + cy * cy) + radius
     t = last + speed / acceleration + sqrt(distance / acceleration)
     for _ in range(DOUBLINGS):
-        rate = side * circle_rate(dx, dy, du, dw, ax, ay, side, t)
-        gap = side * circle_gap(dx, dy, du, dw, ax, ay, radius, side, t, touches)
+        rate = side * round_rate(dx, dy, du, dw, ax, ay, circle, side, t)
+        gap = side * round_gap(dx, dy, du, dw, ax, ay, circle, side, touches, t)
         if rate > 0.0 and gap > 0.0:
             break
         t = 2.0 * t
@@ -162,6 +213,7 @@ def _turn(
     dw: Real,
     ax: Real,
     ay: Real,
+    circle: Round,
     side: float,
     low: Real,
     high: Real,
@@ -172,7 +224,7 @@ def _turn(
         middle = low + 0.5 * (high - low)
         if not (low < middle < high):
             break
-        if (circle_rate(dx, dy, du, dw, ax, ay, side, middle) < 0.0) == falling:
+        if (round_rate(dx, dy, du, dw, ax, ay, circle, side, middle) < 0.0) == falling:
             low = middle
         else:
             high = middle
@@ -186,7 +238,7 @@ def _closing(
     dw: Real,
     ax: Real,
     ay: Real,
-    radius: Real,
+    circle: Round,
     side: float,
     touches: bool,
     low: Real,
@@ -197,15 +249,15 @@ def _closing(
 
     A gap that is closed from the beginning closes at low, if such an overlap counts.
     """
-    if not circle_gap(dx, dy, du, dw, ax, ay, radius, side, low, touches) > 0.0:
+    if not round_gap(dx, dy, du, dw, ax, ay, circle, side, touches, low) > 0.0:
         return low if counts else NEVER
-    if circle_gap(dx, dy, du, dw, ax, ay, radius, side, high, touches) > 0.0:
+    if round_gap(dx, dy, du, dw, ax, ay, circle, side, touches, high) > 0.0:
         return NEVER
     for _ in range(BISECTIONS):
         middle = low + 0.5 * (high - low)
         if not (low < middle < high):
             break
-        if circle_gap(dx, dy, du, dw, ax, ay, radius, side, middle, touches) > 0.0:
+        if round_gap(dx, dy, du, dw, ax, ay, circle, side, touches, middle) > 0.0:
             low = middle
         else:
             high = middle

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 
 from eventsim.formulas.crossing import closing_delay, crossing_delay
 from eventsim.formulas.real import NEVER, Real, is_float, sqrt
-from eventsim.formulas.walls.face import TOUCHING, Face, face_side, is_within, slope
+from eventsim.formulas.walls.face import TOUCHING, Face, face_side, hangs_below, is_met, slope
+from eventsim.formulas.walls.point import side_known
 from eventsim.formulas.walls.shape import Shape
 
 AT_ONCE = 2.0**-48
@@ -104,7 +105,17 @@ def hop_delay(rate: Real, fall: Real, since: Real) -> Real:
 
 
 def hop_on_face_delay(
-    shape: Face, side: int, x: Real, y: Real, vx: Real, vy: Real, gx: Real, gy: Real, since: Real
+    shape: Face,
+    side: int,
+    x: Real,
+    y: Real,
+    vx: Real,
+    vy: Real,
+    gx: Real,
+    gy: Real,
+    since: Real,
+    radius: Real,
+    beside: int | None = None,
 ) -> Real:
     """The same for a face; NEVER where the disk is not pulled onto it, or comes down beside it."""
     nx, ny = side * shape.nx, side * shape.ny
@@ -112,8 +123,7 @@ def hop_on_face_delay(
     if not fall < 0.0:
         return NEVER
     delay = hop_delay(nx * vx + ny * vy, fall, since)
-    x, y = x + delay * (vx + (0.5 * gx) * delay), y + delay * (vy + (0.5 * gy) * delay)
-    return delay if is_within(shape, x, y) else NEVER
+    return delay if is_met(shape, beside, side, x, y, vx, vy, gx, gy, radius, delay) else NEVER
 
 
 def rest_delay(
@@ -282,34 +292,39 @@ def shape_contact(
     t: Real,
     since: Real,
     touches: bool,
+    beside: int | None = None,
 ) -> tuple[Real, int, int]:
     """(delay, side, how) of the next event at a shape inside the domain: an impact, coming to rest, or sliding over its end.
 
     flight: x, y, vx, vy and the acceleration that the disk has.  met: the side last met.  supports: None in a scene without rest.
-    since: see `rest_delay`.  touches: whether the flight begins on contact with the shape.
+    since: see `rest_delay`.  touches: whether the flight begins on contact with the shape.  beside: the side of a point that is
+    close to the shape.
     """
     if supports is None:
-        return *shape.delay(*flight, radius, met, touches), STRUCK
+        return *shape.delay(*flight, radius, met, touches, beside), STRUCK
     if held is not None:
         on = supports[held.place]
         assert on is not None
         if held.place == place and held.how == SUPPORTED:
             return slide_delay(on.face, on.low, on.high, *flight), held.side, LEFT
-        if _is_beside(on.face, shape, held.how):
+        if _is_beside(on.face, shape, held):
             return NEVER, met, STRUCK
     support = supports[place]
     if support is not None:
-        side = met if met != 0 else face_side(support.face, *flight[:4])
+        side = side_known(met, beside) or face_side(support.face, *flight[:4])
         delay = rest_on_face_delay(support.face, side, support.low, support.high, *flight, radius, restitution, t, since)
         if delay < NEVER:
             return delay, side, SUPPORTED
         if not since < 0.0:
-            delay = hop_on_face_delay(support.face, side, *flight, since)
+            delay = hop_on_face_delay(support.face, side, *flight, since, radius, beside)
             if delay < NEVER:
                 return delay, side, STRUCK
-    return *shape.delay(*flight, radius, met, touches), STRUCK
+    return *shape.delay(*flight, radius, met, touches, beside), STRUCK
 
 
-def _is_beside(line: Face, shape: Shape, how: int) -> bool:
-    """Whether a disk passes a shape because it slides on its line, or left that line at its end."""
-    return (how == SUPPORTED or shape.line() is not None) and shape.lies_on(line)
+def _is_beside(line: Face, shape: Shape, held: Held) -> bool:
+    """Whether a disk passes a shape because it slides on its line, or above it, or left that line at its end."""
+    face = shape.line()
+    if held.how == SUPPORTED and face is not None and hangs_below(line, held.side, face.x, face.y, face.x1, face.y1):
+        return True
+    return (held.how == SUPPORTED or face is not None) and shape.lies_on(line)

@@ -24,12 +24,14 @@ from eventsim.formulas.impulse import (
 from eventsim.formulas.rest import STRUCK, SUPPORTED, rebound
 from eventsim.formulas.simultaneous import JointContact, resolve_together
 from eventsim.formulas.walls.face import slope
+from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Column, Kind, Rows
 from eventsim.record.provenance import Provenance
 from eventsim.replay.contacts import Contact, Contacts
 from eventsim.replay.disk_flight import DiskFlight
 from eventsim.replay.flight import Flights, start_flights
 from eventsim.replay.windows import Windows, stage_of_log
+from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
 Numbers: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
@@ -58,9 +60,10 @@ class Disks(dict[int, DiskFlight]):
         super().__init__()
         self._stage = stage
         self._mass = mass
+        self._walls = Sides(stage) if stage.points else None
 
     def __missing__(self, i: int) -> DiskFlight:
-        flight = self[i] = DiskFlight(self._stage, i, math.isinf(self._mass[i]))
+        flight = self[i] = DiskFlight(self._stage, i, math.isinf(self._mass[i]), self._walls)
         return flight
 
 
@@ -132,6 +135,7 @@ class Expansion:
             raise self._unfit(entry, "its velocity is not in the metadata (the log was not closed)")
         disk.settle(entry.remainder)
         before, speed = disk.speed(entry.remainder), self._set[entry.event]
+        disk.keep_sides(entry.remainder, disk.place(entry.remainder), speed)
         disk.anchor(entry.remainder, disk.place(entry.remainder), speed)
         disk.low = 0.0, 0.0
         disk.meet(())
@@ -171,7 +175,12 @@ class Expansion:
         u, w = before
         axis = self._contacts.boundary_axis(contact)
         again = self._contacts.launched(contact)
-        if again > 0.0:
+        if self.stage.is_exact_hit(-1 - contact.b, disk.radius):
+            place = self._contacts.on_boundary(contact, place)
+            if not is_still_rising(disk.x, disk.y, disk.gx, disk.gy, *place, u, w):
+                u, w = -(restitution * u), -(restitution * w)
+                disk.low = -(restitution * disk.low[0]), -(restitution * disk.low[1])
+        elif again > 0.0:
             u, w = rebound(*self._contacts.normal(contact, place), u, w, restitution * again)
         elif self.stage.low_parts:
             normal = self._contacts.normal(contact, place, disk.low_place)
@@ -221,7 +230,9 @@ class Expansion:
             for contact in own:
                 if contact.b < 0:
                     places[i] = self._contacts.on_boundary(contact, places[i])
-            disk.anchor(t, places[i], outcome.velocities[number[i]])
+            leaves = outcome.velocities[number[i]]
+            disk.keep_sides(t, places[i], leaves, _walls_of(own))
+            disk.anchor(t, places[i], leaves)
             disk.low = 0.0, 0.0
             disk.meet(tuple(self._contacts.met(contact, i) for contact in own))
             disk.contact_time = t
@@ -272,12 +283,16 @@ class Expansion:
             e = self._restitution(self.stage.law.pair, t, a, b)
             return JointContact(number[a], number[b], dx, dy, e)
         nx, ny = self._contacts.normal(contact, places[a], self.disks[a].low_place_at(t))
+        if self.stage.is_exact_hit(-1 - b, self.disks[a].radius):
+            u, w = self.disks[a].speed(t)
+            nx, ny = (-u, -w) if u or w else (0.0, 1.0)
         return JointContact(number[a], None, nx, ny, self._restitution(self.stage.law.wall, t, a, a))
 
     def _begin(
         self, contact: Contact, i: int, t: float, place: tuple[float, float], speed: tuple[float, float]
     ) -> None:
         disk = self.disks[i]
+        disk.keep_sides(t, place, speed, _walls_of([contact]))
         disk.anchor(t, place, speed)
         disk.meet((self._contacts.met(contact, i),))
         disk.contact_time = t
@@ -301,3 +316,8 @@ class Expansion:
 
     def _unfit(self, entry: Entry, why: str) -> LogError:
         return LogError(f"the log does not fit its scene at event {entry.event}: {why}")
+
+
+def _walls_of(contacts: list[Contact]) -> tuple[tuple[int, int], ...]:
+    """What is met among contacts: (number, side) of each wall."""
+    return tuple((-1 - contact.b, contact.image[0]) for contact in contacts if contact.b < 0)

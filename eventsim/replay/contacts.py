@@ -193,9 +193,10 @@ class Contacts:
         met = next((last[1] for last in disk.met if last[0] == -1 - number), 0)
         shape, x, y = seen(surface.shape, disk.x, disk.y, disk.low_place)
         flight = (x, y, disk.vx, disk.vy, disk.gx, disk.gy)
+        beside = disk.side_beside(number)
         touches = stage.settles and since == 0.0
         delay, met_side, how = shape_contact(
-            stage.supports, disk.held, number, shape, flight, disk.radius, met, e, disk.t, since, touches
+            stage.supports, disk.held, number, shape, flight, disk.radius, met, e, disk.t, since, touches, beside
         )
         return disk.t + delay, met_side, how
 

@@ -12,6 +12,7 @@ from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import NEVER, Acceleration
 from eventsim.formulas.rest import NOT_LAST, STRUCK, SUPPORTED, Held, held_by
 from eventsim.replay.windows import Windows
+from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
@@ -28,11 +29,11 @@ class DiskFlight:
     """
 
     __slots__ = (
-        "_boundaries", "_free", "_supports", "contact_time", "gx", "gy", "held", "low", "low_place", "met", "radius", "t",
-        "vx", "vy", "window", "wraps", "x", "y",
+        "_boundaries", "_free", "_supports", "_walls", "contact_time", "gx", "gy", "held", "low", "low_place", "met",
+        "radius", "sides", "t", "vx", "vy", "window", "wraps", "x", "y",
     )  # fmt: skip
 
-    def __init__(self, stage: Stage, number: int, immovable: bool) -> None:
+    def __init__(self, stage: Stage, number: int, immovable: bool, walls: Sides | None) -> None:
         self.window, self.t = 0, 0.0
         self.x, self.y = float(stage.x[number]), float(stage.y[number])
         self.vx, self.vy = float(stage.vx[number]), float(stage.vy[number])
@@ -48,6 +49,10 @@ class DiskFlight:
         self.met: Met = ()
         self.held: Held | None = None
         self.contact_time = -math.inf
+        self._walls = walls
+        self.sides: list[int] | None = None
+        if self._walls is not None:
+            self.sides = self._walls.at_start(self.x, self.y, self.vx, self.vy, self.radius)
 
     def place(self, t: float) -> tuple[float, float]:
         """Return the centre at remainder t of the present window."""
@@ -90,6 +95,28 @@ class DiskFlight:
         self.x, self.y = place
         self.vx, self.vy = speed
 
+    def keep_sides(
+        self,
+        t: float,
+        at: tuple[float, float],
+        leaves: tuple[float, float],
+        contacts: tuple[tuple[int, int], ...] = (),
+    ) -> None:
+        """Before the flight ends at a place, to go on with a velocity: keep on which sides of walls a point is."""
+        if self._walls is None or self.sides is None:
+            return
+        on = None
+        if self.held is not None and self.held.how == SUPPORTED and self._supports is not None:
+            support = self._supports[self.held.place]
+            on = None if support is None else (support, self.held.side)
+        flight = self.x, self.y, self.vx, self.vy, self.gx, self.gy
+        came = self.speed(t)
+        self.sides = self._walls.after(self.sides, self.met, on, flight, self.radius, t, at, came, leaves, contacts)
+
+    def side_beside(self, number: int) -> int | None:
+        """Return what a point close to a wall shape remembers of its side; None where no disk is a point."""
+        return None if self.sides is None or self._walls is None else self.sides[number - self._walls.first]
+
     def meet(self, met: Met) -> None:
         """Remember whom it met; what it rests on takes a part of its gravity, and anything else frees it."""
         self.met = met
@@ -124,6 +151,7 @@ class DiskFlight:
             self.window += 1
             begin = windows.begin[self.window]
             self.low_place = self.low_place_at(limit)
+            self.keep_sides(limit, self.place(limit), self.speed(limit))
             self.anchor(begin, self.place(limit), self.speed(limit))
             self.contact_time -= limit - begin
 
@@ -147,6 +175,10 @@ class DiskFlight:
         if low is not None:
             beyond = place[axis] - (length if step > 0 else 0.0)
             self.low_place = (low[0] + beyond, low[1]) if axis == 0 else (low[0], low[1] + beyond)
+        place[axis] = length if step > 0 else 0.0
+        self.keep_sides(t, (place[0], place[1]), self.speed(t))
+        if self._walls is not None and self.sides is not None:
+            self.sides = self._walls.wrapped(self.sides, axis, step)
         place[axis] = 0.0 if step > 0 else length
         self.anchor(t, (place[0], place[1]), self.speed(t))
         self.wraps[axis] += step

@@ -41,7 +41,8 @@ def expand_rows(provenance: Provenance, compact: Rows) -> Rows:
 
 
 def _expanded(expansion: Expansion, compact: Rows) -> Rows:
-    if len(compact) >= MANY_ROWS and expansion.stage.supports is None and has_compiler():
+    plain = expansion.stage.supports is None and not expansion.stage.points
+    if plain and len(compact) >= MANY_ROWS and has_compiler():
         return _expanded_by_kernels(expansion, compact)
     rows = compact.copy()
     numbers = expansion.numbers()

@@ -104,6 +104,7 @@ def demand_fit(snapshot: Snapshot, stage: Stage) -> None:
 def _demand_columns(snapshot: Snapshot, stage: Stage) -> None:
     """One number for each disk, finite, low parts where the stage has them; only who never met anybody did so at -inf."""
     low = {"low_vx": stage.low_parts, "low_vy": stage.low_parts, "low_x": stage.low_places, "low_y": stage.low_places}
+    low["sides"] = stage.points
     for item in fields(Snapshot):
         column = getattr(snapshot, item.name)
         if not isinstance(column, tuple):
@@ -111,6 +112,10 @@ def _demand_columns(snapshot: Snapshot, stage: Stage) -> None:
         if len(column) != (stage.n if low.get(item.name, True) else 0):
             raise ValueError(f"{item.name} has {len(column)} entries for {stage.n} disks")
         if item.name == "met":
+            continue
+        if item.name == "sides":
+            if not all(len(sides) == len(stage.features) and set(sides) <= {-2, -1, 0, 1, 2} for sides in column):
+                raise ValueError("a disk is on no side of a wall")
             continue
         values = np.array(column)
         whole = "int" in str(item.type)

@@ -15,10 +15,12 @@ from eventsim.formulas.doubt import tie_screen
 from eventsim.formulas.laws import Law, law_of
 from eventsim.formulas.low_place import Low
 from eventsim.formulas.motion import periods
-from eventsim.formulas.real import Real
+from eventsim.formulas.real import Real, is_float
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
-from eventsim.formulas.walls.shape import seen
+from eventsim.formulas.walls.point import is_point
+from eventsim.formulas.walls.post import is_post_to
+from eventsim.formulas.walls.shape import Thin, seen
 from eventsim.scene.clock import SceneClock, clock_of
 from eventsim.scene.disks import Floats
 from eventsim.scene.domain import Open
@@ -60,6 +62,7 @@ class Stage:
         boundaries: hard walls of the domain.
         features: shapes of the walls inside it; in a periodic domain with the images that disks can meet.
         supports: what boundaries and features, in this order, support disks with; None where no disk comes to rest.
+        points: whether disks are points to some walls, whose sides they have to remember (not where places have low parts).
         wall_names: the names that the walls have in an event log.
         corner: what to add to a position to have it on the scene's axes.
         start_time: what the scene's clock shows at remainder 0 of epoch 0.
@@ -86,6 +89,7 @@ class Stage:
     features: tuple[Feature, ...]
     surfaces: tuple[Boundary | Feature, ...]
     supports: tuple[Support | None, ...] | None
+    points: bool
     wall_names: tuple[str, ...]
     corner: Point
     start_time: float
@@ -126,9 +130,16 @@ class Stage:
         found = self.surfaces[surface]
         if isinstance(found, Boundary):
             return found.touching(x, y, radius)
+        if self.is_exact_hit(surface, radius):
+            return found.shape.x, found.shape.y
         if self.settles or (self.supports is not None and self.supports[surface] is not None):
             return found.shape.touching(side, x, y, radius)
         return x, y
+
+    def is_exact_hit(self, surface: int, radius: Real) -> bool:
+        """Whether a disk that meets this surface is a point that hits a post: it turns round, the limit of a central hit."""
+        found = self.surfaces[surface]
+        return is_float(radius) and self.points and not isinstance(found, Boundary) and is_post_to(found.shape, radius)
 
     @property
     def slopes(self) -> Floats:
@@ -160,7 +171,7 @@ def stage_of(scene: Scene) -> Stage:
     vx, vy = disks.velocity[:, 0].copy(), disks.velocity[:, 1].copy()
     size = domain.size
     boundaries, names = boundaries_of(domain)
-    features = features_of(scene.walls, float(disks.radius.max()), corner, domain.period, len(names))
+    features = features_of(scene.walls, float(disks.radius.max()), corner, domain.period, boundaries)
     restitution = scene.restitution
     law = law_of(None if restitution is None else (restitution.pair, restitution.wall), scene.contact_duration)
     lightest, heaviest = _extreme_masses(disks.mass)
@@ -192,6 +203,7 @@ def stage_of(scene: Scene) -> Stage:
         features=features,
         surfaces=(*boundaries, *features),
         supports=_supports(scene, boundaries, features, law.series() == 1.0, x, y),
+        points=not low_places and _has_points(features, float(disks.radius.min())),
         wall_names=(*names, *feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,
@@ -215,6 +227,10 @@ def _slowest(vx: Floats, vy: Floats) -> float:
     """The lowest speed of a disk that moves, 0 where none does; of its components the larger."""
     speeds = np.maximum(np.abs(vx), np.abs(vy))
     return float(speeds[speeds > 0.0].min(initial=math.inf)) if np.any(speeds > 0.0) else 0.0
+
+
+def _has_points(features: tuple[Feature, ...], least: float) -> bool:
+    return any(isinstance(one.shape, Thin) and is_point(least, one.shape.size) for one in features)
 
 
 def _corner(scene: Scene) -> Point:

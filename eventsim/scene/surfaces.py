@@ -10,21 +10,32 @@ import numpy as np
 
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
+from eventsim.formulas.walls.container import Container
 from eventsim.formulas.walls.face import TOUCHING, Face, face, is_in_line, slope
-from eventsim.formulas.walls.shape import Shape
+from eventsim.formulas.walls.point import end_of
+from eventsim.formulas.walls.post import Post
+from eventsim.formulas.walls.shape import Shape, Thin
 from eventsim.scene.disks import Floats
 from eventsim.scene.domain import BOUNDARY_NAMES, Channel, Domain, Open, Periodic
+from eventsim.scene.joints import joints_of
 from eventsim.scene.numbers import Point
 from eventsim.scene.walls import Wall
 from eventsim.scene.walls.wall import Bounds, shifts
 
 
 class Feature(NamedTuple):
-    """A shape, the number of the wall that it belongs to, and whether disks also meet an image of it."""
+    """A shape, the number of the wall that it belongs to, and whether disks also meet an image of it.
+
+    part, image: the number of the shape of which this is an image, and which.  corners: what makes corners with it at its ends
+    (`joints.Joints`), by number among the features.
+    """
 
     shape: Shape
     wall: int
     imaged: bool
+    part: int = 0
+    image: tuple[int, int] = (0, 0)
+    corners: tuple[int, int, int, int] = (0, 0, 0, 0)
 
 
 def boundaries_of(domain: Domain) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:
@@ -43,25 +54,72 @@ def boundaries_of(domain: Domain) -> tuple[tuple[Boundary, ...], tuple[str, ...]
 
 
 def features_of(
-    walls: Sequence[Wall], reach: float, corner: Point, period: tuple[float | None, float | None], first_wall: int
+    walls: Sequence[Wall],
+    reach: float,
+    corner: Point,
+    period: tuple[float | None, float | None],
+    boundaries: Sequence[Boundary],
 ) -> tuple[Feature, ...]:
-    """All shapes, in the order of the walls.
+    """All shapes, in the order of the walls; a point at which walls end has a post where it sticks out between them.
 
-    reach: the largest radius of a disk.  corner: of the domain.  first_wall: the number of the first wall.
+    reach: the largest radius of a disk.  corner: of the domain.  boundaries: of the domain, whose walls come first.
     """
-    features: list[Feature] = []
-    number = first_wall
+    found: list[Feature] = []
+    number, part = len(boundaries), 0
     along_x, along_y = (math.inf if length is None else length for length in period)
+    rough = 0.0
     for wall in walls:
         moves = [(0.0, 0.0)] if wall.holds else shifts(_bounds(wall), corner, (along_x, along_y), reach)
+        pieces: list[tuple[Shape, int]] = []
         for move_x, move_y in moves:
 
             def moved(p: Point, move: Point = (move_x, move_y)) -> Point:
                 return (p[0] - corner[0]) + move[0], (p[1] - corner[1]) + move[1]
 
-            features += [Feature(shape, number + part, len(moves) > 1) for shape, part in wall.pieces(moved)]
+            pieces = wall.pieces(moved)
+            image = round(move_x / along_x), round(move_y / along_y)
+            found += [
+                Feature(shape, number + owner, len(moves) > 1, part + k, image)
+                for k, (shape, owner) in enumerate(pieces)
+            ]
+        part += len(pieces)
         number += len(wall.parts(""))
-    return tuple(features)
+        rough = max(rough, *(piece.scale() for piece in wall.parts("") if not piece.curvature_radius()), 0.0)
+    return _joined(found, boundaries, rough)
+
+
+def moved_on(features: Sequence[Feature], step: tuple[int, int]) -> tuple[int, ...]:
+    """For each feature the number of the one whose place it takes once a disk has wrapped by (kx, ky); -1: there is none."""
+    number = {(one.part, one.image): k for k, one in enumerate(features)}
+    return tuple(number.get((one.part, (one.image[0] + step[0], one.image[1] + step[1])), -1) for one in features)
+
+
+def _joined(found: list[Feature], boundaries: Sequence[Boundary], rough: float) -> tuple[Feature, ...]:
+    """The same features, with what is at their ends; posts only where they can be met, and once."""
+    thin = [(k, one.shape) for k, one in enumerate(found) if isinstance(one.shape, Thin)]
+    posts = [(k, one.shape) for k, one in enumerate(found) if isinstance(one.shape, Post)]
+    containers = [one.shape for one in found if isinstance(one.shape, Container)]
+    joints = joints_of(
+        [shape for _, shape in thin], [(post.x, post.y) for _, post in posts], containers, boundaries, rough
+    )
+    shapes: dict[int, Shape | None] = {k: one.shape for k, one in enumerate(found)}
+    taken: set[Post | None] = {None}
+    for (k, _), post in zip(posts, joints.posts, strict=True):
+        shapes[k] = None if post in taken else post
+        taken.add(post)
+    for (k, shape), ends, beside in zip(thin, joints.ends, joints.beside, strict=True):
+        shapes[k] = shape.with_ends(ends, *beside)
+    number = {k: n for n, k in enumerate(k for k, shape in shapes.items() if shape is not None)}
+    corners = {
+        k: tuple((number[thin[abs(code) - 1][0]] + 1) * (1 if code > 0 else -1) if code else 0 for code in codes)
+        for (k, _), codes in zip(thin, joints.corners, strict=True)
+    }
+    none = 0, 0, 0, 0
+    return tuple(
+        found[k]._replace(shape=shape, corners=corners.get(k, none))  # type: ignore[arg-type]
+        for k, shape in shapes.items()
+        if shape is not None
+    )
 
 
 def _bounds(wall: Wall) -> Bounds:
@@ -102,6 +160,9 @@ def face_support(one: Face, faces: Sequence[Face], gravity: tuple[float, float])
     for begin, end in sorted(pieces, key=lambda piece: -piece[1]):
         if begin <= high + slack and end >= low - slack:
             low = min(low, begin)
+    first_sealed, second_sealed = (end_of(one.ends, second, 1)[1] for second in (False, True))
+    low = -math.inf if first_sealed and low == 0.0 else low  # nothing slides over an end on another wall
+    high = math.inf if second_sealed and high == one.along2 else high
     return Support(one, *slope(one, *gravity), low, high)
 
 

@@ -32,7 +32,10 @@ CUP = arc(5.0, 3.0, 2.0, -6.0, -1.0, 3.0)
 def test_an_arc_has_the_circle_through_its_points(points, sign):
     for size in (1.0, 2.0**-5):
         x0, y0, xm, ym, x1, y1 = (value * size for value in points)
-        assert arc(x0, y0, xm, ym, x1, y1) == (2.0 * size, -size, 5.0 * size, x0, y0, x1 - x0, y1 - y0, sign)
+        shape = arc(x0, y0, xm, ym, x1, y1)
+        assert (shape.x + shape.ux, shape.y + shape.uy) == (2.0 * size, -size)
+        assert (shape.radius, shape.low, shape.sign) == (5.0 * size, 0.0, sign)
+        assert (shape.x, shape.y, shape.ex, shape.ey) == (x0, y0, x1 - x0, y1 - y0)
 
 
 def test_a_normal_points_to_the_disk():

@@ -73,7 +73,7 @@ def test_kernels_know_every_shape():
 
     assert set(shapes.KINDS) == set(SHAPES)
     numbers = max(len(shape._fields) for shape in SHAPES)
-    assert 2 + numbers <= shapes.CENTER == shapes.WIDTH - 2
+    assert 2 + numbers <= shapes.CENTER == shapes.CORNERS - 2 == shapes.WIDTH - 6
 
 
 def test_stepped_engines_know_every_shape():

@@ -28,6 +28,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import forget_shapes
+from eventsim.engines.fast.sides import NOWHERE, keep_sides, keep_sides_behind
 from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.low_place import low_position, settled
 from eventsim.formulas.motion import position, velocity
@@ -138,13 +139,18 @@ def wrap(m, rules, i, code, t):
     if code >= WRAP_LEFT:  # the codes of x come first
         step = 1 if code == WRAP_RIGHT else -1
         _keep_beyond(2 * i, x - (rules.width if step > 0 else 0.0), m.low_places)
+        keep_sides(m, rules, i, t, pulls(m, rules, i), rules.width if step > 0 else 0.0, y, vx, vy, NOWHERE, 0, m.sides)
         x = 0.0 if step > 0 else rules.width
         store(m.disks, i * WORDS + WRAPS_X, word(m.disks, i * WORDS + WRAPS_X) + step)
     else:
         step = -1 if code == WRAP_DOWN else 1
         _keep_beyond(2 * i + 1, y - (rules.height if step > 0 else 0.0), m.low_places)
+        keep_sides(
+            m, rules, i, t, pulls(m, rules, i), x, rules.height if step > 0 else 0.0, vx, vy, NOWHERE, 0, m.sides
+        )
         y = 0.0 if step > 0 else rules.height
         store(m.disks, i * WORDS + WRAPS_Y, word(m.disks, i * WORDS + WRAPS_Y) + step)
+    keep_sides_behind(m, rules, i, code, m.sides)
     anchor(m, i, t, x, y, vx, vy)
     forget_shapes(m, rules, i, m.supports)
 

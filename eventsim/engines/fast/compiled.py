@@ -34,6 +34,7 @@ from eventsim.formulas import (
     real,
     rest,
 )
+from eventsim.formulas.walls import point
 from eventsim.record import events
 from eventsim.scene.walls import SHAPES
 
@@ -178,14 +179,20 @@ _THIS_PROCESS = uuid4().hex[:8]
 
 _CAREFUL = types.float64(*[types.float64] * 15)
 _careful = types.ExternalFunction("eventsim_careful_pair_delay", _CAREFUL)
+_HAND = types.float64(*[types.float64] * 8)
+_hand = types.ExternalFunction("eventsim_exact_hand", _HAND)
+LINKED = digits.careful_pair_delay, point.exact_hand
+"""Formulas that kernels call by their names."""
 
 
 @cache
 def link() -> Any:
     """Give kernels what they call by its name: compiled once, and not once more in every kernel; the owner of its memory."""
     careful = _kept(cfunc, digits.careful_pair_delay, _CAREFUL)
+    hand = _kept(cfunc, point.exact_hand, _HAND)
     binding.add_symbol(_careful.symbol, careful.address)
-    return careful
+    binding.add_symbol(_hand.symbol, hand.address)
+    return careful, hand
 
 
 @overload(digits.careful_pair_delay)
@@ -193,6 +200,11 @@ def _careful_pair_delay(xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x,
     return lambda xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side=1.0: _careful(
         xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side
     )
+
+
+@overload(point.exact_hand)
+def _exact_hand(x, y, vx, vy, gx, gy, px, py):
+    return lambda x, y, vx, vy, gx, gy, px, py: _hand(x, y, vx, vy, gx, gy, px, py)
 
 
 @overload(real.is_float, jit_options={"forceinline": True})
@@ -210,12 +222,12 @@ def _sqrt(x):  # without annotations: numba compares them with those of the lamb
 def _register(module: ModuleType, **options: Any) -> None:
     for function in vars(module).values():
         own = getattr(function, "__module__", None) == module.__name__
-        if own and callable(function) and not isinstance(function, type) and function is not digits.careful_pair_delay:
+        if own and callable(function) and not isinstance(function, type) and function not in LINKED:
             register_jitable(**options)(function)
 
 
 for _module in (motion, contact, doubt, impulse):
     _register(_module, forceinline=True, error_model="numpy")
 _shapes = [sys.modules[shape.__module__] for shape in SHAPES]
-for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, rest, *_shapes):
+for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, point, rest, *_shapes):
     _register(_module, error_model="numpy")

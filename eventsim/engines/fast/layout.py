@@ -55,7 +55,7 @@ MOST_DISKS = 1 << 25
 """So many records and buckets still have int32 places."""
 
 
-SUPPORT = 13
+SUPPORT = 21
 """Numbers in the table of supports for every wall: the acceleration along it, how far it goes, its face."""
 
 SUPPORT_X, SUPPORT_Y, SUPPORT_LOW, SUPPORT_HIGH, SUPPORT_FACE = 0, 1, 2, 3, 4
@@ -67,7 +67,8 @@ class Arrays(NamedTuple):
 
     disks: the records, and behind them the calendar's buckets and its waiting room.
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
-    parts of velocities, (vx, vy) each; low_places: those of places, (x, y) each.  levels: the table of `levels`.  rows: the
+    parts of velocities, (vx, vy) each; low_places: those of places, (x, y) each.  sides: of points, one number for each shape
+    (`scene.sides`); images: see `rules.images_of`.  levels: the table of `levels`.  rows: the
     log's buffer, bytes.
     """
 
@@ -81,6 +82,8 @@ class Arrays(NamedTuple):
     features: object
     levels: object
     supports: object
+    sides: object
+    images: object
     rows: object
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.advance import anchor, keep_low_place, place, speed, wrap
+from eventsim.engines.fast.advance import anchor, keep_low_place, place, pulls, speed, wrap
 from eventsim.engines.fast.calendar import (
     NO_DAY,
     bucket,
@@ -70,6 +70,7 @@ from eventsim.engines.fast.levels import home_of, level_of, place_in
 from eventsim.engines.fast.memory import pointer, real, store, word
 from eventsim.engines.fast.predict import predict
 from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
+from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.engines.fast.sunk import pair_may_be_sunk, wall_may_be_sunk
 
 
@@ -87,6 +88,8 @@ def pointers(a):
         pointer(a.features),
         pointer(a.levels),
         pointer(a.supports),
+        pointer(a.sides),
+        pointer(a.images),
         pointer(a.rows),
     )
 
@@ -262,5 +265,6 @@ def turn_over(arrays, grid, rules, end, shift):
         x, y = place(m, rules, i, end)
         vx, vy = speed(m, rules, i, end)
         keep_low_place(m, i, end, m.low_places)
+        keep_sides(m, rules, i, end, pulls(m, rules, i), x, y, vx, vy, NOWHERE, 0, m.sides)
         anchor(m, i, end - shift, x, y, vx, vy)
         store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - shift)

@@ -17,7 +17,7 @@ from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.order import along_a_curve
 from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortest_day
-from eventsim.engines.fast.rules import features_of, rules_of, supports_of
+from eventsim.engines.fast.rules import features_of, images_of, rules_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.clock import window_length
 from eventsim.formulas.doubt import screen_in
@@ -51,6 +51,7 @@ class Machine:
         self.rules = rules_of(stage)
         self._features = features_of(stage)
         self._supports = supports_of(stage)
+        self._images = images_of(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._buffers = Buffers()
         self._buffer = self._buffers.blank() if keep_rows else np.empty(0, ROW)
@@ -181,6 +182,8 @@ class Machine:
                 self._features,
                 self.grids.table(),
                 self._supports,
+                state.sides_in_memory,
+                self._images,
                 self._buffer.view(np.uint8) if self.keep_rows else None,
             )
             full = fill(self.arrays, self.grid, self.rules, now)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.advance import anchor, lay_on, place, settle, speed
+from eventsim.engines.fast.advance import anchor, lay_on, place, pulls, settle, speed
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import (
     AT_ONCE,
@@ -20,13 +20,16 @@ from eventsim.engines.fast.layout import (
     WALL,
     WORDS,
     T,
+    X,
+    Y,
 )
 from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.met import just_met, remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rest import is_support, launched, support_face
 from eventsim.engines.fast.rows import write_pair, write_wall
-from eventsim.engines.fast.shapes import WIDTH, laid_on_shape, shape_normal
+from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal
+from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
     contact_restitution,
@@ -42,6 +45,7 @@ from eventsim.formulas.real import sqrt
 from eventsim.formulas.rest import AT_ONCE as SERIES_AT_ONCE
 from eventsim.formulas.rest import is_still, rebound
 from eventsim.formulas.walls.face import face_normal
+from eventsim.formulas.walls.point import is_still_rising
 
 
 @inline
@@ -183,6 +187,8 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     xa, ya, xb, yb, dx, dy = _finely(m, rules, a, b, t, kx, ky, xa, ya, xb, yb, dx, dy, m.low_places)
     still = _are_still(m, rules, a, b, t, kx, ky, rules.still)
     ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)
+    keep_sides(m, rules, a, t, pulls(m, rules, a), xa, ya, ua, wa, NOWHERE, 0, m.sides)
+    keep_sides(m, rules, b, t, pulls(m, rules, b), xb, yb, ub, wb, NOWHERE, 0, m.sides)
     anchor(m, a, t, xa, ya, ua, wa)
     anchor(m, b, t, xb, yb, ub, wb)
     ux, uy = unwrapped_x(m, a, b, kx), unwrapped_y(m, a, b, ky)
@@ -271,9 +277,12 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         w = _across(2 * i + 1, w, float(side), e, m.low)
         wall = place_
     else:
-        u, w, wall = _against_shape(m, i, place_ - rules.first_feature, side, x, y, u, w, e, m.features, m.low)
+        x, y, u, w, wall = _against_shape(
+            m, rules, i, place_ - rules.first_feature, side, x, y, u, w, e, m.features, m.low
+        )
         x, y = _laid_on(m, rules, place_, side, x, y, r, rules.features, m.supports, rules.still)
     u, w = _rebound(m, rules, i, place_, side, u0, w0, u, w, e, m.supports)
+    keep_sides(m, rules, i, t, pulls(m, rules, i), x, y, u, w, place_, side, m.sides)
     anchor(m, i, t, x, y, u, w)
     remember(m, i, -2 - place_, side, 0)
     _note_time(m, rules, i, t, u == u0 and w == w0, still, SERIES_AT_ONCE if ends else rules.instant)
@@ -332,9 +341,18 @@ def _across(place_, v, side, e, low):
 
 
 @inline
-def _against_shape(m, i, k, side, x, y, u, w, e, features, low):
+def _against_shape(m, rules, i, k, side, x, y, u, w, e, features, low):
     if features is None:
-        return u, w, -1
+        return x, y, u, w, -1
+    x, y, u, w = _in_velocity(m, rules, i, k, side, x, y, u, w, e, low)
+    return x, y, u, w, int(real(features, WIDTH * k + 1))
+
+
+@inline
+def _in_velocity(m, rules, i, k, side, x, y, u, w, e, low):
+    """The place and velocity of a disk after contact with the k-th shape; low parts are set."""
+    if is_exact_hit(m, k, real(m.disks, i * REALS + RADIUS), m.sides):
+        return _turned_round(m, rules, i, k, u, w, e, low)
     nx, ny = shape_normal(m, i, k, side, x, y)
     if low is None:
         u, w, _ = wall_update(nx, ny, u, w, e)
@@ -342,4 +360,24 @@ def _against_shape(m, i, k, side, x, y, u, w, e, features, low):
         u, w, low_x, low_y, _ = careful_wall_update(nx, ny, u, w, real(low, 2 * i), real(low, 2 * i + 1), e)
         store(low, 2 * i, low_x)
         store(low, 2 * i + 1, low_y)
-    return u, w, int(real(features, WIDTH * k + 1))
+    return x, y, u, w
+
+
+@part
+def _turned_round(m, rules, i, k, u, w, e, low):
+    """The same for a point that hits a post."""
+    f, s = i * REALS, WIDTH * k
+    x, y = real(m.features, s + CENTER), real(m.features, s + CENTER + 1)
+    gx, gy = pulls(m, rules, i)
+    if is_still_rising(real(m.disks, f + X), real(m.disks, f + Y), gx, gy, x, y, u, w):
+        return x, y, u, w
+    _shrink(2 * i, e, low)
+    _shrink(2 * i + 1, e, low)
+    return x, y, -(e * u), -(e * w)
+
+
+@inline
+def _shrink(at, e, low):
+    """Turn a low part round with its velocity."""
+    if low is not None:
+        store(low, at, -(e * real(low, at)))

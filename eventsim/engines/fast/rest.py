@@ -32,7 +32,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.met import side_met
-from eventsim.engines.fast.shapes import face_at, is_straight, lies_on
+from eventsim.engines.fast.shapes import beside, face_at, is_passed, is_straight, lies_on
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import (
     LEFT,
@@ -46,6 +46,7 @@ from eventsim.formulas.rest import (
     slide_delay,
 )
 from eventsim.formulas.walls.face import face_side
+from eventsim.formulas.walls.point import side_known
 
 
 @inline
@@ -101,18 +102,22 @@ def shape_rest(m, rules, i, k):
             return slide_delay(line, low, high, x, y, vx, vy, ax, ay), word(m.disks, w + MET_KX), LEFT
         if (how == SUPPORTED or is_straight(m, k)) and lies_on(m, k, line):
             return NEVER, 0, LEFT
+        if how == SUPPORTED and is_passed(m, k, line, word(m.disks, w + MET_KX)):
+            return NEVER, 0, LEFT
     if not is_support(m, place):
         return NEVER, 0, STRUCK
     low, high = real(m.supports, SUPPORT * place + SUPPORT_LOW), real(m.supports, SUPPORT * place + SUPPORT_HIGH)
     face = support_face(m, place)
     side = side_met(m, i, place)
+    close = beside(m, rules, i, k, m.sides)
+    side = side_known(side, close)
     if side == 0:
         side = face_side(face, x, y, vx, vy)
     restitution, since = _series(rules.wall_restitution, rules.duration), _since_met(m, i, place)
     delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t, since)
     if delay < NEVER:
         return delay, side, SUPPORTED
-    return NEVER if since < 0.0 else hop_on_face_delay(face, side, x, y, vx, vy, ax, ay, since), side, STRUCK
+    return NEVER if since < 0.0 else hop_on_face_delay(face, side, x, y, vx, vy, ax, ay, since, r, close), side, STRUCK
 
 
 @part

@@ -127,6 +127,8 @@ class Retracer:
             low_places=self.state.low_of_places.reshape(-1) if self.state.low_places else None,
             features=self._features,
             levels=None,
+            sides=None,  # as are those with points
+            images=None,
             supports=None,  # scenes in which disks come to rest are left to `eventsim.replay.compact`
             rows=self._rows,
         )

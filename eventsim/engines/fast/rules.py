@@ -5,14 +5,19 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
-from eventsim.engines.fast.shapes import CENTER, KINDS, WIDTH
+from eventsim.engines.fast.shapes import CENTER, CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
 from eventsim.engines.reference.sunk import can_sink
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
+from eventsim.scene.surfaces import moved_on
+
+STEPS = (1, 0), (-1, 0), (0, 1), (0, -1)
+"""Wraps, in the order of `images_of`."""
 
 
 def rules_of(stage: Stage) -> Rules:
@@ -48,7 +53,7 @@ def rules_of(stage: Stage) -> Rules:
 
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
-    asked = [keep_rows, stage.low_parts, stage.low_places, grids.sizes is not None]
+    asked = [keep_rows, stage.low_parts, stage.low_places, stage.points, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
     needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted]
@@ -60,11 +65,25 @@ def features_of(stage: Stage) -> Floats | None:
     if not stage.features:
         return None
     table = np.zeros((len(stage.features), WIDTH))
-    for row, (shape, wall, _) in zip(table, stage.features, strict=True):
-        row[0], row[1] = KINDS.index(type(shape)), wall
+    for row, feature in zip(table, stage.features, strict=True):
+        shape = feature.shape
+        row[0], row[1] = KINDS.index(type(shape)), feature.wall
         numbers = tuple(shape.at_origin() if stage.low_places else shape)  # every shape is a tuple of numbers
         row[2 : 2 + len(numbers)] = numbers
-        row[CENTER:] = shape.x, shape.y
+        row[CENTER:CORNERS] = shape.x, shape.y
+        row[CORNERS:] = feature.corners
+    return table.reshape(-1)
+
+
+def images_of(stage: Stage) -> NDArray[np.int32] | None:
+    """For wraps to the right, left, top and bottom: from which shape each takes over the sides of points."""
+    if not stage.points or not stage.periodic:
+        return None
+    table = np.full((4, len(stage.features)), -1, np.int32)
+    for row, step in zip(table, STEPS, strict=True):
+        for k, image in enumerate(moved_on(stage.features, (-step[0], -step[1]))):
+            if image >= 0:
+                row[image] = k
     return table.reshape(-1)
 
 

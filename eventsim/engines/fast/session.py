@@ -385,6 +385,7 @@ class FastSession(Session):
             window_rows=s.window_rows,
             now=s.now,
             met=tuple(s.met[i] for i in range(s.n)),
+            sides=s.sides_of_all(),
             **{name: tuple(getattr(s, name).every().tolist()) for name in self._columns},
         )
 
@@ -411,6 +412,7 @@ class FastSession(Session):
         for i, met in enumerate(saved.met):
             if met:
                 s.met[i] = met
+        s.set_sides(saved.sides)
 
     def _begin(self) -> None:
         """Go to the beginning, where all but the flights is zero."""

@@ -6,12 +6,13 @@ import math
 
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import CONTACT_TIME, REALS, T
-from eventsim.engines.fast.memory import real
+from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.met import side_met
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.walls.arc import Arc, arc_delay, arc_touching
+from eventsim.formulas.walls.arc import Arc, arc_delay, arc_normal, arc_touching
 from eventsim.formulas.walls.container import Container, container_delay, container_touching
-from eventsim.formulas.walls.face import Face, face_delay, face_normal, face_touching, is_in_line
+from eventsim.formulas.walls.face import Face, face_delay, face_normal, face_touching, hangs_below, is_in_line
+from eventsim.formulas.walls.point import is_point
 from eventsim.formulas.walls.post import Post, post_delay, post_normal, post_touching
 
 KINDS = (Face, Post, Container, Arc)
@@ -19,9 +20,15 @@ KINDS = (Face, Post, Container, Arc)
 
 FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
 
-WIDTH, CENTER = 13, 11
+WIDTH, CENTER, CORNERS = 25, 19, 21
 """Numbers in a row: the kind, the number of the wall, then the shape's own; where the point (x, y) that it is told from is, which
-for its own numbers is the origin where places have low parts."""
+for its own numbers is the origin where places have low parts; what makes corners with it (`Feature.corners`)."""
+
+END_X, END_Y, SIZE, ENDS = 11, 12, 13, 14
+"""Where the second end of faces and arcs is, what their size is, and what their ends are to points; the first end is CENTER."""
+
+POST_SIZE = 8
+"""Where the size of a post is."""
 
 
 @inline
@@ -37,13 +44,29 @@ def face_at(numbers, k):
         real(numbers, k + 6),
         real(numbers, k + 7),
         real(numbers, k + 8),
+        real(numbers, k + 9),
+        real(numbers, k + 10),
+        real(numbers, k + 11),
+        real(numbers, k + 12),
+        real(numbers, k + 13),
+        real(numbers, k + 14),
+        real(numbers, k + 15),
+        real(numbers, k + 16),
     )
 
 
 @inline
 def post_at(numbers, k):
     """The post whose numbers begin at number k of a table."""
-    return Post(real(numbers, k), real(numbers, k + 1))
+    return Post(
+        real(numbers, k),
+        real(numbers, k + 1),
+        real(numbers, k + 2),
+        real(numbers, k + 3),
+        real(numbers, k + 4),
+        real(numbers, k + 5),
+        real(numbers, k + 6),
+    )
 
 
 @inline
@@ -64,7 +87,24 @@ def arc_at(numbers, k):
         real(numbers, k + 5),
         real(numbers, k + 6),
         real(numbers, k + 7),
+        real(numbers, k + 8),
+        real(numbers, k + 9),
+        real(numbers, k + 10),
+        real(numbers, k + 11),
+        real(numbers, k + 12),
+        real(numbers, k + 13),
+        real(numbers, k + 14),
+        real(numbers, k + 15),
+        real(numbers, k + 16),
     )
+
+
+@inline
+def beside(m, rules, i, k, sides):
+    """What disk i, if it is a point close to the k-th shape, remembers of its side; None where no disk is a point."""
+    if sides is None:
+        return None
+    return word(sides, i * rules.features + k)
 
 
 @part
@@ -72,7 +112,8 @@ def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
     touches = _touches(m, i, place, rules.still)
     faces, posts, containers, arcs = rules.shapes
-    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches)
+    close = beside(m, rules, i, k, m.sides)
+    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches, close)
 
 
 @inline
@@ -85,20 +126,20 @@ def _touches(m, i, place, still):
 
 
 @inline
-def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches):
+def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches, close):
     met = side_met(m, i, place)
     row = m.features
     s = WIDTH * k
     kind = real(row, s)
     x, y = _seen_from(m, i, s, x, y, m.low_places)
     if faces is not None and kind == FACE:
-        return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
+        return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     if posts is not None and kind == POST:
-        return post_delay(post_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
+        return post_delay(post_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     if containers is not None and kind == CONTAINER:
-        return container_delay(container_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
+        return container_delay(container_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     if arcs is not None and kind == ARC:
-        return arc_delay(arc_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches)
+        return arc_delay(arc_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     return NEVER, 0
 
 
@@ -137,8 +178,10 @@ def shape_normal(m, i, k, side, x, y):
     x, y = _seen_from(m, i, s, x, y, m.low_places)
     if kind == FACE:
         return face_normal(face_at(row, s + 2), side, x, y)
-    if kind in (POST, CONTAINER, ARC):  # round things are alike
-        return post_normal(post_at(row, s + 2), side, x, y)
+    if kind == ARC:
+        return arc_normal(arc_at(row, s + 2), side, x, y)
+    if kind in (POST, CONTAINER):  # these are alike
+        return post_normal(Post(real(row, s + 2), real(row, s + 3), 0.0, 0.0, 0.0, 0.0, 0.0), side, x, y)
     return math.nan, math.nan
 
 
@@ -150,8 +193,26 @@ def lies_on(m, k, line):
     kind = real(row, s)
     x, y = real(row, s + 2), real(row, s + 3)
     if kind == FACE:
-        return is_in_line(line, x, y) and is_in_line(line, x + real(row, s + 4), y + real(row, s + 5))
+        return is_in_line(line, x, y) and is_in_line(line, real(row, s + END_X), real(row, s + END_Y))
     return kind == POST and is_in_line(line, x, y)
+
+
+@inline
+def is_passed(m, k, line, side):
+    """Whether the k-th shape is a face that a disk passes which slides on a side of a line."""
+    row, s = m.features, WIDTH * k
+    if real(row, s) != FACE:
+        return False
+    return hangs_below(line, side, real(row, s + 2), real(row, s + 3), real(row, s + END_X), real(row, s + END_Y))
+
+
+@inline
+def is_exact_hit(m, k, radius, sides):
+    """Whether the k-th shape is a post and a disk of this radius a point to it."""
+    if sides is None:
+        return False
+    s = WIDTH * k
+    return real(m.features, s) == POST and is_point(radius, real(m.features, s + POST_SIZE))
 
 
 @inline

@@ -43,6 +43,7 @@ from eventsim.engines.turnover import Anchors
 from eventsim.errors import EventsimError
 from eventsim.formulas.rest import SUPPORTED, held_by
 from eventsim.record.events import Floats
+from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
 LINE, PAGE = 64, 4096
@@ -77,6 +78,14 @@ class Column:
     def set_all(self, values: Any) -> None:
         """Set the numbers of all disks."""
         self._values[self._place_of] = values
+
+
+class SidesColumn(Column):
+    """The sides of walls that every point is on, a list for each disk."""
+
+    def __getitem__(self, i: int) -> list[int]:
+        sides: list[int] = self._values[self._place_of[i]].tolist()
+        return sides
 
 
 class CountColumn(Column):
@@ -225,6 +234,12 @@ class FastState(EngineState):
         self.low_of_places: Floats = np.zeros((n if stage.low_places else 0, 2))
         self.low_x, self.low_y = (Column(self.low_of_places[:, axis], self.place_of) for axis in (0, 1))
         self.supports = stage.supports
+        self._radius = stage.radius.tolist()
+        self.sides = self.sides_in_memory = None
+        if stage.points:
+            self._walls = Sides(stage)
+            self.sides_in_memory = np.zeros(n * len(self._walls), np.int32)
+            self.sides = SidesColumn(self.sides_in_memory.reshape(n, -1), self.place_of)
         self.gravity_x, self.gravity_y = AccelerationColumn(self, 0, stage), AccelerationColumn(self, 1, stage)
         self.epoch_length = stage.epoch_length
 

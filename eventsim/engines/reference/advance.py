@@ -19,11 +19,14 @@ def wrap(state: EngineState, cells: Cells | None, event: Event, length: float) -
         along, at = (state.low_x, x) if axis == 0 else (state.low_y, y)
         along[i] += at - (length - entry)
     if axis == 0:
+        state.keep_sides(i, t, (length - entry, y), (vx, vy))
         x = entry
         state.wraps_x[i] += step
     else:
+        state.keep_sides(i, t, (x, length - entry), (vx, vy))
         y = entry
         state.wraps_y[i] += step
+    state.keep_sides_behind(i, axis, step)
     state.anchor(i, t, x, y, vx, vy)
     if state.support_of(i) is None:  # on this side of the domain it can meet the shape again that it met last
         state.met[i] = tuple(met for met in state.met[i] if met[0] >= -state.boundaries)

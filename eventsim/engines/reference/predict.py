@@ -204,9 +204,10 @@ class Predictor:
         held = None if state.supports is None else held_by(state.met[i])
         since = state.since_met(i, -1 - place)
         touches = self._settles and bool(since == 0.0)
+        beside = state.side_beside(i, place)
         e, t = self._series_restitution, state.t[i]
         delay, side, how = shape_contact(
-            state.supports, held, place, shape, flight, self._radius[i], met, e, t, since, touches
+            state.supports, held, place, shape, flight, self._radius[i], met, e, t, since, touches, beside
         )
         if delay < NEVER:
             self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, how), state.count[i], 0))

@@ -18,6 +18,7 @@ from eventsim.formulas.low_place import Low, apart
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.rest import STRUCK, launch, rebound
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
+from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
 
@@ -79,6 +80,7 @@ class Resolver:
         x, y = state.place(i, t)
         before = state.speed(i, t)
         self._rests.free(i, t)
+        state.keep_sides(i, t, (x, y), (vx, vy))
         state.anchor(i, t, x, y, vx, vy)
         state.forget_low_parts(i)
         state.meet(i, ())
@@ -106,6 +108,8 @@ class Resolver:
             ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
         self._rests.free(a, t)
         self._rests.free(b, t)
+        state.keep_sides(a, t, (xa, ya), (ua, wa))
+        state.keep_sides(b, t, (xb, yb), (ub, wb))
         state.anchor(a, t, xa, ya, ua, wa)
         state.anchor(b, t, xb, yb, ub, wb)
         state.meet(a, (self._met(event, a),))
@@ -149,7 +153,10 @@ class Resolver:
         still = not series and self._instants.is_still(i, t)
         restitution = self._restitution(stage.law.wall, t, i, i)
         again = self._launched(i, place, side)
-        if again > 0.0:
+        if stage.is_exact_hit(place, self._radius[i]):
+            x, y = self._place_on(place, side, i, x, y)
+            u, w = self._turned_round(i, x, y, u, w, restitution)
+        elif again > 0.0:
             u, w = rebound(*stage.normal(place, side, x, y), u, w, restitution * again)
         elif state.low_parts:
             u, w = self._careful_wall(i, *stage.normal(place, side, x, y, state.low_place(i, t)), restitution)
@@ -161,6 +168,7 @@ class Resolver:
             w, _ = flat_update(w, boundary.side, restitution)
         x, y = self._place_on(place, side, i, x, y)
         self._rests.free(i, t)
+        state.keep_sides(i, t, (x, y), (u, w), ((place, side),))
         state.anchor(i, t, x, y, u, w)
         state.meet(i, (self._met(event, i),))
         self._instants.note(i, t, (u, w) == before, still, series and self._instants.ends(place))
@@ -179,6 +187,16 @@ class Resolver:
         if not fall < 0.0:
             return 0.0
         return launch(nx * state.vx[i] + ny * state.vy[i], fall, state.since_met(i, -1 - place))
+
+    def _turned_round(self, i: int, x: Real, y: Real, u: Real, w: Real, restitution: Real) -> tuple[Real, Real]:
+        """The velocity of disk i, a point, after it has hit the post at (x, y)."""
+        state = self._state
+        if is_still_rising(state.x[i], state.y[i], state.gravity_x[i], state.gravity_y[i], x, y, u, w):
+            return u, w
+        if state.low_parts:
+            low = state.low_vx[i], state.low_vy[i]
+            state.low_vx[i], state.low_vy[i] = -(restitution * low[0]), -(restitution * low[1])
+        return -(restitution * u), -(restitution * w)
 
     def _careful_wall(self, i: int, nx: Real, ny: Real, restitution: Real) -> tuple[Real, Real]:
         """The velocity of disk i after contact with a wall; its low part is set."""
@@ -211,6 +229,8 @@ class Resolver:
                 contacts.append(JointContact(a, b, dx, dy, e))
             else:
                 nx, ny = stage.normal(-1 - event.b, event.image[0], *at[a], low[a])
+                if stage.is_exact_hit(-1 - event.b, self._radius[event.a]):
+                    nx, ny = (-before[a][0], -before[a][1]) if any(before[a]) else (0.0, 1.0)
                 e = self._restitution(stage.law.wall, t, event.a, event.a)
                 contacts.append(JointContact(a, None, nx, ny, e))
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
@@ -226,7 +246,10 @@ class Resolver:
                 if component[k].a == i and component[k].b < 0:
                     x, y = self._place_on(-1 - component[k].b, component[k].image[0], i, x, y)
             self._rests.free(i, t)
-            state.anchor(i, t, x, y, *outcome.velocities[number[i]])
+            own = [component[k] for k in active if component[k].a == i and component[k].b < 0]
+            leaves = outcome.velocities[number[i]]
+            state.keep_sides(i, t, (x, y), leaves, tuple((-1 - event.b, event.image[0]) for event in own))
+            state.anchor(i, t, x, y, *leaves)
             state.forget_low_parts(i)
             state.meet(i, tuple(self._met(component[k], i) for k in active if i in component[k][2:4]))
             self._instants.note(i, t, False, still)
@@ -265,9 +288,7 @@ class Resolver:
         ky = event.image[1] + state.wraps_y[event.a] - state.wraps_y[event.b]
         return (event.b, kx, ky) if i == event.a else (event.a, -kx, -ky)
 
-    def _apart(
-        self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real, low_a: Low, low_b: Low
-    ) -> tuple[Real, Real]:
+    def _apart(self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real, low_a: Low, low_b: Low) -> tuple[Real, Real]:
         """The vector from b (its image) to a; low_a, low_b: the low parts of their places."""
         return apart((xa, ya), (xb, yb), self._stage.shifts(event.image), low_a, low_b)
 

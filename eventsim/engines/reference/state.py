@@ -13,11 +13,13 @@ from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Acceleration, Real
 from eventsim.formulas.rest import NOT_LAST, STRUCK, SUPPORTED, Support, held_by
+from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
 """Whom a disk met last: (disk, image kx, ky), or (-1 - place of the wall shape, side, STRUCK, SUPPORTED or LEFT); several after
 a joint contact."""
+
 
 class EngineState:
     """The flights of n disks as lists of numbers; only advance and resolve change them.
@@ -57,6 +59,12 @@ class EngineState:
         self.supports, self.boundaries = stage.supports, len(stage.boundaries)
         if stage.supports is not None:
             self.gravity_x, self.gravity_y = list(self._free_x), list(self._free_y)
+        self.sides: Any = None
+        self._radius: list[float] = stage.radius.tolist()
+        if stage.points and number is float:
+            self._walls = Sides(stage)
+            self.sides = [[0] * len(self._walls) for _ in range(n)]
+            self.set_sides(())
         self.now: Real = number(0.0)
         self.epoch = 0
         self.epoch_length = stage.epoch_length
@@ -104,6 +112,48 @@ class EngineState:
         """Begin a new flight of disk i; all predictions that rest on the old one are stale from here on."""
         self.t[i], self.x[i], self.y[i], self.vx[i], self.vy[i] = t, x, y, vx, vy
         self.count[i] += 1
+
+    def sides_of_all(self) -> tuple[tuple[int, ...], ...]:
+        """What all disks remember of sides of walls; nothing where none is a point."""
+        return () if self.sides is None else tuple(tuple(self.sides[i]) for i in range(self.n))
+
+    def set_sides(self, sides: tuple[tuple[int, ...], ...]) -> None:
+        """Let all disks remember that; nothing: what their places tell."""
+        if self.sides is not None:
+            for i in range(self.n):
+                flight = self.x[i], self.y[i], self.vx[i], self.vy[i]
+                self.sides[i] = list(sides[i]) if sides else self._walls.at_start(*flight, self._radius[i])
+
+    def keep_sides(
+        self,
+        i: int,
+        t: Real,
+        at: tuple[Real, Real],
+        leaves: tuple[Real, Real],
+        contacts: tuple[tuple[int, int], ...] = (),
+    ) -> None:
+        """Before its flight ends at a place, to go on with a velocity: keep on which sides of walls disk i is, if it is a point.
+
+        contacts: walls that it meets there, (place, side).
+        """
+        if self.sides is None:
+            return
+        support, held = self.support_of(i), held_by(self.met[i])
+        on = None if support is None or held is None else (support, held.side)
+        flight = self.x[i], self.y[i], self.vx[i], self.vy[i], self.gravity_x[i], self.gravity_y[i]
+        came = self.speed(i, t)
+        self.sides[i] = self._walls.after(
+            self.sides[i], self.met[i], on, flight, self._radius[i], t, at, came, leaves, contacts
+        )
+
+    def keep_sides_behind(self, i: int, axis: int, step: int) -> None:
+        """Keep the sides of a point that has passed a periodic boundary."""
+        if self.sides is not None:
+            self.sides[i] = self._walls.wrapped(self.sides[i], axis, step)
+
+    def side_beside(self, i: int, place: int) -> int | None:
+        """What disk i, if it is a point close to a wall shape, remembers of its side; None where no disk is a point."""
+        return None if self.sides is None else int(self.sides[i][place - self._walls.first])
 
     def forget_low_parts(self, i: int) -> None:
         """From here on the velocity of disk i is a float."""
@@ -158,6 +208,7 @@ class EngineState:
             vx, vy = self.speed(i, end)
             if (low := self.low_place(i, end)) is not None:
                 self.low_x[i], self.low_y[i] = low
+            self.keep_sides(i, end, (x, y), (vx, vy))
             self.anchor(i, end - shift, x, y, vx, vy)
             self.contact_time[i] = self.contact_time[i] - shift
         self.now = end - shift
@@ -203,6 +254,7 @@ class EngineState:
             low_vy=tuple(self.low_vy),
             low_x=tuple(self.low_x),
             low_y=tuple(self.low_y),
+            sides=self.sides_of_all(),
         )
 
     def restore(self, saved: Snapshot) -> None:
@@ -216,6 +268,7 @@ class EngineState:
         self.met, self.contact_time, self.at_once = list(saved.met), list(saved.contact_time), list(saved.at_once)
         self.low_vx, self.low_vy = list(saved.low_vx), list(saved.low_vy)
         self.low_x, self.low_y = list(saved.low_x), list(saved.low_y)
+        self.set_sides(saved.sides)
         self.count = [count + 1 for count in self.count]
         if self.supports is not None:
             for i in range(self.n):

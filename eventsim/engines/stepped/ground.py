@@ -22,7 +22,7 @@ KINDS = (Face, Post, Container, Arc)
 FACE, POST, CONTAINER, ARC, BOUNDARY = range(5)
 """Kinds of walls: the shapes by their places in KINDS, and a side of the domain."""
 
-WIDTH = 9
+WIDTH = 17
 """Numbers of the shape that has most."""
 
 
@@ -66,9 +66,13 @@ def nearest(kind: int, w: Any, x: float, y: float) -> tuple[float, float, float]
             return w[2], 0.0, w[2] * (x - w[1])
         return 0.0, w[2], w[2] * (y - w[1])
     if kind == FACE:
-        return face_nearest(Face(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8]), x, y)
+        return face_nearest(
+            Face(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8], w[9], w[10], w[11], 0.0, 0.0, 0.0, 0.0, 0.0), x, y
+        )
     if kind == POST:
         return post_nearest(Post(w[0], w[1]), x, y)
     if kind == CONTAINER:
         return container_nearest(Container(w[0], w[1], w[2]), x, y)
-    return arc_nearest(Arc(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7]), x, y)
+    return arc_nearest(
+        Arc(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8], w[9], w[10], w[11], 0.0, 0.0, 0.0, 0.0, 0.0), x, y
+    )

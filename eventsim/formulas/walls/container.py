@@ -36,6 +36,7 @@ class Container(NamedTuple):
         radius: Real,
         met: int,
         touches: bool = False,
+        beside: int | None = None,
     ) -> tuple[Real, int]:
         """(delay, -1) of the next contact with the container from inside."""
         if gx is None:

@@ -8,7 +8,7 @@ its place says on which side it is.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Protocol, Self
+from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
 
 from eventsim.formulas.low_place import Low
 from eventsim.formulas.real import Acceleration, Real
@@ -47,11 +47,13 @@ class Shape(Protocol):
         radius: Real,
         met: int,
         touches: bool = False,
+        beside: int | None = None,
     ) -> tuple[Real, int]:
         """(delay, side) of the next contact of a disk; met: the side last met, 0 if another contact came since.
 
         touches: the flight, under gravity, begins on contact with that side, wherever rounding has put the disk: then no bounce
-        is too low for the digits of its place.
+        is too low for the digits of its place.  beside: of a point that is close to a thin
+        wall its side, 2 or -2 in a corner; 0: its place tells; None: no disk of the scene is a point.
         """
 
     def normal(self, side: int, x: Real, y: Real) -> tuple[Real, Real]:
@@ -80,6 +82,63 @@ class Shape(Protocol):
 
     def in_numbers(self, number: Callable[[float], Real]) -> Self:
         """The same shape in other numbers than floats."""
+
+
+@runtime_checkable
+class Thin(Shape, Protocol):
+    """A wall that is hard on both sides, with two ends: points that are close to it have to remember on which side they are."""
+
+    @property
+    def size(self) -> float:
+        """Of its coordinates."""
+
+    @property
+    def x1(self) -> float:
+        """Where its second end is, along x; the first is the point (x, y)."""
+
+    @property
+    def y1(self) -> float:
+        """The same along y."""
+
+    @property
+    def ends(self) -> float:
+        """What its ends are to points (`walls.point`)."""
+
+    def side(self, x: Real, y: Real, vx: Real, vy: Real) -> int:
+        """The side that a centre is on; exactly on the wall, or its continuation, the one that it moves to."""
+
+    def distance(self, x: Real, y: Real) -> Real:
+        """About the distance of a centre from the wall or its continuation, where it is close."""
+
+    def rate(self, x: Real, y: Real, vx: Real, vy: Real) -> Real:
+        """Above 0 where a velocity leads to the side +1."""
+
+    def side_after(
+        self,
+        before: int,
+        beside: int,
+        x: Real,
+        y: Real,
+        vx: Real,
+        vy: Real,
+        gx: Acceleration,
+        gy: Acceleration,
+        radius: Real,
+        px: Real,
+        py: Real,
+        u: Real,
+        w: Real,
+    ) -> int:
+        """The side of a point close to the wall after a flight from (x, y), where it was on a side, to (px, py), (u, w) there.
+
+        beside: what it remembered.
+        """
+
+    def with_ends(self, ends: float, first: tuple[float, float], second: tuple[float, float]) -> Self:
+        """The same wall, with what its ends are to points, and directions from there along what makes corners with it."""
+
+    def edge(self, second: bool) -> tuple[float, float, float, float, int]:
+        """(x, y, ax, ay, side) of an end: from there, along the wall, and the side that is on the left of that."""
 
 
 Seen = tuple[Shape, Real, Real]

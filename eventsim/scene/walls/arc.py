@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +19,9 @@ from eventsim.scene.walls.wall import Bounds, Part, distances
 
 FULL_TURN_POINTS = 240
 """Points on a whole circle: on a picture 1000 pixels wide the chords are off by less than a tenth of a pixel."""
+
+FLATTEST = 2.0**-48
+"""A bulge below this part of the coordinates, 16 units in their last place, is rounding: the arc might bend the other way."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,40 +46,39 @@ class Arc(Part):
         return [(numbers.arc(*start, *through, *end), 0), (Post(*start), 0), (Post(*end), 0)]
 
     def shape_problems(self) -> Iterator[str]:
-        """Its points determine a circle that floats can hold."""
+        """Its points determine a circle that floats can hold, and their digits its bulge."""
         center, radius = circle_through(self.start, self.through, self.end)
         chords = math.dist(self.start, self.through), math.dist(self.through, self.end)
+        points = f"start {self.start}, through {self.through} and end {self.end}"
         if not (is_place(center) and is_length(radius) and min(chords) >= SHORTEST):
             yield (
-                f": start {self.start}, through {self.through} and end {self.end} do not determine a circle:"
-                " they must be three points that are not on a line (use a segment)"
+                f": {points} do not determine a circle: they must be three points that are not on a line (use a segment)"
             )
-
-    def curvature_radius(self) -> float:
-        """The radius of its circle."""
-        return circle_through(self.start, self.through, self.end)[1]
+        elif bulge(self.start, self.through, self.end) < FLATTEST * self.scale():
+            yield f": {points} are on a line, but for the last digits: the bulge of an arc must be above these (use a segment)"
 
     def bounds(self) -> Bounds:
-        """The rectangle of its whole circle."""
+        """The rectangle of its whole circle; of an arc of less than a half, that of its ends, wider by its bulge."""
+        shape = numbers.arc(*self.start, *self.through, *self.end)
+        if numbers.is_minor(shape):
+            half, r = 0.5 * math.hypot(shape.ex, shape.ey), shape.radius
+            wide = half * (half / (r + math.sqrt(max((r - half) * (r + half), 0.0))))
+            (x0, x1), (y0, y1) = (sorted((self.start[k], self.end[k])) for k in (0, 1))
+            return (x0 - wide, y0 - wide), (x1 + wide, y1 + wide)
         (x, y), r = circle_through(self.start, self.through, self.end)
         return (x - r, y - r), (x + r, y + r)
 
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
         """How deep disks at `position` (M, 2) of a `radius` reach into it, (M,)."""
-        center, size = circle_through(self.start, self.through, self.end)
-        from_center = distances(position, center)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            scale = np.where(from_center > 0.0, size / from_center, 0.0)
-        # The nearest point of the whole circle is on the arc if it is on the same side of the chord as `through`.
-        foot_x = center[0] + (position[:, 0] - center[0]) * scale - self.start[0]
-        foot_y = center[1] + (position[:, 1] - center[1]) * scale - self.start[1]
-        chord_x, chord_y = self.end[0] - self.start[0], self.end[1] - self.start[1]
-        through_x, through_y = self.through[0] - self.start[0], self.through[1] - self.start[1]
-        turn = chord_x * through_y - chord_y * through_x
-        # only the sign of turn, whose product with another area may be no float
-        on_arc = (chord_x * foot_y - chord_y * foot_x) * np.sign(turn) >= 0.0
+        shape = numbers.arc(*self.start, *self.through, *self.end)
+        px, py = position[:, 0] - shape.x, position[:, 1] - shape.y
+        from_center = np.hypot(px - shape.ux, py - shape.uy)
+        excess = (px * px + py * py) - 2.0 * (px * shape.ux + py * shape.uy)  # nothing cancels where the arc is nearly flat
+        gap = np.abs(excess) / (from_center + shape.radius)
+        first, second = (way(shape, position[:, 0], position[:, 1]) >= 0.0 for way in (numbers.from_start, numbers.from_end))
+        on_arc = first & second if numbers.is_minor(shape) else first | second
         ends = np.minimum(distances(position, self.start), distances(position, self.end))
-        return radius - np.where((from_center == 0.0) | on_arc, np.abs(from_center - size), ends)
+        return radius - np.where((from_center == 0.0) | on_arc, gap, ends)
 
     def outline(self) -> Floats:
         """A line of points along it."""
@@ -99,18 +102,25 @@ class Arc(Part):
 
 
 def circle_through(start: Point, through: Point, end: Point) -> tuple[Point, float]:
-    """Centre and radius of the circle through three points; the radius is inf where they lie on a line."""
-    ax, ay = through[0] - start[0], through[1] - start[1]
-    bx, by = end[0] - start[0], end[1] - start[1]
-    # In units of the largest of them, products neither overflow nor vanish.
-    unit = max(abs(ax), abs(ay), abs(bx), abs(by)) or 1.0
-    ax, ay, bx, by = ax / unit, ay / unit, bx / unit, by / unit
-    twice_area = 2.0 * (ax * by - ay * bx)
-    if twice_area == 0.0:
+    """Centre and radius of the circle through three points, rounded once; the radius is inf where they lie on a line."""
+    x0, y0 = Fraction(start[0]), Fraction(start[1])
+    ax, ay, bx, by = Fraction(through[0]) - x0, Fraction(through[1]) - y0, Fraction(end[0]) - x0, Fraction(end[1]) - y0
+    twice_area = 2 * (ax * by - ay * bx)
+    if twice_area == 0:
         return start, math.inf
     a2, b2 = ax * ax + ay * ay, bx * bx + by * by
-    cx, cy = unit * ((by * a2 - ay * b2) / twice_area), unit * ((ax * b2 - bx * a2) / twice_area)
-    return (start[0] + cx, start[1] + cy), math.hypot(cx, cy)
+    try:
+        cx, cy = float((by * a2 - ay * b2) / twice_area), float((ax * b2 - bx * a2) / twice_area)
+        return (float(x0 + Fraction(cx)), float(y0 + Fraction(cy))), math.hypot(cx, cy)
+    except OverflowError:  # as good as on a line
+        return start, math.inf
+
+
+def bulge(start: Point, through: Point, end: Point) -> float:
+    """The distance of `through` from the line through start and end, or of that which is farther from the others."""
+    x0, y0 = Fraction(start[0]), Fraction(start[1])
+    ax, ay, bx, by = Fraction(through[0]) - x0, Fraction(through[1]) - y0, Fraction(end[0]) - x0, Fraction(end[1]) - y0
+    return float(abs(ax * by - ay * bx)) / max(math.dist(start, end), math.dist(start, through), math.dist(through, end))
 
 
 def circle_points(center: Point, radius: float, begin: float, turn: float) -> Floats:
