@@ -52,7 +52,7 @@ def test_a_shape_that_lacks_a_piece_is_found():
             return 1.0, 0.0
 
     assert missing(Dummy) == {
-        "at_origin", "delay", "in_numbers", "lies_on", "line", "moment", "nearest", "word"
+        "at_origin", "delay", "in_numbers", "lies_on", "line", "moment", "nearest", "touching", "word"
     }  # fmt: skip
 
 
