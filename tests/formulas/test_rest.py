@@ -180,7 +180,7 @@ def test_a_hop_lasts_as_long_as_its_launch_says(rate, fall, since, launched, del
     ],
 )
 def test_a_hop_on_a_face_ends_where_that_goes_on(shape, side, flight, since, delay):
-    assert rest.hop_on_face_delay(shape, side, *flight, since) == delay
+    assert rest.hop_on_face_delay(shape, side, *flight, since, 1.0) == delay
 
 
 def test_a_disk_leaves_a_wall_at_the_speed_that_is_said():

@@ -67,7 +67,7 @@ class ReferenceSession(Session):
         self._predictor = (WidePredictor if fine else self.predictor)(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
         self._ties = Ties(stage, self.state)
-        self._sunk = Sunk(stage, self.state)
+        self._sunk = Sunk(stage, self.state) if number is float else None
         self._predict_afresh()
 
     def _new_calendar(self) -> Calendar:
@@ -143,7 +143,7 @@ class ReferenceSession(Session):
     def _resolve_instant(self) -> str | None:
         """Resolve the contacts of the earliest instant that are predicted by now, then predict their disks anew."""
         generation = self._pop_generation()
-        if (sunk := self._sunk.reason(generation)) is not None:
+        if self._sunk is not None and (sunk := self._sunk.reason(generation)) is not None:
             self.reason = sunk
             return "digits"
         changed: list[int] = []

@@ -201,7 +201,7 @@ class Arc(NamedTuple):
 
     def in_numbers(self, number: Callable[[float], Real]) -> Arc:
         """The same arc in other numbers than floats."""
-        return Arc(*map(number, self))
+        return Arc(*map(number, self))._replace(ends=self.ends)
 
 
 def arc(x0: float, y0: float, xm: float, ym: float, x1: float, y1: float) -> Arc:

@@ -206,7 +206,7 @@ class Face(NamedTuple):
 
     def in_numbers(self, number: Callable[[float], Real]) -> Face:
         """The same face in other numbers than floats; what is derived is derived anew, from its corners."""
-        exact = Face(*map(number, self))
+        exact = Face(*map(number, self))._replace(ends=self.ends)  # a code, not a length
         norm2 = exact.nx * exact.nx + exact.ny * exact.ny
         return exact._replace(norm=sqrt(norm2), norm2=norm2, along2=exact.ex * exact.ex + exact.ey * exact.ey)
 
