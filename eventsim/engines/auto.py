@@ -90,7 +90,8 @@ class AutoSession(Session):
 
     def _speak_for(self, session: Session) -> None:
         """Have to say what the engine's session has to say."""
-        self.counters, self.reason, self.refused = session.counters, session.reason, session.refused
+        self.counters, self.reason = session.counters, session.reason
+        self.refused, self.sunk = session.refused, session.sunk
         self.compile_s = self._loading + session.compile_s
 
     @property

@@ -113,6 +113,7 @@ class Session(ABC):
         counters: how often what happened.
         reason: a sentence on why it stopped, where there is more to say.
         refused: whether it stopped at what it knows that it cannot resolve.
+        sunk: whether it stopped at a gap that has sunk below the digits.
         compile_s: seconds spent on loading a compiler and on compiling.
         at_work, begun_by: the engine that simulates; the one that handed over to it, if one did.
         trajectory: samples of a motion that does not follow from the log; None where it does.
@@ -121,6 +122,7 @@ class Session(ABC):
     name: str
     reason: str | None = None
     refused = False
+    sunk = False
     compile_s = 0.0
     begun_by: str | None = None
     trajectory: Trajectory | None = None

@@ -60,10 +60,10 @@ class Outcome:
 def diagnosed(session: Session, stopped: str, last_rows: Rows) -> tuple[str, str | None]:
     """Why a run stopped, and the sentence about it; a sequence that does not end is told from its last rows."""
     stage = session.stage
-    if stopped not in ("collapse", "digits") or not stage.law.loses_energy() or session.refused:
+    if not (session.sunk or (stopped == "collapse" and stage.law.loses_energy() and not session.refused)):
         return stopped, session.reason
     time = clock_time(*session.clock, stage.epoch_length, stage.start_time)
-    if stopped == "digits":
+    if session.sunk:
         return diagnosis_of_sunk(last_rows, stage, time) or (stopped, session.reason)
     return diagnosis(last_rows, stage, session.clock, time) or (stopped, session.reason)
 

@@ -77,7 +77,7 @@ def test_f18_one_large_disk_among_1e5_small_ones_has_one_log():
 
 @pytest.mark.parametrize("engine", BOTH)
 def test_f21_the_slowest_disk_meets_the_nearest_one_in_time(engine):
-    """A subnormal speed and the smallest gap that the coordinate 1 takes; the clock jumps on the way, which may cost a last bit."""
+    """A subnormal speed and the smallest gap that the coordinate 1 takes; the jump of the clock may cost a last bit."""
     speed = 1e-310
     log = log_of(on_plane([[0.0, 0.0], [1.0 + ULP, 0.0]], [[speed, 0.0], [0.0, 0.0]]), engine, events=1)
     assert log.time.tolist() == pytest.approx([float(Fraction(ULP) / Fraction(speed))], rel=ULP)

@@ -26,13 +26,14 @@ class Rulings:
     """Resolves by rules, in the memory of a machine, and predicts anew what that changes.
 
     reason: a sentence on why a run stops here, None where it goes on.  refused: whether the rules have no answer.
+    sunk: whether it stops at a gap below the digits.
     """
 
     def __init__(self, machine: Machine, counters: Counters) -> None:
         self._machine = machine
         self._counters = counters
         self.reason: str | None = None
-        self.refused = False
+        self.refused = self.sunk = False
         self._ties = Ties(machine.stage, machine.state)
         self._sunk = Sunk(machine.stage, machine.state)
         self._spent: set[Event] = set()
@@ -47,7 +48,7 @@ class Rulings:
         near = self._contacts_until(latest_tie(now, machine.rules.tie_screen))
         generation = self._ties.settle(near) if any(event.time == now for event in near) else []
         if (sunk := self._sunk.reason(generation)) is not None:
-            self.reason = sunk
+            self.reason, self.sunk = sunk, True
             return "digits"
         resolver = self._opened_resolver()
         waiting = [int(state.labels[i]) for i in self._find(due_at, machine.counts, now)[:, 0]]

@@ -92,7 +92,8 @@ class FastSession(Session):
             return stopped
         finally:
             tally.tell(self.counters, self._machine.counts, self._machine.sums)
-            self.reason, self.refused = self._rulings.reason, self._rulings.refused
+            rulings = self._rulings
+            self.reason, self.refused, self.sunk = rulings.reason, rulings.refused, rulings.sunk
 
     @property
     def prepares(self) -> bool:

@@ -144,7 +144,7 @@ class ReferenceSession(Session):
         """Resolve the contacts of the earliest instant that are predicted by now, then predict their disks anew."""
         generation = self._pop_generation()
         if self._sunk is not None and (sunk := self._sunk.reason(generation)) is not None:
-            self.reason = sunk
+            self.reason, self.sunk = sunk, True
             return "digits"
         changed: list[int] = []
         for component in components(generation):
