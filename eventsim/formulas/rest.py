@@ -238,7 +238,8 @@ def slide_delay(shape: Face, low: float, high: float, x: Real, y: Real, vx: Real
     along = shape.ex * (x - shape.x) + shape.ey * (y - shape.y)
     rate = shape.ex * vx + shape.ey * vy
     pull = shape.ex * ax + shape.ey * ay
-    down, up = closing_delay(along - low, rate, pull), closing_delay(high - along, -rate, -pull)
+    down = closing_delay(along - low, rate, pull) if low > -NEVER else NEVER  # a sealed end is never passed
+    up = closing_delay(high - along, -rate, -pull) if high < NEVER else NEVER
     return down if down < up else up
 
 

@@ -167,7 +167,7 @@ def test_many_fly_like_one(
     flights = start_flights(stage)
     fly(flights, stage, windows, window, remainder)
     for i in range(stage.n):
-        disk = DiskFlight(stage, i, immovable=False)
+        disk = DiskFlight(stage, i, immovable=False, walls=None)
         disk.fly(stage.period, windows, window, remainder)
         assert disk.place(remainder) == (flights.x[i], flights.y[i])
         assert disk.speed(remainder) == (flights.vx[i], flights.vy[i])

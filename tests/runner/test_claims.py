@@ -114,5 +114,6 @@ def test_a_journal_whose_end_is_damaged_goes_on_with_what_is_whole(tmp_path, end
     journal = tmp_path / "table.csv.journal"
     journal.write_bytes(journal.read_bytes() + end)
     done = []
-    assert sweep(make, grid, events=30, engine="reference", out=path, progress=lambda *now: done.append(now)) == right
+    again = sweep(make, grid, events=30, engine="reference", out=path, progress=lambda *now: done.append(now))
+    assert repr(again) == repr(right)  # bars that nobody knows are nan
     assert done == [(3, 3)]
