@@ -101,6 +101,9 @@ class Windows:
                 raise LogError(f"the log does not fit its scene: no window of the clock begins at epoch {start + jump}")
             self._append(jump * epoch_length, jump, 0.0, remainder, exponent_after(stage, exponent, 0, look))
         elif end < np.inf:
+            before = self.start[-1] - self.start[-2] if len(self.start) > 1 else 0
+            if not count and jump is not None and jump > MOST_WINDOWS * max(int(end / epoch_length), before):
+                raise LogError(f"the log does not fit its scene: more than {MOST_WINDOWS} turns of the clock without a row")
             self._append(end, int(end / epoch_length), 0.0, 0.0, exponent_after(stage, exponent, count, look))
         else:
             return False
