@@ -16,6 +16,9 @@ from eventsim.live.world import World
 MOST_ROWS = 8192
 """Rows in a packet (half a megabyte): a page must not freeze while it takes one up."""
 
+LONGEST_WAIT = 60.0
+"""A page may wait for so many seconds of what it shows, at its speed or at a time unit a second."""
+
 
 class Viewer:
     """A page that looks at a world.
@@ -98,10 +101,11 @@ class Viewer:
         if isinstance(message, Shown):
             if message.edition != self.world.edition or not self.world.tracks:
                 return  # said before the page had heard of what is open now
-            # Nobody is shown more than there is: what a page says it shows must not send the engine far ahead.
+            # What a page says that it shows, or waits for, must not send the engine far ahead.
             track = self.world.tracks[0]
-            self.time, self.events = min(message.time, track.horizon), min(message.events, track.count)
             self.speed = message.speed
+            self.time = min(message.time, track.horizon + LONGEST_WAIT * max(self.speed, 1.0))
+            self.events = min(message.events, track.count)
             self.world.wake()
         elif isinstance(message, Control):
             for other in self.world.viewers - {self}:
