@@ -209,6 +209,11 @@ class Windows:
 class DoublingWindows(Windows):
     """The schedule of logs of version 0.1 and of stepped engines: a window without a row is followed by one twice as long."""
 
+    def _reach(self, epochs: int | Fraction, beyond: bool = False) -> None:
+        if epochs - self.start[-1] > MOST_WINDOWS << self._stage.clock.window_cap:
+            raise LogError(f"the log does not reach so far: that is more than {MOST_WINDOWS} turns of the clock")
+        super()._reach(epochs, beyond)
+
     def _extend(self) -> bool:
         first = last = self._first[self._run]
         if first < len(self._columns) and self._columns["epoch"][first] == self.start[-1]:
