@@ -1,7 +1,7 @@
 """Gaps below the digits: contacts that only the last bits of rounded places predict.
 
-A contact that takes energy leaves disks slow and close.  Where the gap to what comes next has sunk to the last bits of the places
-that it is the difference of, nobody knows when that contact comes, or whether another one comes first.  Then a run stops.
+A contact that takes energy leaves disks slow and close.  The gap to what comes next is a difference of places.  Once it has sunk
+to their last bits, nobody knows when that contact comes, or whether another one comes first.  Then a run stops.
 """
 
 from __future__ import annotations
