@@ -9,7 +9,7 @@ The story, and where each part of it lives::
     runner     what all runs share: loop, files, checkpoints  eventsim.runner
     replay     what follows from a log: states at any time    eventsim.replay
     measure    numbers from it, with error bars and theory    eventsim.measure
-    validate   engines against each other, theory and proof   eventsim.validate
+    validation engines against each other, theory and proof   eventsim.validation
     sweep      many runs, one table                           eventsim.sweep
     show       pictures of what happened                      eventsim.show
     simulation the way in for Python users                    eventsim.simulation

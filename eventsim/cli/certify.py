@@ -12,7 +12,7 @@ from eventsim.cli.options import Whole, json_option, quiet_option, scene_options
 from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say
 
 if TYPE_CHECKING:
-    from eventsim.validate.proof import Proof, Rounded
+    from eventsim.validation.proof import Proof, Rounded
 
 DISKS_SHOWN = 8
 USUAL_EVENTS = 1000
@@ -93,7 +93,7 @@ def command(
 
     if ENGINES["certified"].missing is not None:
         raise EventsimError(ENGINES["certified"].missing)
-    from eventsim.validate.proof import prove
+    from eventsim.validation.proof import prove
 
     chosen = chosen_scene(scene, settings, seed)
     stop = Stop(until, events)

@@ -11,7 +11,7 @@ from eventsim.cli.options import json_option, quiet_option, writable
 from eventsim.cli.output import say
 
 if TYPE_CHECKING:
-    from eventsim.validate.chart import Chart
+    from eventsim.validation.chart import Chart
 
 
 TABLE = (
@@ -69,10 +69,10 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
     from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
     from eventsim.show.versus.precision import write_chart
-    from eventsim.validate.advantages import advantages
-    from eventsim.validate.chart import chart_of, default_tasks, task_of
-    from eventsim.validate.conclusions import conclusions
-    from eventsim.validate.table import chart_rows, provenance_lines, write_csv
+    from eventsim.validation.advantages import advantages
+    from eventsim.validation.chart import chart_of, default_tasks, task_of
+    from eventsim.validation.conclusions import conclusions
+    from eventsim.validation.table import chart_rows, provenance_lines, write_csv
 
     with status_line(quiet or as_json) as tell:
         tasks = [task_of(chosen_scene(name, (), None), name) for name in scenes] if scenes else default_tasks()
@@ -100,8 +100,8 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
 
 def _text(chart: Chart) -> str:
     """Who was left out, the answers, and the table of advantages."""
-    from eventsim.validate.advantages import table
-    from eventsim.validate.conclusions import conclusions
+    from eventsim.validation.advantages import table
+    from eventsim.validation.conclusions import conclusions
 
     head, rows = table(chart)
     widths = [max(len(line[k]) for line in (head, *rows)) for k in range(len(head))]

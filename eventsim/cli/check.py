@@ -73,7 +73,7 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
     estimate = None
     if horizon:
         from eventsim.engines.base import Stop
-        from eventsim.validate.horizon import horizon as horizon_of
+        from eventsim.validation.horizon import horizon as horizon_of
 
         estimate = horizon_of(chosen, Stop(chosen.until, chosen.events))
     if as_json:

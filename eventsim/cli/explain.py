@@ -14,7 +14,7 @@ from eventsim.scene.walls import SHAPES
 
 if TYPE_CHECKING:
     from eventsim.cli.needs import Needs
-    from eventsim.validate.near_ties import NearTie
+    from eventsim.validation.near_ties import NearTie
 
 DOMAINS = {
     "box": "hard walls left, right, bottom and top",

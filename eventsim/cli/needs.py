@@ -18,7 +18,7 @@ from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
 from eventsim.scene.scene import touching_by_rounding
 from eventsim.scene.stage import stage_of
 from eventsim.scene.walls import wall_names
-from eventsim.validate.near_ties import NearTie, near_ties
+from eventsim.validation.near_ties import NearTie, near_ties
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene

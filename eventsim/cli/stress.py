@@ -13,13 +13,13 @@ import click
 from eventsim import suffixes
 from eventsim.cli.options import Whole, json_option, quiet_option, writable
 from eventsim.cli.output import FAILED, INTERRUPTED, say
-from eventsim.validate.stress.catalogue import CASES
-from eventsim.validate.stress.verdict import Word
+from eventsim.validation.stress.catalogue import CASES
+from eventsim.validation.stress.verdict import Word
 
 if TYPE_CHECKING:
-    from eventsim.validate.stress.case import Case
-    from eventsim.validate.stress.soak import Finding
-    from eventsim.validate.stress.verdict import Verdict
+    from eventsim.validation.stress.case import Case
+    from eventsim.validation.stress.soak import Finding
+    from eventsim.validation.stress.verdict import Verdict
 
 
 @click.command()
@@ -112,8 +112,8 @@ def command(
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.words import as_json_text
     from eventsim.engines import ENGINES
-    from eventsim.validate.stress.atlas import atlas_of, write_csv
-    from eventsim.validate.stress.catalogue import chosen
+    from eventsim.validation.stress.atlas import atlas_of, write_csv
+    from eventsim.validation.stress.catalogue import chosen
 
     cases = chosen(names)
     if listing:
@@ -147,7 +147,7 @@ def _soak(seeds: range, engines: tuple[str, ...], workers: int, as_json: bool, q
     """Run the soak; print what was found, also up to an interrupt."""
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.words import as_json_text
-    from eventsim.validate.stress.soak import soak
+    from eventsim.validation.stress.soak import soak
 
     findings: list[Finding] = []
     done, interrupted = 0, False

@@ -13,7 +13,7 @@ from eventsim.scene.names import plural
 if TYPE_CHECKING:
     from eventsim.cli.options import Files
     from eventsim.runner.outcome import Outcome
-    from eventsim.validate.horizon import Horizon
+    from eventsim.validation.horizon import Horizon
 
 
 WORTH_A_WORD, MOMENT = 0.01, 1e-3

@@ -12,7 +12,7 @@ from eventsim.cli.options import json_option, quiet_option, scene_options, writa
 from eventsim.cli.output import FAILED, say
 
 if TYPE_CHECKING:
-    from eventsim.validate.compare import Comparison, Line
+    from eventsim.validation.compare import Comparison, Line
 
 PATIENCE_HELP = (
     "CPU seconds for one run at most; ten times that for the event-driven one, whose end all others then share."
@@ -92,10 +92,10 @@ def command(
     from eventsim.cli.progress import status_line
     from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
-    from eventsim.validate.compare import compare
-    from eventsim.validate.competitors import chosen_competitors
-    from eventsim.validate.table import comparison_rows, provenance_lines, write_csv
-    from eventsim.validate.verdict import verdict
+    from eventsim.validation.compare import compare
+    from eventsim.validation.competitors import chosen_competitors
+    from eventsim.validation.table import comparison_rows, provenance_lines, write_csv
+    from eventsim.validation.verdict import verdict
 
     competitors = chosen_competitors(against)
     chosen = chosen_scene(scene, settings, seed)

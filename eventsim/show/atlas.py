@@ -14,8 +14,8 @@ from eventsim import suffixes
 from eventsim.record.files.atomic import atomic_write
 from eventsim.show.output import suffix_of
 from eventsim.show.palette import LIGHT
-from eventsim.validate.stress.catalogue import CASES
-from eventsim.validate.stress.verdict import Verdict, Word
+from eventsim.validation.stress.catalogue import CASES
+from eventsim.validation.stress.verdict import Verdict, Word
 
 COLOURS = {
     Word.RIGHT: "#009E73",

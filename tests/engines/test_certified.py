@@ -18,7 +18,7 @@ from eventsim.runner.loop import run_session
 from eventsim.runner.options import Interrupt, RunOptions
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
-from eventsim.validate.proof import prove
+from eventsim.validation.proof import prove
 from tests.engines.proofs import certified
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 

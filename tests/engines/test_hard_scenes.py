@@ -11,8 +11,8 @@ from eventsim.engines.base import Stop
 from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.scene.stage import stage_of
-from eventsim.validate.stress.catalogue.long_runs import crystal
-from eventsim.validate.stress.catalogue.scenes import on_plane
+from eventsim.validation.stress.catalogue.long_runs import crystal
+from eventsim.validation.stress.catalogue.scenes import on_plane
 from tests.engines.scenes import lattice_gas
 
 ULP = 2.0**-52

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.validate.stress.catalogue.boundaries import two_images
-from eventsim.validate.stress.catalogue.clusters import AFTER_BREAK, PERIOD, diagonal, symmetric_break
-from eventsim.validate.stress.catalogue.scenes import on_plane, relabelled
+from eventsim.validation.stress.catalogue.boundaries import two_images
+from eventsim.validation.stress.catalogue.clusters import AFTER_BREAK, PERIOD, diagonal, symmetric_break
+from eventsim.validation.stress.catalogue.scenes import on_plane, relabelled
 from tests.engines.scenes import rows_of, run_of
 
 ULP = 2.0**-52

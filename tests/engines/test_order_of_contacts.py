@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import eventsim as es
-from eventsim.validate.stress.catalogue.order import onto_heavy, three_disks
-from eventsim.validate.stress.catalogue.scenes import on_plane
+from eventsim.validation.stress.catalogue.order import onto_heavy, three_disks
+from eventsim.validation.stress.catalogue.scenes import on_plane
 from tests.engines.scenes import lattice_gas, rows_of, run_of
 
 

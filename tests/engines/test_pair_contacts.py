@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eventsim.validate.stress.catalogue.grazes import passing
-from eventsim.validate.stress.catalogue.scenes import on_plane
+from eventsim.validation.stress.catalogue.grazes import passing
+from eventsim.validation.stress.catalogue.scenes import on_plane
 from tests.engines.scenes import rows_of, run_of
 
 ULP = 2.0**-52

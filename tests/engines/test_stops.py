@@ -5,7 +5,7 @@ import math
 import pytest
 
 import eventsim as es
-from eventsim.validate.stress.catalogue.scenes import on_plane
+from eventsim.validation.stress.catalogue.scenes import on_plane
 from tests.engines.scenes import lattice_gas
 
 

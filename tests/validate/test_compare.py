@@ -15,22 +15,22 @@ import eventsim as es
 from eventsim.cli.program import main
 from eventsim.scene.stage import stage_of
 from eventsim.show.versus.losses import NONE, draw_missed
-from eventsim.validate.advantages import Advantage, advantages, cell, table
-from eventsim.validate.chart import Chaos, Chart
-from eventsim.validate.compare import compare
-from eventsim.validate.competitors import COMPETITORS, able, chosen_competitors
-from eventsim.validate.conclusions import conclusions
-from eventsim.validate.pile import pile, unrest
-from eventsim.validate.precision import Curves, Point, Task, curves
-from eventsim.validate.table import chart_rows, comparison_rows, write_csv
-from eventsim.validate.verdict import verdict
+from eventsim.validation.advantages import Advantage, advantages, cell, table
+from eventsim.validation.chart import Chaos, Chart
+from eventsim.validation.compare import compare
+from eventsim.validation.competitors import COMPETITORS, able, chosen_competitors
+from eventsim.validation.conclusions import conclusions
+from eventsim.validation.pile import pile, unrest
+from eventsim.validation.precision import Curves, Point, Task, curves
+from eventsim.validation.table import chart_rows, comparison_rows, write_csv
+from eventsim.validation.verdict import verdict
 
 
 @pytest.fixture(scope="module", autouse=True)
 def no_compiler():
     """The reference engine alone: these scenes are small, and its log is that of the fast one."""
     with pytest.MonkeyPatch.context() as patch:
-        for home in ("eventsim.engines.auto", "eventsim.validate.truth"):
+        for home in ("eventsim.engines.auto", "eventsim.validation.truth"):
             patch.setattr(f"{home}.has_compiler", lambda: False)
         yield
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from eventsim.record.events import Kind, blank_rows
-from eventsim.validate.compare import fitted_order
-from eventsim.validate.contacts import Census, _count, longest_stuck
+from eventsim.validation.compare import fitted_order
+from eventsim.validation.contacts import Census, _count, longest_stuck
 
 
 def rows_of(*contacts):

@@ -7,8 +7,8 @@ import pytest
 
 import eventsim as es
 from eventsim.scene.gallery import gallery, names
-from eventsim.validate import near_ties as module
-from eventsim.validate.near_ties import near_ties
+from eventsim.validation import near_ties as module
+from eventsim.validation.near_ties import near_ties
 from tests.engines.scenes import lattice_gas
 
 LAST_BIT = math.ulp(6.0)

@@ -6,7 +6,7 @@ import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.scene.stage import stage_of
-from eventsim.validate.precision import PlainSession
+from eventsim.validation.precision import PlainSession
 
 
 def first_contact(session_type, scene):

@@ -11,8 +11,8 @@ from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import look
 from eventsim.show.versus.notes import note
-from eventsim.validate.chart import Chaos
-from eventsim.validate.truth import BELIEVED
+from eventsim.validation.chart import Chaos
+from eventsim.validation.truth import BELIEVED
 
 FIRST = 1e-16
 STYLES = ("-", ":")

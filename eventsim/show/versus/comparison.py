@@ -16,8 +16,8 @@ from eventsim.show.versus.colours import NAMES, look
 from eventsim.show.versus.losses import STEP, draw_energy, draw_missed, scale_steps
 from eventsim.show.versus.notes import ACROSS, note
 from eventsim.show.versus.page import save_page
-from eventsim.validate.compare import FITTED, Comparison, Line
-from eventsim.validate.verdict import verdict
+from eventsim.validation.compare import FITTED, Comparison, Line
+from eventsim.validation.verdict import verdict
 
 EXACT_ANGLE = 1e-3
 """Degrees: angles that are wrong by less are drawn here."""

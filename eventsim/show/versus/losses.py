@@ -12,8 +12,8 @@ from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import NAMES, look
 from eventsim.show.versus.notes import ACROSS, note
-from eventsim.validate.compare import Comparison, Line
-from eventsim.validate.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
+from eventsim.validation.compare import Comparison, Line
+from eventsim.validation.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
 
 STEP = "step: radii that a typical disk flies in it"
 

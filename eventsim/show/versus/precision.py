@@ -18,9 +18,9 @@ from eventsim.show.versus.colours import NAMES, look
 from eventsim.show.versus.losses import draw_energy, draw_missed
 from eventsim.show.versus.page import save_page
 from eventsim.show.versus.work import draw_work
-from eventsim.validate.advantages import table
-from eventsim.validate.chart import RATE_STEP, Chart
-from eventsim.validate.conclusions import conclusions
+from eventsim.validation.advantages import table
+from eventsim.validation.chart import RATE_STEP, Chart
+from eventsim.validation.conclusions import conclusions
 
 COLUMNS, PANEL = 3, (4.4, 3.9)
 """Panels in a row; inches of one."""

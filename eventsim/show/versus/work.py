@@ -13,7 +13,7 @@ from eventsim.show.output import as_written
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import look
 from eventsim.show.versus.notes import ACROSS, note
-from eventsim.validate.advantages import (
+from eventsim.validation.advantages import (
     WANTED,
     Advantage,
     advantages_on,
@@ -22,8 +22,8 @@ from eventsim.validate.advantages import (
     stepped_labels,
     time_at,
 )
-from eventsim.validate.conclusions import Win, winning
-from eventsim.validate.precision import Curves
+from eventsim.validation.conclusions import Win, winning
+from eventsim.validation.precision import Curves
 
 ERRORS = {
     "trajectory": "position error [diameters]",

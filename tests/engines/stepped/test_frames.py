@@ -8,7 +8,7 @@ from eventsim.engines.base import Stop
 from eventsim.run import ENGINES
 from eventsim.runner.options import RunOptions
 from eventsim.scene.stage import stage_of
-from eventsim.validate.contacts import longest_stuck
+from eventsim.validation.contacts import longest_stuck
 
 THIN = es.gallery("gas", n=100, packing_fraction=0.1)
 

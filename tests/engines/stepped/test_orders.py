@@ -8,8 +8,8 @@ from eventsim.engines import STEPPED
 from eventsim.engines.stepped import ChipmunkOptions
 from eventsim.measure.theory import compressibility_factor
 from eventsim.scene.stage import stage_of
-from eventsim.validate.averages import kinetic_energy, virial_pressure
-from eventsim.validate.follow import follow
+from eventsim.validation.averages import kinetic_energy, virial_pressure
+from eventsim.validation.follow import follow
 
 
 def slope(steps, errors):

@@ -10,12 +10,12 @@ import pytest
 from click.testing import CliRunner
 
 from eventsim.cli import main
-from eventsim.validate.stress import case as stress_case
-from eventsim.validate.stress.case import Case, GaveUpError
-from eventsim.validate.stress.catalogue import CASES
-from eventsim.validate.stress.catalogue.clusters import diagonal
-from eventsim.validate.stress.verdict import Word, hung, judge
-from eventsim.validate.stress.workers import Silence
+from eventsim.validation.stress import case as stress_case
+from eventsim.validation.stress.case import Case, GaveUpError
+from eventsim.validation.stress.catalogue import CASES
+from eventsim.validation.stress.catalogue.clusters import diagonal
+from eventsim.validation.stress.verdict import Word, hung, judge
+from eventsim.validation.stress.workers import Silence
 
 
 def case(answer, refusals=()):

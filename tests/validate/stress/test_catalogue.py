@@ -2,8 +2,8 @@
 
 import pytest
 
-from eventsim.validate.stress.catalogue import CASES, chosen
-from eventsim.validate.stress.verdict import Word, judge
+from eventsim.validation.stress.catalogue import CASES, chosen
+from eventsim.validation.stress.verdict import Word, judge
 
 LONG = ("c2-lattice", "f19-jammed")
 

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from eventsim.cli import main
 from eventsim.engines.base import Stop
 from eventsim.run import ENGINES
-from eventsim.validate.stress.soak import Finding, by_kernels, finding_of, random_scene, soak
+from eventsim.validation.stress.soak import Finding, by_kernels, finding_of, random_scene, soak
 
 
 def test_the_reference_engine_survives_a_small_soak():
@@ -65,7 +65,7 @@ def test_an_engine_that_fails_is_a_finding(monkeypatch):
     def broken(*_args, **_options):
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr("eventsim.validate.stress.soak.run_scene", broken)
+    monkeypatch.setattr("eventsim.validation.stress.soak.run_scene", broken)
     assert finding_of(3, ("reference",)) == Finding(3, "reference", "failed: ZeroDivisionError: division by zero")
 
 
@@ -77,7 +77,7 @@ def test_an_interrupted_soak_tells_what_it_found_so_far(monkeypatch, number):
         signal.raise_signal(number)
         yield None
 
-    monkeypatch.setattr("eventsim.validate.stress.soak.soak", broken_off)
+    monkeypatch.setattr("eventsim.validation.stress.soak.soak", broken_off)
     result = CliRunner().invoke(main, ["stress", "--soak", "50", "--seed", "7", "--engine", "reference", "--json"])
     assert result.exit_code == 130
     told = json.loads(result.stdout)

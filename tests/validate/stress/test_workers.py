@@ -3,7 +3,7 @@
 import os
 import time
 
-from eventsim.validate.stress.workers import Silence, answers
+from eventsim.validation.stress.workers import Silence, answers
 
 
 def answer(item):

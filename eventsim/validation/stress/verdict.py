@@ -9,8 +9,8 @@ from time import perf_counter
 
 from eventsim.engines import ONE_LOG
 from eventsim.errors import EventsimError
-from eventsim.validate.stress.case import Bench, Case, GaveUpError, TimeUpError
-from eventsim.validate.stress.workers import Silence
+from eventsim.validation.stress.case import Bench, Case, GaveUpError, TimeUpError
+from eventsim.validation.stress.workers import Silence
 
 CERTIFIED = "certified"
 """It may say that it cannot prove a scene, or take its time, but not be wrong.

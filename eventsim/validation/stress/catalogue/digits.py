@@ -10,8 +10,8 @@ from eventsim.errors import SceneError
 from eventsim.replay.past import PastRun
 from eventsim.scene import Box, Disks, Scene
 from eventsim.scene.gallery import gallery
-from eventsim.validate.stress.case import Bench, Case, off
-from eventsim.validate.stress.catalogue.scenes import exact_delay, lattice_gas, on_plane, with_disks
+from eventsim.validation.stress.case import Bench, Case, off
+from eventsim.validation.stress.catalogue.scenes import exact_delay, lattice_gas, on_plane, with_disks
 
 ULP = 2.0**-52
 EXPONENTS = (-300, -60, 60, 300)

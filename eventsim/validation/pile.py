@@ -9,7 +9,7 @@ import numpy as np
 from eventsim.record.events import Floats
 from eventsim.scene import Box, Disks, Scene
 from eventsim.scene.stage import Stage
-from eventsim.validate.follow import distances
+from eventsim.validation.follow import distances
 
 COLUMNS, ROWS = 5, 4
 PITCH, HEIGHT = 1.06, 1.25

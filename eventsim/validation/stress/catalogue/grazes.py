@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from eventsim.scene import Disks, Open, Scene, Segment
-from eventsim.validate.stress.case import Bench, Case, off
-from eventsim.validate.stress.catalogue.scenes import exact_delay, in_box, on_plane
+from eventsim.validation.stress.case import Bench, Case, off
+from eventsim.validation.stress.catalogue.scenes import exact_delay, in_box, on_plane
 
 ULP = 2.0**-52
 

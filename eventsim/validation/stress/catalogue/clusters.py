@@ -9,8 +9,8 @@ import numpy as np
 
 from eventsim.scene import Disks, Scene
 from eventsim.scene.gallery import gallery
-from eventsim.validate.stress.case import Bench, Case, off
-from eventsim.validate.stress.catalogue.scenes import in_box, on_plane, relabelled
+from eventsim.validation.stress.case import Bench, Case, off
+from eventsim.validation.stress.catalogue.scenes import in_box, on_plane, relabelled
 
 ULP = 2.0**-52
 

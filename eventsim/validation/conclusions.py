@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from eventsim.validate.advantages import Advantage, advantages, amount, own_points, stepped_labels, time_at
-from eventsim.validate.chart import Chart
-from eventsim.validate.precision import Curves
-from eventsim.validate.verdict import ALL, blindest, whole_from
+from eventsim.validation.advantages import Advantage, advantages, amount, own_points, stepped_labels, time_at
+from eventsim.validation.chart import Chart
+from eventsim.validation.precision import Curves
+from eventsim.validation.verdict import ALL, blindest, whole_from
 
 
 class Answer(NamedTuple):

@@ -9,8 +9,8 @@ import numpy as np
 
 from eventsim.errors import SceneError
 from eventsim.scene import Box, Disks, Open, Periodic, Scene
-from eventsim.validate.stress.case import Bench, Case, off
-from eventsim.validate.stress.catalogue.scenes import in_box, on_plane
+from eventsim.validation.stress.case import Bench, Case, off
+from eventsim.validation.stress.catalogue.scenes import in_box, on_plane
 
 ULP = 2.0**-52
 

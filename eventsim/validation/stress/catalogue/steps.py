@@ -10,8 +10,8 @@ from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
 from eventsim.runner.loop import run_scene
 from eventsim.scene import Box, Disks, Scene, Segment
-from eventsim.validate.stress.case import Bench, Case, off
-from eventsim.validate.stress.catalogue.scenes import lattice_gas, on_plane, with_disks
+from eventsim.validation.stress.case import Bench, Case, off
+from eventsim.validation.stress.catalogue.scenes import lattice_gas, on_plane, with_disks
 
 ULP = 2.0**-52
 

@@ -19,12 +19,12 @@ from eventsim.scene import Scene
 from eventsim.scene.gallery import gallery
 from eventsim.scene.pace import typical_speed
 from eventsim.scene.stage import Stage, stage_of
-from eventsim.validate.compare import Comparison, Tell, compare, truth_to_compare
-from eventsim.validate.competitors import COMPETITORS, Competitor
-from eventsim.validate.follow import follow, position_errors
-from eventsim.validate.pile import pile
-from eventsim.validate.precision import REPEATS, SHORT_S, Curves, Task, curves
-from eventsim.validate.truth import best_engine, truth_of
+from eventsim.validation.compare import Comparison, Tell, compare, truth_to_compare
+from eventsim.validation.competitors import COMPETITORS, Competitor
+from eventsim.validation.follow import follow, position_errors
+from eventsim.validation.pile import pile
+from eventsim.validation.precision import REPEATS, SHORT_S, Curves, Task, curves
+from eventsim.validation.truth import best_engine, truth_of
 
 CONTACTS = 3.0
 """Mean free times after which trajectories are compared, where the task does not say."""

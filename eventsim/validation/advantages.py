@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from eventsim.validate.chart import Chart
-from eventsim.validate.precision import Curves, Point
+from eventsim.validation.chart import Chart
+from eventsim.validation.precision import Curves, Point
 
 OWN = ("fast", "reference")
 """The engines that speak for event-driven simulation, the best first."""

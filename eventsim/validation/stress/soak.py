@@ -20,7 +20,7 @@ from eventsim.runner.options import RunOptions, stop_of
 from eventsim.runner.outcome import Outcome
 from eventsim.scene import Box, Channel, Disks, Domain, Open, Periodic, Scene
 from eventsim.scene.stage import stage_of
-from eventsim.validate.stress.workers import Silence, answers
+from eventsim.validation.stress.workers import Silence, answers
 
 EVENTS, UNTIL = 80, 50.0
 """Where a run of the soak stops; a scene without contacts at its time."""

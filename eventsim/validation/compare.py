@@ -16,11 +16,11 @@ from eventsim.record.events import Rows
 from eventsim.runner.outcome import state_of
 from eventsim.scene import Scene
 from eventsim.scene.stage import stage_of
-from eventsim.validate.averages import collision_rate, kinetic_energy, virial_pressure
-from eventsim.validate.competitors import Competitor, able
-from eventsim.validate.contacts import RESTARTS, Census, census, longest_stuck
-from eventsim.validate.follow import Followed, advanced, follow, position_errors
-from eventsim.validate.truth import Truth, best_engine, truth_of
+from eventsim.validation.averages import collision_rate, kinetic_energy, virial_pressure
+from eventsim.validation.competitors import Competitor, able
+from eventsim.validation.contacts import RESTARTS, Census, census, longest_stuck
+from eventsim.validation.follow import Followed, advanced, follow, position_errors
+from eventsim.validation.truth import Truth, best_engine, truth_of
 
 USUAL_STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps in the time in which a typical disk flies its radius."""

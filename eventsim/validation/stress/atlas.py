@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from eventsim.validate.stress.case import Case
-from eventsim.validate.stress.catalogue import CASES
-from eventsim.validate.stress.verdict import Verdict, Word, hung, judge
-from eventsim.validate.stress.workers import Silence, answers
+from eventsim.validation.stress.case import Case
+from eventsim.validation.stress.catalogue import CASES
+from eventsim.validation.stress.verdict import Verdict, Word, hung, judge
+from eventsim.validation.stress.workers import Silence, answers
 
 PATIENCE = 180.0
 """Seconds beyond the limit after which an engine is ended from outside: kernels for a scene may have to be compiled."""

@@ -13,9 +13,9 @@ from typing import Any
 
 from eventsim import __version__
 from eventsim.record.files.atomic import atomic_write
-from eventsim.validate.advantages import advantages
-from eventsim.validate.chart import Chart
-from eventsim.validate.compare import Comparison, Line
+from eventsim.validation.advantages import advantages
+from eventsim.validation.chart import Chart
+from eventsim.validation.compare import Comparison, Line
 
 
 def line_data(line: Line) -> dict[str, Any]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from eventsim.scene import Disks, Open, Scene, Segment
 from eventsim.scene.gallery import gallery
-from eventsim.validate.stress.case import GOES_ON, Bench, Case, GaveUpError, off
-from eventsim.validate.stress.catalogue.scenes import in_box, lattice_gas, on_plane
+from eventsim.validation.stress.case import GOES_ON, Bench, Case, GaveUpError, off
+from eventsim.validation.stress.catalogue.scenes import in_box, lattice_gas, on_plane
 
 ULP = 2.0**-52
 COLLAPSE_TIME = 1.78303658

@@ -18,7 +18,7 @@ from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene import Scene
 from eventsim.scene.pace import typical_speed
 from eventsim.scene.stage import Stage, stage_of
-from eventsim.validate.follow import Followed, follow, position_errors
+from eventsim.validation.follow import Followed, follow, position_errors
 
 BELIEVED = 1e-3
 """In diameters: up to here the event-driven run and its neighbour have to agree for a time to be within the horizon."""

@@ -26,11 +26,11 @@ from eventsim.formulas.contact import pair_delay
 from eventsim.formulas.laws import TimeOfContact
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
-from eventsim.validate.averages import kinetic_energy, virial_pressure
-from eventsim.validate.competitors import Competitor, able
-from eventsim.validate.follow import Followed, follow, position_errors
-from eventsim.validate.pile import unrest
-from eventsim.validate.truth import Truth, best_engine, neighbouring, truth_of
+from eventsim.validation.averages import kinetic_energy, virial_pressure
+from eventsim.validation.competitors import Competitor, able
+from eventsim.validation.follow import Followed, follow, position_errors
+from eventsim.validation.pile import unrest
+from eventsim.validation.truth import Truth, best_engine, neighbouring, truth_of
 
 STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 """Steps in the time in which a typical disk flies its radius."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.validate.compare import Comparison, Line
+from eventsim.validation.compare import Comparison, Line
 
 PERFECT_ENERGY = 1e-9
 """Relative; a run that keeps its energy so well looks perfect to who looks at nothing else."""

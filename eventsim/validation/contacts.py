@@ -15,8 +15,8 @@ import numpy as np
 from eventsim.engines import Engine
 from eventsim.engines.stepped import StepOptions
 from eventsim.record.events import Kind, Rows
-from eventsim.validate.follow import follow
-from eventsim.validate.truth import Truth, contacts_of, restarted
+from eventsim.validation.follow import follow
+from eventsim.validation.truth import Truth, contacts_of, restarted
 
 RESTARTS = 12
 """How often an engine is set on the exact state."""

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from eventsim.scene import Disks, Periodic, Scene
-from eventsim.validate.stress.case import Bench, Case, off
-from eventsim.validate.stress.catalogue.scenes import in_box, lattice_gas, with_disks
+from eventsim.validation.stress.case import Bench, Case, off
+from eventsim.validation.stress.catalogue.scenes import in_box, lattice_gas, with_disks
 
 ULP = 2.0**-52
 

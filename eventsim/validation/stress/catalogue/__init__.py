@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from eventsim.errors import EventsimError
-from eventsim.validate.stress.case import Case
-from eventsim.validate.stress.catalogue import boundaries, clusters, digits, grazes, long_runs, order, pileups, steps
+from eventsim.validation.stress.case import Case
+from eventsim.validation.stress.catalogue import boundaries, clusters, digits, grazes, long_runs, order, pileups, steps
 
 
 def _place(case: Case) -> tuple[str, int, str]:

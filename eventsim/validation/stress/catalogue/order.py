@@ -9,8 +9,8 @@ from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.scene import Box, Disks, Open, Periodic, Scene
 from eventsim.scene.stage import stage_of
-from eventsim.validate.stress.case import Bench, Case, off
-from eventsim.validate.stress.catalogue.scenes import lattice_gas, on_plane, relabelled, with_disks
+from eventsim.validation.stress.case import Bench, Case, off
+from eventsim.validation.stress.catalogue.scenes import lattice_gas, on_plane, relabelled, with_disks
 
 ULP = 2.0**-52
 
