@@ -27,10 +27,10 @@ from eventsim.formulas.walls.face import slope
 from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Column, Kind, Rows
 from eventsim.record.provenance import Provenance
+from eventsim.replay.clock_windows import Windows, stage_of_log
 from eventsim.replay.contacts import Contact, Contacts
 from eventsim.replay.disk_flight import DiskFlight
 from eventsim.replay.flight import Flights, start_flights
-from eventsim.replay.windows import Windows, stage_of_log
 from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 

@@ -11,7 +11,7 @@ from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import NEVER, Acceleration
 from eventsim.formulas.rest import NOT_LAST, STRUCK, SUPPORTED, Held, held_by
-from eventsim.replay.windows import Windows
+from eventsim.replay.clock_windows import Windows
 from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 

@@ -12,10 +12,10 @@ from eventsim.errors import LogError
 from eventsim.record.events import ROW, Column, Rows
 from eventsim.record.provenance import Provenance
 from eventsim.record.times import clock_times
+from eventsim.replay.clock_windows import Windows, schedules_of
 from eventsim.replay.compact import BLOCK, Expansion, Numbers
 from eventsim.replay.disk_flight import DiskFlight
 from eventsim.replay.flight import Flights, start_flights
-from eventsim.replay.windows import Windows, schedules_of
 from eventsim.scene.stage import Stage
 
 if TYPE_CHECKING:

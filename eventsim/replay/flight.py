@@ -17,7 +17,7 @@ from eventsim.record.events import Column, Floats
 from eventsim.scene.stage import Stage
 
 if TYPE_CHECKING:
-    from eventsim.replay.windows import Windows
+    from eventsim.replay.clock_windows import Windows
 
 
 @dataclass(slots=True)

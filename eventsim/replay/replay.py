@@ -12,9 +12,9 @@ from eventsim.errors import LogError
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Column, Floats, Kind, Rows, State
 from eventsim.record.places import on_scene_axes
+from eventsim.replay.clock_windows import Windows, changes_in, stage_of_log, windows_of
 from eventsim.replay.flight import Flights, fly, start_flights
 from eventsim.replay.log import EventLog
-from eventsim.replay.windows import Windows, changes_in, stage_of_log, windows_of
 from eventsim.scene.stage import Stage
 
 ENDLESS = ("quiet",)

@@ -13,8 +13,8 @@ import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.provenance import Ending
+from eventsim.replay.clock_windows import DoublingWindows
 from eventsim.replay.replay import Replay
-from eventsim.replay.windows import DoublingWindows
 from eventsim.scene.stage import stage_of
 
 ENGINES = ["reference", "fast"]

@@ -15,11 +15,11 @@ from eventsim.errors import LogError
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.record import Ending, Kind
 from eventsim.record.events import blank_rows
+from eventsim.replay.clock_windows import Windows
 from eventsim.replay.disk_flight import DiskFlight
 from eventsim.replay.flight import fly, start_flights
 from eventsim.replay.log import EventLog
 from eventsim.replay.replay import Replay
-from eventsim.replay.windows import Windows
 from eventsim.scene import Box, Disks, Domain, Open, Periodic, Scene
 from eventsim.scene.stage import Stage, stage_of
 from tests.record.logs import provenance

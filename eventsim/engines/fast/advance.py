@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.last_contact import forget_shapes
 from eventsim.engines.fast.layout import (
     COUNT,
     COUNTS,
@@ -27,7 +28,6 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, store, word
-from eventsim.engines.fast.met import forget_shapes
 from eventsim.engines.fast.sides import NOWHERE, keep_sides, keep_sides_behind
 from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.low_place import low_position, settled

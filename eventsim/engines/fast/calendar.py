@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline, part
-from eventsim.engines.fast.earlier import is_contact
+from eventsim.engines.fast.event_order import is_contact
 from eventsim.engines.fast.layout import (
     COLUMN,
     COUNT,

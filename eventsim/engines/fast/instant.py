@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pulls
-from eventsim.engines.fast.alone import shape_time, wall_delay
 from eventsim.engines.fast.calendar import bucket, day_of
 from eventsim.engines.fast.cells import depth_of
 from eventsim.engines.fast.compiled import inline, kernel
@@ -28,6 +27,7 @@ from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.engines.fast.rest import border_contact
 from eventsim.engines.fast.search import corner_slot
+from eventsim.engines.fast.single_disk_events import shape_time, wall_delay
 from eventsim.formulas.rest import STRUCK
 
 

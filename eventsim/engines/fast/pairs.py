@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pulls
 from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.last_contact import just_met
 from eventsim.engines.fast.layout import (
     CLASSES,
     CONTACT_TIME,
@@ -19,7 +20,6 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, word
-from eventsim.engines.fast.met import just_met
 from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.low_place import wide_pair_delay

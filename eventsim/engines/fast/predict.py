@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, speed
-from eventsim.engines.fast.alone import border_events, crossing, earliest_at_shapes
 from eventsim.engines.fast.compiled import inline
-from eventsim.engines.fast.earlier import earlier
+from eventsim.engines.fast.event_order import earlier
 from eventsim.engines.fast.layout import (
     COUNT,
     COUNTS,
@@ -22,6 +21,7 @@ from eventsim.engines.fast.levels import home_of, look_delay
 from eventsim.engines.fast.memory import either, store, word
 from eventsim.engines.fast.rest import is_for_rules
 from eventsim.engines.fast.search import contacts_in_cells, contacts_of_everyone
+from eventsim.engines.fast.single_disk_events import border_events, crossing, earliest_at_shapes
 
 
 @inline

@@ -6,6 +6,7 @@ import math
 
 from eventsim.engines.fast.advance import anchor, lay_on, place, pulls, settle, speed
 from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.last_contact import just_met, remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     CONTACT_TIME,
@@ -24,7 +25,6 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, store, word
-from eventsim.engines.fast.met import just_met, remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rest import is_support, launched, support_face
 from eventsim.engines.fast.rows import write_pair, write_wall

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import pulls
 from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.last_contact import side_met
 from eventsim.engines.fast.layout import (
     CONTACT_TIME,
     FLAGS,
@@ -31,7 +32,6 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, word
-from eventsim.engines.fast.met import side_met
 from eventsim.engines.fast.shapes import beside, face_at, is_passed, is_straight, lies_on
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import (

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from eventsim.engines.fast import layout
 from eventsim.engines.fast.advance import place, pulls, wrap
-from eventsim.engines.fast.alone import shape_time, wall_delay
 from eventsim.engines.fast.compiled import inline, kernel, link, part
 from eventsim.engines.fast.layout import (
     NOBODY,
@@ -34,12 +33,13 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.loop import pointers, turn_over
 from eventsim.engines.fast.memory import real
-from eventsim.engines.fast.order import along_a_curve
+from eventsim.engines.fast.memory_order import along_a_curve
 from eventsim.engines.fast.pairs import image, pair_is_due
 from eventsim.engines.fast.plan import MANY_DISKS
 from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
 from eventsim.engines.fast.rules import features_of, rules_of
 from eventsim.engines.fast.shapes import WIDTH
+from eventsim.engines.fast.single_disk_events import shape_time, wall_delay
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.expansion import two_sum
