@@ -20,7 +20,7 @@ PATIENCE_HELP = (
 
 HEAD = (
     "engine           radii/step  found missed doubled spurious  angle   overlap   stuck   position    energy"
-    "     rate  pressure    s/time"
+    "     rate  pressure    s/time  +-"
 )
 
 
@@ -55,12 +55,14 @@ def command(
     """Compare the event-driven run of SCENE with engines that advance in steps, over a list of steps.
 
     Contacts are compared one by one: each engine is set on states of the event-driven run, again and again, and followed
-    for half a mean free time. Trajectories are compared after 1, 2, 4 and 8 mean free times; rate, pressure, energy and
-    disks stuck at walls over the whole run. Without --dt, typical disks fly 2 radii to 0.01 radii in a step.
+    for half a mean free time. Trajectories are compared after 1, 2, 4 and 8 contacts a disk; rate, pressure, energy and
+    disks stuck at walls over the whole run. Without --dt, typical disks fly 2 radii to 0.01 radii in a step; what an
+    engine calls sub-steps are smaller steps here.
 
     \b
     Engines: frames, frames-forget (the course project's, two readings of its memory), stepped,
-    stepped-located (impact located within the step), penalty (springs), pymunk (Chipmunk; an extra).
+    stepped-located (impact located within the step), penalty (springs), pymunk, pymunk-1, pymunk-30
+    (Chipmunk, an extra, with 10, 1, 30 iterations of its solver in a step).
 
     \b
     Examples:
@@ -71,7 +73,8 @@ def command(
     \b
     Columns: found, missed, doubled, spurious in per cent of the contacts ahead; angle: mean error of
     deflection, degrees; overlap: the deepest, in reaches; stuck: longest time at a wall; position: error
-    after two mean free times, diameters; energy: relative change; rate, pressure: relative to event-driven.
+    after two contacts a disk, diameters; energy: relative change; rate, pressure: relative to event-driven;
+    s/time: CPU seconds per time unit, the median of warm runs that only step; +-: half their spread.
 
     \b
     Keys of --json:
@@ -80,6 +83,7 @@ def command(
       agrees                   whether the event-driven engines wrote the same log
       rows                     one object a line, keys as in the CSV file
       orders                   engine -> measured order of convergence (null: not measurable)
+      settings, versions       what each engine was told; of what is compared
       left_out, verdict        sentences
 
     Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.
@@ -96,13 +100,20 @@ def command(
     from eventsim.validation.competitors import chosen_competitors
     from eventsim.validation.table import comparison_rows, provenance_lines, write_csv
     from eventsim.validation.verdict import verdict
+    from eventsim.validation.versions import versions
 
     competitors = chosen_competitors(against)
     chosen = chosen_scene(scene, settings, seed)
     with status_line(quiet or as_json) as tell:
         comparison = compare(chosen, competitors, steps or None, until, patience, tell)
     if csv_path is not None:
-        facts = {"scene": scene, "checks": comparison.checks, "engine": comparison.engine}
+        facts = {
+            "scene": scene,
+            "checks": comparison.checks,
+            "engine": comparison.engine,
+            "settings": comparison.settings,
+            "left_out": comparison.left_out,
+        }
         lines = provenance_lines(click.get_current_context().obj, facts)
         write_csv(csv_path, comparison_rows(comparison), lines)
     if figure_path is not None:
@@ -118,6 +129,8 @@ def command(
             "agrees": comparison.agrees,
             "rows": comparison_rows(comparison),
             "orders": comparison.orders,
+            "settings": comparison.settings,
+            "versions": versions(),
             "left_out": comparison.left_out,
             "verdict": verdict(comparison),
         }
@@ -130,7 +143,9 @@ def command(
 
 
 def _text(scene: str, comparison: Comparison, sentences: list[str]) -> str:
-    """The table, what was left out, and the verdict."""
+    """The table, what was left out, the verdict, settings and versions."""
+    from eventsim.validation.versions import versions
+
     run = comparison.truth.run
     lines = [
         f"{scene}: event-driven ({comparison.engine}) to t = {comparison.truth.times[-1]:g}: "
@@ -145,7 +160,9 @@ def _text(scene: str, comparison: Comparison, sentences: list[str]) -> str:
             lines.append("")
         before = line.label
         lines.append(_row(line))
-    lines += ["", *comparison.left_out, *([""] if comparison.left_out else []), *sentences]
+    lines += ["", *comparison.left_out, *([""] if comparison.left_out else []), *sentences, ""]
+    lines.append("; ".join(f"{label}: {told}" for label, told in comparison.settings.items()))
+    lines.append(", ".join(f"{name} {number}" for name, number in versions().items()))
     return "\n".join(lines)
 
 
@@ -155,8 +172,9 @@ def _row(line: Line) -> str:
     found, missed, doubled, spurious = (f"{100.0 * share:.1f}" if not math.isnan(share) else "-" for share in shares)
     energy = "-" if line.energy is None else f"{line.energy:.0e}"
     error = line.errors[min(1, len(line.errors) - 1)]
+    spread = 0.5 * (line.timing.most - line.timing.least) / line.timing.median if line.timing.median else 0.0
     return (
         f"{line.label:<16} {line.step:>10.3g} {found:>6} {missed:>6} {doubled:>7} {spurious:>8} "
         f"{line.census.angle:>6.2f} {line.overlap:>9.1e} {line.stuck:>7.3g} {error:>10.1e} {energy:>9} "
-        f"{line.rate:>+8.1%} {line.pressure:>+9.1%} {line.elapsed:>9.1e}"
+        f"{line.rate:>+8.1%} {line.pressure:>+9.1%} {line.elapsed:>9.1e} {spread:>3.0%}"
     )

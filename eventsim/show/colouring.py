@@ -11,6 +11,7 @@ from matplotlib.colors import Colormap, ListedColormap, to_rgba
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
+from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats
 from eventsim.replay.log import EventLog
 from eventsim.replay.replay import Replay
@@ -128,8 +129,8 @@ def _by_speed(replay: Replay) -> Colouring:
 
 
 def _by_contacts(replay: Replay) -> Colouring:
-    log = replay.log
-    most = np.bincount(np.concatenate([log.a, log.b[log.b >= 0]]), minlength=1).max()
+    met = contacts_of(replay.log.rows)
+    most = np.bincount(np.concatenate([met["a"], met["b"][met["b"] >= 0]]), minlength=1).max()
     return _mapped(lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(max(most, 1))))
 
 

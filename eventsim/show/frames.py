@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
-from eventsim.record.events import Floats, Kind, Rows, State
+from eventsim.record.contacts import contacts_of
+from eventsim.record.events import Floats, Rows, State
 from eventsim.replay.log import EventLog
 from eventsim.replay.replay import Replay
 from eventsim.scene.pace import pace_of_scene, slowed
@@ -104,9 +105,9 @@ def frames_at(replay: Replay, times: Floats, glow_time: float) -> Iterator[Frame
     for time in times.tolist():
         events = int(np.searchsorted(clock, time, side="right"))
         recent = log.rows[seen:events]
-        is_contact = recent["kind"] != Kind.KICK
-        np.add.at(contacts, recent["a"][is_contact], 1)
-        np.add.at(contacts, recent["b"][recent["b"] >= 0], 1)
+        met = contacts_of(recent)
+        np.add.at(contacts, met["a"], 1)
+        np.add.at(contacts, met["b"][met["b"] >= 0], 1)
         state = replay.state_at(time)
         glow = _glow(log, clock, events, time, glow_time, replay.stage.n)
         yield Frame(state, events, contacts.copy(), glow, energy_of(log, state), recent)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from statistics import median
+from functools import partial
 
 import numpy as np
 
@@ -23,8 +23,9 @@ from eventsim.validation.compare import Comparison, Tell, compare, truth_to_comp
 from eventsim.validation.competitors import COMPETITORS, Competitor
 from eventsim.validation.follow import follow, position_errors
 from eventsim.validation.pile import pile
-from eventsim.validation.precision import REPEATS, SHORT_S, Curves, Task, curves
-from eventsim.validation.truth import best_engine, truth_of
+from eventsim.validation.precision import Curves, Task, curves
+from eventsim.validation.timing import timing_of, warm_up
+from eventsim.validation.truth import best_engine, time_after, truth_of
 
 CONTACTS = 3.0
 """Mean free times after which trajectories are compared, where the task does not say."""
@@ -87,9 +88,12 @@ def default_tasks() -> list[Task]:
 def task_of(
     scene: Scene, name: str, words: str = "", measure: str = "trajectory", contacts: float = CONTACTS
 ) -> Task:
-    """The task on a scene after so many contacts a disk."""
+    """The task on a scene after so many contacts a disk, or at its end."""
     truth = truth_to_compare(scene, None).truth
-    return Task(name, scene, measure, scene.start_time + contacts * truth.mean_free_time, words)
+    until = scene.start_time + contacts * truth.mean_free_time
+    if measure == "trajectory":
+        until = time_after(truth.run.rows, truth.stage.n, contacts, float(truth.times[-1]))
+    return Task(name, scene, measure, until, words)
 
 
 def chart_of(
@@ -141,14 +145,13 @@ def rates(patience_s: float, tell: Tell = lambda _: None) -> dict[str, list[tupl
                 continue  # it had no patience left
             tell(f"rate of {label} with {n} disks")
             try:
-                run = follow(opened(stage), [until], patience_s)
+                warm_up(partial(opened, stage), [until])
             except EventsimError:
                 continue
+            run = follow(opened(stage), [until], patience_s)
             if run.stopped is None:
-                times = [run.elapsed_s]
-                if run.elapsed_s < SHORT_S:
-                    times += [follow(opened(stage), [until]).elapsed_s for _ in range(REPEATS - 1)]
-                found.setdefault(label, []).append((n, contacts / max(median(times), 1e-9)))
+                timing = timing_of(partial(opened, stage), [until])
+                found.setdefault(label, []).append((n, contacts / max(timing.median, 1e-9)))
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,13 +21,14 @@ from eventsim.validation.averages import collision_rate, kinetic_energy, virial_
 from eventsim.validation.competitors import Competitor, able
 from eventsim.validation.contacts import RESTARTS, Census, census, longest_stuck
 from eventsim.validation.follow import Followed, advanced, follow, position_errors
-from eventsim.validation.truth import Truth, best_engine, truth_of
+from eventsim.validation.timing import Timing, timing_of, warm_up
+from eventsim.validation.truth import Truth, best_engine, time_after, truth_of
 
 USUAL_STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps in the time in which a typical disk flies its radius."""
 
 CHECKS = (1.0, 2.0, 4.0, 8.0)
-"""Mean free times after which trajectories are compared."""
+"""Contacts a disk after which trajectories are compared."""
 
 FITTED = 1
 """The check whose errors give the order of convergence: two contacts a disk."""
@@ -49,7 +51,7 @@ class Line:
 
     step: dt in the time in which a typical disk flies its radius.  ratio: pair contacts, of those of the event-driven run.
     census: contact by contact, from exact states.  errors: at the checks, in diameters.  energy: relative change (None where
-    it is not conserved).  rate, pressure: relative to the event-driven run's.  elapsed: seconds per simulated time.
+    it is not conserved).  rate, pressure: relative to the event-driven run's.  timing: CPU seconds per simulated time.
     """
 
     label: str
@@ -66,16 +68,23 @@ class Line:
     stuck: float
     rate: float
     pressure: float
-    elapsed: float
+    timing: Timing
     steps: int
     pair_tests: int
+
+    @property
+    def elapsed(self) -> float:
+        """CPU seconds per simulated time, the median."""
+        return self.timing.median
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """A scene, its event-driven run, and the lines of all engines; left_out: a sentence on each that could not take part.
 
-    orders: measured, of convergence.  agrees: whether the event-driven engines write the same log.
+    checks: times after which each disk has had 1, 2, 4, 8 contacts, on average (of a shorter run less, in these proportions).
+    settings: what each engine was told, in words.  orders: measured, of convergence.  agrees: whether the event-driven engines
+    write the same log.
     """
 
     name: str
@@ -85,6 +94,7 @@ class Comparison:
     exact: Line
     lines: list[Line]
     left_out: list[str]
+    settings: dict[str, str] = field(default_factory=dict)
     orders: dict[str, float] = field(default_factory=dict)
     agrees: bool = True
 
@@ -109,24 +119,30 @@ def compare(
         left_out.append(f"what comes after {end} is left out: the event-driven run took {spent} until there")
     flight = truth.radius / truth.speed
     sizes = sorted({step * flight for step in USUAL_STEPS} if steps is None else set(steps), reverse=True)
-    exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks)
+    times = truth.times.tolist()
+    duration = times[-1] - scene.start_time
+    timing = timing_of(lambda: ENGINES[engine].open(truth.stage, keep_rows=True), times, [truth.run.elapsed_s])
+    exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks, timing.per(duration))
     lines = []
     for competitor in ready:
         taken = 0.0
         for place, dt in enumerate(sizes):
             if place and taken * sizes[place - 1] / dt > patience_s:
-                what = f"{competitor.label} with steps below {sizes[place - 1]:.3g}"
-                left_out.append(f"{what} would take more than {patience_s:g} s")
+                left_out.append(_given_up(competitor, sizes[place:], f"it would take more than {patience_s:g} s"))
                 break
             tell(f"{competitor.label}, dt = {dt:.3g}")
-            session = STEPPED[competitor.engine].open(truth.stage, options=competitor.at(dt))
-            run = follow(session, truth.times.tolist(), patience_s)
+            opened = partial(STEPPED[competitor.engine].open, truth.stage, options=competitor.at(dt))
+            if not place:
+                warm_up(opened, times)
+            run = follow(opened(), times, patience_s)
             taken = run.elapsed_s
             if run.stopped is not None:
-                left_out.append(f"{competitor.label} with dt = {dt:.3g} was stopped after {patience_s:g} s")
+                reason = f"it was stopped after {patience_s:g} s" if run.stopped == "patience" else f"it stopped ({run.stopped})"
+                left_out.append(_given_up(competitor, sizes[place:], reason))
                 break
             found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt)
-            lines.append(_line(truth, competitor.label, dt, run, found, checks))
+            timing = timing_of(opened, times)
+            lines.append(_line(truth, competitor.label, dt, run, found, checks, timing.per(duration)))
     orders = {
         competitor.label: fitted_order(
             [line.dt for line in lines if line.label == competitor.label],
@@ -134,7 +150,14 @@ def compare(
         )
         for competitor in ready
     }
-    return Comparison(scene.name or "this scene", truth, engine, checks, exact, lines, left_out, orders, engines_agree(truth))
+    settings = {competitor.label: competitor.settings for competitor in ready}
+    name = scene.name or "this scene"
+    return Comparison(name, truth, engine, checks, exact, lines, left_out, settings, orders, engines_agree(truth))
+
+
+def _given_up(competitor: Competitor, steps: Sequence[float], why: str) -> str:
+    """A sentence on the steps with which an engine does not take part."""
+    return f"{competitor.label} with dt = {', '.join(f'{step:.3g}' for step in steps)} is left out: {why}"
 
 
 def engines_agree(truth: Truth) -> bool:
@@ -171,20 +194,21 @@ def truth_to_compare(scene: Scene, until: float | None, patience_s: float = math
         raise EventsimError("nothing says when to stop: give --until, or a key until or events in the scene")
     # with rows, as all runs here: one kind of kernel to compile
     session = ENGINES[engine].open(stage_of(scene), keep_rows=True)
-    stopped = advanced(session, stop, patience_s)
+    stopped, rows = advanced(session, stop, patience_s, int(CHECKS[-1] * len(scene.disks)) + 2)
     begin, end = scene.start_time, state_of(session, stop, stopped).time
     contacts = 2 * session.counters.pair_contacts + session.counters.wall_contacts
     if not contacts or not end > begin:
         raise EventsimError(f"nothing meets before {end:g}: there is nothing to compare")
-    free = (end - begin) * len(scene.disks) / contacts
-    scale = min(free, (end - begin) / CHECKS[-1])
-    checks = tuple(begin + check * scale for check in CHECKS)
+    share = min(contacts / len(scene.disks) / CHECKS[-1], 1.0)
+    checks = tuple(time_after(rows, len(scene.disks), share * check, end) for check in CHECKS)
     restarts = np.linspace(begin, end, RESTARTS + 2)[1:-1]
     times = sorted({*checks, *restarts.tolist(), end})
     return Compared(truth_of(scene, times, engine), checks, engine, stopped is not None)
 
 
-def _line(truth: Truth, label: str, dt: float, run: Followed, found: Census, checks: Sequence[float]) -> Line:
+def _line(
+    truth: Truth, label: str, dt: float, run: Followed, found: Census, checks: Sequence[float], timing: Timing
+) -> Line:
     stage, exact = truth.stage, truth.run
     duration = float(truth.times[-1]) - truth.scene.start_time
     energy = kinetic_energy(stage, np.column_stack([stage.vx, stage.vy]))
@@ -210,7 +234,7 @@ def _line(truth: Truth, label: str, dt: float, run: Followed, found: Census, che
         stuck=longest_stuck(run.rows, dt) if math.isfinite(dt) else 0.0,
         rate=relative(lambda rows: collision_rate(stage, rows, duration)),
         pressure=relative(lambda rows: virial_pressure(stage, rows, energy, duration)),
-        elapsed=run.elapsed_s / duration,
+        timing=timing,
         steps=run.counters.steps,
         pair_tests=run.counters.pair_tests,
     )

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from eventsim.engines import STEPPED
-from eventsim.engines.stepped import FixedStepOptions, FramesOptions, StepOptions
+from eventsim.engines.options import words_of
+from eventsim.engines.stepped import ChipmunkOptions, FixedStepOptions, FramesOptions, StepOptions
 from eventsim.errors import EventsimError
 from eventsim.scene.stage import Stage
 
@@ -24,6 +25,13 @@ class Competitor:
         return replace(self.options, dt=dt)
 
 
+    @property
+    def settings(self) -> str:
+        """What the engine is told besides the step, in words."""
+        told = [(name, getattr(self.options, name)) for name in words_of(type(self.options)) if name != "dt"]
+        return ", ".join(f"{name} {'as usual' if value is None else value}" for name, value in told) or "nothing to set"
+
+
 def _variants(engine: str) -> list[Competitor]:
     """An engine with its usual options, and with others that are worth a name."""
     options = STEPPED[engine].options()
@@ -35,6 +43,8 @@ def _variants(engine: str) -> list[Competitor]:
 VARIANTS = {
     "frames-forget": ("frames", FramesOptions(memory="frame")),
     "stepped-located": ("stepped", FixedStepOptions(locate=True)),
+    "pymunk-1": ("pymunk", ChipmunkOptions(iterations=1)),
+    "pymunk-30": ("pymunk", ChipmunkOptions(iterations=30)),
 }
 """label -> (engine, options)."""
 

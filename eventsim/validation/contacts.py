@@ -14,9 +14,10 @@ import numpy as np
 
 from eventsim.engines import Engine
 from eventsim.engines.stepped import StepOptions
+from eventsim.record.contacts import Key, contacts_of, keys_of
 from eventsim.record.events import Kind, Rows
 from eventsim.validation.follow import follow
-from eventsim.validation.truth import Truth, contacts_of, restarted
+from eventsim.validation.truth import Truth, restarted
 
 RESTARTS = 12
 """How often an engine is set on the exact state."""
@@ -26,8 +27,6 @@ STRETCH = 0.5
 
 FEW_STEPS = 3
 """Steps that a stretch has at least."""
-
-Key = tuple[int, int, int]
 
 
 @dataclass(slots=True)
@@ -84,12 +83,6 @@ def _spread(count: int, most: int) -> Sequence[int]:
     """Up to `most` of `count` places, evenly spread."""
     places: Sequence[int] = np.unique(np.linspace(0, count - 1, min(most + 1, count)).astype(int)).tolist()
     return places
-
-
-def keys_of(rows: Rows) -> list[Key]:
-    """Who meets whom, (kind, a, b or wall), row by row."""
-    other = np.where(rows["kind"] == Kind.PAIR, rows["b"], rows["wall"])
-    return list(zip(rows["kind"].tolist(), rows["a"].tolist(), other.tolist(), strict=True))
 
 
 def _count(total: Census, ahead: Rows, rows: Rows, behind: Rows, late: Rows) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter, thread_time
+from typing import NamedTuple
 
 import numpy as np
 
@@ -70,16 +71,33 @@ def follow(session: Session, times: Sequence[float], patience_s: float = float("
     )
 
 
-def advanced(session: Session, stop: Stop, patience_s: float) -> str | None:
-    """Let a session run to a stop, its rows dropped; why it stopped, None after about `patience_s` CPU seconds of simulating."""
-    spent = 0.0
+class Scouted(NamedTuple):
+    """Why a session stopped, None where its time was over; and the first rows of its log."""
+
+    stopped: str | None
+    rows: Rows
+
+
+def advanced(session: Session, stop: Stop, patience_s: float, most_rows: int) -> Scouted:
+    """Let a session run to a stop, for about `patience_s` CPU seconds of simulating at most.
+
+    Args:
+        session: the engine.
+        stop: when it is to stop.
+        patience_s: seconds after which it is given up.
+        most_rows: about how many rows are kept.
+    """
+    spent, blocks, kept = 0.0, [blank_rows(0)], 0
     while True:
         began, compiled = thread_time(), session.compile_s
         reason = session.advance(stop, STINT)
         spent += max(thread_time() - began - (session.compile_s - compiled), 0.0)
-        session.take_rows()
+        rows = session.take_rows()
+        if kept < most_rows:
+            blocks.append(rows)
+            kept += len(rows)
         if reason is not None or spent >= patience_s:
-            return reason
+            return Scouted(reason, np.concatenate(blocks))
 
 
 def distances(stage: Stage, one: Floats, other: Floats) -> Floats:

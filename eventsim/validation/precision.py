@@ -9,10 +9,10 @@ What is called an error depends on what the scene can be asked for:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from statistics import median
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from eventsim.validation.averages import kinetic_energy, virial_pressure
 from eventsim.validation.competitors import Competitor, able
 from eventsim.validation.follow import Followed, follow, position_errors
 from eventsim.validation.pile import unrest
+from eventsim.validation.timing import timing_of, warm_up
 from eventsim.validation.truth import Truth, best_engine, neighbouring, truth_of
 
 STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
@@ -38,9 +39,6 @@ STEPS = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 BITS = (64, 96, 128, 192, 256, 512, 1024)
 DURATIONS = (0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
 """Precisions of balls; contact durations, in sqrt(d / g), of event-driven runs of a pile."""
-
-REPEATS, SHORT_S = 3, 0.2
-"""Runs of which the median time counts, for those that are shorter than this."""
 
 NEIGHBOURS = 5
 """Runs that tell how much of a pressure is chance."""
@@ -56,9 +54,9 @@ ErrorOf = Callable[[Followed, Session], float]
 class Point:
     """One engine with one parameter on one scene: error against work.
 
-    parameter: `dt` (time), `bits`, or `contact_duration` (time).  elapsed: seconds per simulated time, a median.  events,
-    steps, pair_tests, calendar: how often what was done; calendar: contacts, crossings, wraps and stale predictions
-    that were taken from it.
+    parameter: `dt` (time), `bits`, or `contact_duration` (time).  elapsed: CPU seconds per simulated time, a median; least,
+    most: of the runs that were timed.  events, steps, pair_tests, calendar: how often what was done; calendar: contacts,
+    crossings, wraps and stale predictions that were taken from it.
     """
 
     scene: str
@@ -68,6 +66,8 @@ class Point:
     value: float
     error: float
     elapsed: float
+    least: float = math.nan
+    most: float = math.nan
     events: int = 0
     steps: int = 0
     pair_tests: int = 0
@@ -147,7 +147,7 @@ def curves(task: Task, competitors: Sequence[Competitor], patience_s: float, tel
     begin = task.scene.start_time
     for runner_list in runners:
         _run_list(result, runner_list, task.until, task.until - begin, patience_s, tell)
-    _repeat(result, [runner for each in runners for runner in each], task.until, task.until - begin)
+    _time(result, [runner for each in runners for runner in each], task.until, task.until - begin)
     return result
 
 
@@ -156,20 +156,30 @@ def _run_list(
 ) -> None:
     """Run one engine from its cheapest parameter on, as long as there is patience."""
     taken, before = 0.0, 0.0
-    for runner in runners:
+    for place, runner in enumerate(runners):
         growth = max(before / runner.value, runner.value / before) if before else 1.0
         if runner.parameter == "dt" and taken * growth > patience_s:
+            _give_up(result, runners[place:], f"it would take more than {patience_s:g} s")
             return
         tell(f"{result.task.name}: {runner.label}, {runner.parameter} = {runner.value:.3g}")
-        if runner is runners[0] and runner.parameter in ("dt", "contact_duration"):
-            follow(runner.open(), [until], patience_s)  # the first run of a library compiles or loads, and would speak for all
+        if not place and runner.parameter in ("dt", "contact_duration"):
+            warm_up(runner.open, [until])
         session = runner.open()
         run = follow(session, [until], patience_s)
         taken, before = run.elapsed_s, runner.value
         if run.stopped == "patience":
+            _give_up(result, runners[place:], f"it was stopped after {patience_s:g} s")
             return
         if run.stopped is None:
             result.points.append(_point(result.task, runner, run, session, duration))
+        else:
+            _give_up(result, [runner], f"it stopped ({session.reason or run.stopped})")
+
+
+def _give_up(result: Curves, runners: Sequence[_Runner], why: str) -> None:
+    """Tell that an engine does not take part with some of its parameters."""
+    values = ", ".join(f"{runner.value:.3g}" for runner in runners)
+    result.left_out.append(f"{runners[0].label} with {runners[0].parameter} = {values} is left out: {why}")
 
 
 def _point(task: Task, runner: _Runner, run: Followed, session: Session, duration: float) -> Point:
@@ -189,16 +199,15 @@ def _point(task: Task, runner: _Runner, run: Followed, session: Session, duratio
     )
 
 
-def _repeat(result: Curves, runners: Sequence[_Runner], until: float, duration: float) -> None:
-    """Time short runs again, engines in turn, and keep the medians."""
-    times = {(point.label, point.value): [point.elapsed] for point in result.points}
-    for _ in range(REPEATS - 1):
-        for runner in runners:
-            known = times.get((runner.label, runner.value))
-            if known is not None and known[0] * duration < SHORT_S:
-                known.append(follow(runner.open(), [until]).elapsed_s / duration)
-    for point in result.points:
-        point.elapsed = median(times[point.label, point.value])
+def _time(result: Curves, runners: Sequence[_Runner], until: float, duration: float) -> None:
+    """Time the runs again from new: stepped engines only step then."""
+    points = {(point.label, point.value): point for point in result.points}
+    for runner in runners:
+        point = points.get((runner.label, runner.value))
+        if point is not None:
+            known = [] if runner.parameter == "dt" else [point.elapsed * duration]
+            timing = timing_of(runner.open, [until], known).per(duration)
+            point.elapsed, point.least, point.most = timing[:3]
 
 
 def _event_driven(stage: Stage, error: ErrorOf) -> list[list[_Runner]]:

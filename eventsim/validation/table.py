@@ -11,11 +11,11 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from eventsim import __version__
 from eventsim.record.files.atomic import atomic_write
 from eventsim.validation.advantages import advantages
 from eventsim.validation.chart import Chart
 from eventsim.validation.compare import Comparison, Line
+from eventsim.validation.versions import versions
 
 
 def line_data(line: Line) -> dict[str, Any]:
@@ -41,7 +41,10 @@ def line_data(line: Line) -> dict[str, Any]:
         "momentum_drift": line.momentum,
         "rate_bias": line.rate,
         "pressure_bias": line.pressure,
-        "elapsed_per_time": line.elapsed,
+        "elapsed_per_time": line.timing.median,
+        "elapsed_least": line.timing.least,
+        "elapsed_most": line.timing.most,
+        "timed_runs": line.timing.runs,
         "steps": line.steps,
         "pair_tests": line.pair_tests,
     }
@@ -67,6 +70,8 @@ def chart_rows(chart: Chart) -> list[dict[str, Any]]:
                     "value": point.value,
                     "error": point.error,
                     "elapsed_per_time": point.elapsed,
+                    "elapsed_least": point.least,
+                    "elapsed_most": point.most,
                     "events": point.events,
                     "steps": point.steps,
                     "pair_tests": point.pair_tests,
@@ -104,8 +109,8 @@ def chart_rows(chart: Chart) -> list[dict[str, Any]]:
 
 def provenance_lines(command: str | None, facts: Mapping[str, Any]) -> list[str]:
     """Where numbers come from: version, command, machine, and facts of the caller."""
-    machine = f"Python {platform.python_version()} on {platform.machine()} {sys.platform}"
-    data = {"eventsim": __version__, "command": command, "machine": machine, **facts}
+    machine = f"{platform.machine()} {sys.platform}"
+    data = {**versions(), "command": command, "machine": machine, **facts}
     return [f"# {key}: {json.dumps(value)}" for key, value in data.items()]
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from eventsim.compiler import has_compiler
 from eventsim.engines import ENGINES
 from eventsim.errors import EventsimError
+from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene import Scene
 from eventsim.scene.pace import typical_speed
@@ -92,6 +93,20 @@ def truth_of(scene: Scene, times: Sequence[float], engine: str | None = None) ->
     return Truth(scene, stage, run.times, run, uncertainty, max(speed, start) or 1.0)
 
 
+def time_after(rows: Rows, n: int, contacts: float, end: float) -> float:
+    """The time when n disks have had so many contacts each, on average, of a log that begins with these rows.
+
+    It lies midway between that contact and the next one, or `end`: a look at it is after the contact, and not just.
+    """
+    met = contacts_of(rows)
+    sides = np.cumsum(np.where(met["kind"] == Kind.PAIR, 2, 1))
+    last = min(int(np.searchsorted(sides, contacts * n * (1.0 - LAST_BIT))), len(met) - 1)
+    time = float(met["time"][last])
+    later = met["time"][last:][met["time"][last:] > time]
+    following = float(later[0]) if len(later) else end
+    return min(max(0.5 * (time + following), time), end)
+
+
 def neighbouring(stage: Stage, bits: int = 1) -> Stage:
     """The stage with every component of a velocity changed by so many last bits, up or down in turn."""
     signs = np.where(np.arange(stage.n) % 2 == 0, 1.0 * bits, -1.0 * bits)
@@ -109,9 +124,3 @@ def restarted(stage: Stage, position: Floats, velocity: Floats, time: float) -> 
         vy=velocity[:, 1].copy(),
         start_time=time,
     )
-
-
-def contacts_of(rows: Rows) -> Rows:
-    """The rows that are contacts, in order of time."""
-    contacts: Rows = rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)]
-    return contacts

@@ -11,6 +11,7 @@ import pytest
 import eventsim as es
 from eventsim.replay.replay import Replay
 from eventsim.scene.files import scene_from_dict
+from eventsim.show.frames import frames_at
 from eventsim.show.player.page import notebook_frame, page
 from tests.show.browser import browser
 
@@ -84,6 +85,21 @@ def test_a_late_clock_and_a_kick_are_shown_too(opened):
     driver = opened(simulation.log)
     for moment in np.linspace(0.0, 20.0, 33):
         assert_shows(shown(driver, moment), replay)
+
+
+def test_a_kick_is_no_contact(opened):
+    scene = es.Scene(es.Disks([(0.0, 0.0), (4.0, 0.0)], [(1, 0), (0, 0)], radius=0.5), es.Open(), name="kicked")
+    simulation = es.Simulation(scene)
+    simulation.advance_to(1.0)
+    simulation.set_velocity(0, (2.0, 0.0))
+    simulation.advance_to(4.0)
+    assert simulation.log.kinds.tolist() == ["kick", "pair"]
+    driver = opened(simulation.log, color="contacts")
+    count = "player.seek(arguments[0]); return [0, 1].map((i) => player.world.contactsUntil(i, player.view.time))"
+    assert driver.execute_script(count, 1.5) == [0, 0]
+    assert driver.execute_script(count, 3.0) == [1, 1]
+    (frame,) = frames_at(Replay(simulation.log), np.array([3.0]), 0.1)
+    assert frame.contacts.tolist() == [1, 1]
 
 
 def test_steps_land_on_event_times_forwards_and_backwards(opened, broken):

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import time
 from dataclasses import replace
 from itertools import pairwise
 
@@ -13,6 +14,7 @@ from matplotlib.figure import Figure
 
 import eventsim as es
 from eventsim.cli.program import main
+from eventsim.engines.stepped.stepped import FixedStepSession
 from eventsim.scene.stage import stage_of
 from eventsim.show.versus.losses import NONE, draw_missed
 from eventsim.validation.advantages import Advantage, advantages, cell, table
@@ -87,6 +89,78 @@ def test_patience_bounds_the_event_driven_run_too():
     assert (
         f"what comes after t = {cut.truth.times[-1]:g} is left out: the event-driven run took 0.1 s" in cut.left_out[0]
     )
+
+
+def test_what_a_library_does_first_is_charged_to_nobody(monkeypatch):
+    """An engine that loads for 0.3 s in its first step keeps all its steps, and its true time."""
+    step, loaded = FixedStepSession._run, []
+
+    def slow_at_first(session, steps, most_events):
+        if steps and not loaded:
+            loaded.append(True)
+            begun = time.thread_time()
+            while time.thread_time() < begun + 0.3:
+                pass
+        return step(session, steps, most_events)
+
+    monkeypatch.setattr(FixedStepSession, "_run", slow_at_first)
+    found = compare(es.gallery("two-disks"), chosen_competitors(["stepped"]), steps=(0.2, 0.1), until=12.0, patience_s=0.2)
+    assert loaded
+    assert found.left_out == []
+    assert [line.dt for line in found.lines] == [0.2, 0.1]
+    assert all(line.elapsed * 12.0 < 0.1 for line in found.lines)
+    assert all(0.0 < line.timing.least <= line.elapsed <= line.timing.most for line in found.lines)
+
+
+def test_positions_are_looked_at_from_the_first_contact_on():
+    """Galperin's disks meet late and all at once: who misses most of 31 contacts is not where the others are."""
+    found = compare(es.gallery("galperin"), chosen_competitors(["frames"]), steps=(1.0,))
+    (line,) = found.lines
+    first = found.truth.run.rows["time"][0]
+    assert all(check > first for check in found.checks)
+    assert line.census.share(line.census.missed) > 0.5
+    assert min(line.errors[1:]) > 0.01
+
+
+def test_no_step_is_dropped_without_a_line():
+    found = compare(es.gallery("gas", n=60), chosen_competitors(["stepped"]), steps=(0.02, 1e-6), until=0.2, patience_s=0.05)
+    (sentence,) = found.left_out
+    assert "stepped with dt = 1e-06 is left out" in sentence
+    assert found.settings == {"stepped": "locate False"}
+
+
+@pytest.mark.slow
+def test_the_time_of_pymunk_is_that_of_a_loop_of_ones_own():
+    pymunk = pytest.importorskip("pymunk")
+    scene, dt, until = es.gallery("break"), 1.0 / 240.0, 4.0
+
+    def own_loop():
+        space = pymunk.Space()
+        for (x, y), (vx, vy) in zip(scene.disks.position.tolist(), scene.disks.velocity.tolist(), strict=True):
+            body = pymunk.Body(float(scene.disks.mass[0]), math.inf)
+            body.position, body.velocity = (x, y), (vx, vy)
+            circle = pymunk.Circle(body, float(scene.disks.radius[0]))
+            circle.elasticity = 1.0
+            space.add(body, circle)
+        width, height = scene.domain.size
+        for ends in (((-1, -1), (width + 1, -1)), ((-1, height + 1), (width + 1, height + 1))):
+            space.add(wall := pymunk.Segment(space.static_body, *ends, 1.0))
+            wall.elasticity = 1.0
+        for ends in (((-1, -1), (-1, height + 1)), ((width + 1, -1), (width + 1, height + 1))):
+            space.add(wall := pymunk.Segment(space.static_body, *ends, 1.0))
+            wall.elasticity = 1.0
+        begun = time.thread_time()
+        for _ in range(round(until / dt)):
+            space.step(dt)
+        return (time.thread_time() - begun) / until
+
+    own_loop()
+    own = np.median([own_loop() for _ in range(9)])
+    (line,) = compare(scene, chosen_competitors(["pymunk"]), steps=(dt,), until=until).lines
+    found = curves(Task("break", scene, "trajectory", until), [COMPETITORS["pymunk"]], patience_s=1.0).of("pymunk")
+    assert line.elapsed == pytest.approx(own, rel=0.3)
+    nearest = min(found, key=lambda point: abs(math.log(point.value / dt)))
+    assert nearest.elapsed * nearest.value == pytest.approx(own * dt, rel=0.3)
 
 
 def test_an_unknown_engine_is_named_with_those_that_there_are():

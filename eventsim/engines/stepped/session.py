@@ -56,6 +56,7 @@ class SteppedSession(Session):
         self.clock_of_steps = StepClock(stage, self.dt)
         self.trajectory: Trajectory = Trajectory(stage.gravity, stage.corner, stage.period)
         self._keep_rows = keep_rows
+        self._sampled = True
         self._blocks: list[Rows] = []
         self._sample()
 
@@ -77,18 +78,24 @@ class SteppedSession(Session):
                 assert stop.until is not None
                 clock.pass_to(stop.until)
                 return "until"
-            steps = min(budget, FOREVER if left is None else left, self.trajectory.steps_to_next(clock.steps))
+            steps = min(budget, FOREVER if left is None else left)
+            if self._sampled:
+                steps = min(steps, self.trajectory.steps_to_next(clock.steps))
             done = self._run(steps, most_events)
             clock.count(done)
             tell_counters(self.found, self.counters)
             self.counters.steps = clock.steps
             self._flush()
-            if done == steps and self.trajectory.is_due(clock.steps):
+            if self._sampled and done == steps and self.trajectory.is_due(clock.steps):
                 self._sample()
             budget -= max(done, 1)
             if vain is not None and self.counters.events == vain[1] and clock.steps > vain[0] + VAIN_STEPS:
                 return "quiet"
         return None
+
+    def only_step(self) -> None:
+        """Do from here on what the engine needs for its motion and nothing more, for a stopwatch: the trajectory ends here."""
+        self._sampled = False
 
     def _vain_from(self, stop: Stop) -> tuple[int, int] | None:
         """(step, events) since when nothing may have happened; None with a stop time."""
@@ -139,6 +146,9 @@ class SteppedSession(Session):
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of a disk from outside, at the last step; a row of the log."""
         m = self.disks
+        finite = not math.isinf(m.mass[i])
+        given = [m.mass[i] * (vx - m.vx[i]), m.mass[i] * (vy - m.vy[i])] if finite else [0.0, 0.0]
+        self.counters.outer_momentum = [sum(both) for both in zip(self.counters.outer_momentum, given, strict=True)]
         m.vx[i], m.vy[i] = vx, vy
         self.counters.kicks += 1
         self.counters.events += 1
@@ -146,6 +156,7 @@ class SteppedSession(Session):
             row = blank_rows(1)
             row["event"], row["kind"], row["a"] = self.counters.events - 1, Kind.KICK, i
             row["xa"], row["ya"], row["vxa"], row["vya"] = m.x[i], m.y[i], vx, vy
+            row["impulse"] = math.hypot(*given) if finite else math.nan
             row["remainder"] = self.clock_of_steps.now
             self._blocks.append(self.clock_of_steps.place(row))
         self._kicked()

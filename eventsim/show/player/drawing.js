@@ -159,11 +159,11 @@ class Drawing {
     const [low, high] = stage.masses;
     let most = 1;
     if (view.colour === "contacts") {
-      for (let i = 0; i < n; i++) most = Math.max(most, world.anchorBefore(i, view.time));
+      for (let i = 0; i < n; i++) most = Math.max(most, world.contactsUntil(i, view.time));
     }
     for (let i = 0; i < n; i++) {
       if (view.colour === "speed") put(i, Math.hypot(state.vx[i], state.vy[i]) / stage.fastest);
-      else if (view.colour === "contacts") put(i, world.anchorBefore(i, view.time) / most);
+      else if (view.colour === "contacts") put(i, world.contactsUntil(i, view.time) / most);
       else if (view.colour === "mass") put(i, high > low ? (Math.min(world.disks.mass[i], high) - low) / (high - low) : 0.5);
       else put(i, n > 1 ? i / (n - 1) : 0.5);
     }

@@ -199,7 +199,7 @@ class Player {
       `disk ${i}   radius ${number(disks.radius[i])}   mass ${number(disks.mass[i])}`,
       `position  ${number(now.x[i] + cx)}, ${number(now.y[i] + cy)}`,
       `velocity  ${number(now.vx[i])}, ${number(now.vy[i])}`,
-      `speed  ${number(Math.hypot(now.vx[i], now.vy[i]))}   events ${this.world.anchorBefore(i, this.view.time)}`,
+      `speed  ${number(Math.hypot(now.vx[i], now.vy[i]))}   contacts ${this.world.contactsUntil(i, this.view.time)}`,
     ].join("\n");
     if (!this.pointer) return;
     const left = this.pointer.x - box.left, top = this.pointer.y - box.top;

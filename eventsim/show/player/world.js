@@ -35,13 +35,13 @@ class World {
     this.slopes = scene.slopes;
     this.disks = scene.disks;
     this.anchor = {};
-    for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy", "gx", "gy"]) this.anchor[name] = new Column();
+    for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy", "gx", "gy", "contacts"]) this.anchor[name] = new Column();
     this.event = {};
     for (const name of ["time", "a", "b", "kind", "wall"]) this.event[name] = new Column();
     this.anchorsOf = [];
     for (let i = 0; i < this.count; i++) {
       this.anchorsOf.push([]);
-      this._anchor(i, 0, 0, scene.disks.x[i], scene.disks.y[i], scene.disks.vx[i], scene.disks.vy[i], this._pull(i));
+      this._anchor(i, 0, 0, scene.disks.x[i], scene.disks.y[i], scene.disks.vx[i], scene.disks.vy[i], this._pull(i), 0);
     }
     this.now = { x: new Float64Array(this.count), y: new Float64Array(this.count),
                  vx: new Float64Array(this.count), vy: new Float64Array(this.count) };
@@ -52,8 +52,9 @@ class World {
     for (let k = 0; k < rows.a.length; k++) {
       const epoch = rows.epoch[k], remainder = rows.remainder[k];
       const rests = rows.kind[k] === REST, pull = rests ? this.slopes[rows.wall[k]] : this._pull(rows.a[k]);
-      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull);
-      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]));
+      const met = rows.kind[k] <= WALL ? 1 : 0;
+      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull, met);
+      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]), met);
       const last = this.event.time.length ? this.event.time.values[this.event.time.length - 1] : 0;
       this.event.time.push(Math.max(epoch * this.epochLength + remainder, last));
       for (const name of ["a", "b", "kind", "wall"]) this.event[name].push(rows[name][k]);
@@ -87,7 +88,12 @@ class World {
     return this.now;
   }
 
-  /* Which of a disk's anchors holds at a time; it is also the number of events that the disk has had. */
+  /* How many contacts, with disks or walls, a disk has had at a time: kicks and the beginning of rest are none. */
+  contactsUntil(i, time) {
+    return this.anchor.contacts.values[this.anchorsOf[i][this.anchorBefore(i, time)]];
+  }
+
+  /* Which of a disk's anchors holds at a time. */
   anchorBefore(i, time) {
     const list = this.anchorsOf[i], times = this.anchor.time.values;
     let low = 0, high = list.length;
@@ -136,15 +142,15 @@ class World {
     }
   }
 
-  _turn(i, epoch, remainder, vx, vy, pull) {
+  _turn(i, epoch, remainder, vx, vy, pull, met) {
     const k = this.anchorsOf[i][this.anchorsOf[i].length - 1];
     const lag = (epoch - this.anchor.epoch.values[k]) * this.epochLength + (remainder - this.anchor.remainder.values[k]);
     const x = wrapped(this._place("x", k, lag), this.period[0]);
     const y = wrapped(this._place("y", k, lag), this.period[1]);
-    this._anchor(i, epoch, remainder, x, y, vx, vy, pull);
+    this._anchor(i, epoch, remainder, x, y, vx, vy, pull, this.anchor.contacts.values[k] + met);
   }
 
-  _anchor(i, epoch, remainder, x, y, vx, vy, pull) {
+  _anchor(i, epoch, remainder, x, y, vx, vy, pull, contacts) {
     const anchor = this.anchor;
     this.anchorsOf[i].push(anchor.time.length);
     anchor.epoch.push(epoch);
@@ -153,6 +159,7 @@ class World {
     anchor.x.push(x); anchor.y.push(y);
     anchor.vx.push(vx); anchor.vy.push(vy);
     anchor.gx.push(pull[0]); anchor.gy.push(pull[1]);
+    anchor.contacts.push(contacts);
   }
 
   _lag(k, time) {
@@ -174,7 +181,7 @@ class World {
 }
 
 const PARABOLA_PIECES = 8, WEIGHTLESS = [0, 0];
-const REST = 2;  // the kind of a row from which on a disk is supported by a wall
+const WALL = 1, REST = 2;  // kinds of rows: up to WALL contacts; from REST on a disk is supported by a wall
 
 function wrapped(x, period) {
   if (period === null) return x;

@@ -11,6 +11,7 @@ from eventsim.engines import STEPPED
 from eventsim.engines.base import Stop
 from eventsim.engines.trajectory import MOST_SAMPLES
 from eventsim.replay.replay import Replay
+from eventsim.runner.residuals import residuals_of
 from eventsim.scene.stage import stage_of
 
 TWO = es.gallery("two-disks")
@@ -108,6 +109,25 @@ def test_a_kick_is_logged():
     sim.advance_to(3.0)
     assert sim.log.kinds.tolist() == ["kick"]
     assert sim.state.position[0, 0] == pytest.approx(3.0, abs=0.011)
+
+
+@pytest.mark.parametrize("engine", ["frames", "stepped", "penalty", "pymunk"])
+def test_a_kick_books_its_momentum_and_tells_its_impulse(engine):
+    needs(engine)
+    scene = es.Scene(es.Disks([(0.5, 0.5), (1.5, 0.5)], [(0.1, 0), (0, 0)], radius=0.1, mass=[2.0, 3.0]), es.Box((2, 1)))
+    session = STEPPED[engine].open(stage_of(scene), options=STEPPED[engine].options(dt=0.01))
+    session.advance(Stop(until=0.5), 1000)
+    session.kick(1, 0.3, -0.4)
+    session.advance(Stop(until=0.7), 1000)
+    assert session.take_rows()["impulse"].tolist() == [pytest.approx(3.0 * 0.5)]
+    assert residuals_of(session).momentum < 1e-12
+
+
+def test_a_kick_of_an_immovable_disk_has_no_impulse():
+    post = es.Scene(es.Disks([(0, 0)], [(1, 0)], radius=0.1, mass=float("inf")), es.Open())
+    sim = es.Simulation(post, engine="stepped", dt=0.01)
+    sim.set_velocity(0, (0.0, 1.0))
+    assert np.isnan(sim.log.impulse[0])
 
 
 @pytest.mark.parametrize(
