@@ -32,6 +32,9 @@ from eventsim.scene.stage import stage_of
 STEP_BUDGET = 4096
 """Steps of an engine between two looks at whether the next event has come."""
 
+MOST_WRAPS = 200_000
+"""Wraps without an event after which `step` no longer waits for one."""
+
 
 def simulate(
     scene: Scene,
@@ -242,7 +245,8 @@ class Simulation:
     def step(self) -> Rows:
         """Go to the next event; its row, or the rows of all contacts at that instant.  Empty where no event is ahead.
 
-        Raises CollapseError where contacts follow one another without end.
+        Raises CollapseError where contacts follow one another without end; EventsimError after MOST_WRAPS wraps without an event,
+        where nobody knows whether one is ahead.
         """
         return self._advance(Stop(events=self._session.counters.events + 1))
 
@@ -299,10 +303,16 @@ class Simulation:
 
     def _advance(self, stop: Stop) -> Rows:
         before, begun = len(self._blocks), self.time
-        stopped = None
+        stopped, wraps = None, self.counters.wraps
         while stopped is None:
             stopped = self._advanced(stop)
             self._keep()
+            if stopped is None and stop.until is None and self.counters.wraps - wraps > MOST_WRAPS:
+                self._time = None
+                raise EventsimError(
+                    f"no event in {MOST_WRAPS} wraps around the domain, up to t = {self.time:g}, and none may be ahead; "
+                    "advance_to(time) lets time pass"
+                )
         if stopped in ("collapse", "digits"):
             stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
             raise CollapseError(f"stopped by {stopped}: {reason}")

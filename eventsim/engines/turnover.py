@@ -51,10 +51,9 @@ def exponent_after(stage: Stage, exponent: int, rows: int, look: Look) -> int:
     """The exponent of the window behind one that has ended, or that a contact has ended behind its end; rows: logged in it."""
     clock = stage.clock
     if rows:
-        cap = clock.window_cap
-        if exponent >= cap and rows < FEW * stage.n:
-            cap += clock.slowing(look().fastest)
-        return next_window(exponent, rows, stage.n, cap)
+        if exponent >= clock.paced and rows < FEW * stage.n:
+            return clock.window_at_pace(exponent, look().fastest)
+        return next_window(exponent, rows, stage.n, clock.window_cap)
     anchors = look()
     return window_after_idle(exponent, bool(np.any(anchors.t > 0.0)), _idle_cap(stage, anchors))
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.formulas.clock import FIRST_WINDOW
+from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS
 from eventsim.scene.domain import Channel, Open, Periodic
 from eventsim.scene.scene import Scene
 
@@ -16,7 +16,7 @@ LONGEST_WINDOW = 900
 
 LONGEST_PERIODIC_WINDOW = 13
 """A window of 2**13 epochs, as the disks that move now would have them: beyond it few rows make no window longer in a periodic
-domain, so a disk that only wraps keeps its digits, and a gas that has cooled is not slowed."""
+domain, so a disk that only wraps keeps its digits; and windows are that long at once, so a gas that has cooled is not slowed."""
 
 LONGEST_WRAPPING_WINDOW = 8
 """The same behind a window with wraps and no row: a disk that only wraps is some 1e-9 domains off after 1e6 rounds, and its wraps
@@ -42,7 +42,8 @@ class SceneClock(NamedTuple):
 
     epoch_length: time, a power of two.  speed: exponent of the speed that it was made for; pull: of the speed which gravity gives
     on the way from disk to disk, None without gravity.  window_cap: the largest exponent of a window with few rows while disks
-    are as fast as at the start; idle_cap: of one behind a window without a row.
+    are as fast as at the start; idle_cap: of one behind a window without a row.  paced: the exponent from which on a window with
+    few rows is followed by one of this exponent for the pace of its disks.
     """
 
     epoch_length: float
@@ -50,6 +51,7 @@ class SceneClock(NamedTuple):
     pull: int | None
     window_cap: int
     idle_cap: int
+    paced: int
 
     def slowing(self, fastest: float) -> int:
         """By which power of two disks are slower than at the start, 0 if not; fastest: their largest component of a velocity."""
@@ -57,6 +59,14 @@ class SceneClock(NamedTuple):
         if fastest > 0.0:
             speeds.append(math.frexp(fastest)[1])
         return max(0, self.speed - max(speeds)) if speeds else LONGEST_WINDOW
+
+    def window_at_pace(self, exponent: int, fastest: float) -> int:
+        """The exponent of the window behind a long one with few rows; fastest: the largest component of a velocity now.
+
+        So a gas that cools does not turn its clock over for every doubling of its times.
+        """
+        longest = self.paced + self.slowing(fastest)
+        return min(longest if self.paced == self.window_cap else max(exponent + 1, longest), MOST_EPOCHS.bit_length() - 1)
 
 
 def clock_of(scene: Scene, wide: bool) -> SceneClock:
@@ -82,12 +92,13 @@ def clock_of(scene: Scene, wide: bool) -> SceneClock:
     speed = max(speeds, default=0)
     exponent = max(SHORTEST_EPOCH, min(length - speed, LONGEST_EPOCH))
     window_cap, idle_cap = LONGEST_WINDOW, FIRST_WINDOW + (n - 1).bit_length()
+    paced = LONGEST_PERIODIC_WINDOW + usual - length
     if isinstance(domain, Periodic | Channel):
-        window_cap = LONGEST_PERIODIC_WINDOW + usual - length
+        window_cap = paced
         idle_cap = max(LONGEST_WRAPPING_WINDOW, min(idle_cap, LONGEST_PERIODIC_WINDOW)) + usual - length
     else:
         idle_cap = max(idle_cap, whole - length + ROUNDS)
-    return SceneClock(math.ldexp(1.0, exponent), speed, pull, window_cap, idle_cap)
+    return SceneClock(math.ldexp(1.0, exponent), speed, pull, window_cap, idle_cap, paced)
 
 
 def _distance(scene: Scene, n: int) -> int:

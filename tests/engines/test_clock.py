@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.engines import engine_named
 from eventsim.engines.base import Stop
-from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.provenance import Ending
 from eventsim.replay.clock_windows import DoublingWindows
 from eventsim.replay.replay import Replay
 from eventsim.scene.stage import stage_of
+from tests.engines.scenes import lattice_gas
 
 ENGINES = ["reference", "fast"]
 LATE = [1.0, 1e6, 1e9, 1e12, 1e15]
@@ -154,11 +155,19 @@ def test_a_state_in_an_idle_spell_has_the_same_bits_however_one_comes_there(name
         assert other.log.digest() == once.log.digest()
 
 
-@pytest.mark.parametrize(("until", "most"), [(3e4, 2e-10), pytest.param(1e6, 5e-9, marks=pytest.mark.slow)])
-def test_who_only_wraps_keeps_its_digits(until: float, most: float) -> None:
+@pytest.mark.parametrize(
+    ("engine", "until", "most"),
+    [
+        ("reference", 3e4, 2e-10),
+        ("fast", 1e6, 5e-9),
+        pytest.param("reference", 1e6, 5e-9, marks=pytest.mark.slow),
+    ],
+)
+def test_who_only_wraps_keeps_its_digits(engine: str, until: float, most: float) -> None:
     """28,000 wraps, each rounded to the last bit of its time; to 1e6 (slow) one last bit of the velocity alone makes 1e-10."""
     size, speed, start = (1.3, 0.7), (0.7, 0.3), (0.25, 0.3)
-    session = ReferenceSession(stage_of(es.Scene(es.Disks([start], [speed], 0.01), es.Periodic(size))))
+    skip_without(engine)
+    session = engine_named(engine).open(stage_of(es.Scene(es.Disks([start], [speed], 0.01), es.Periodic(size))))
     while session.advance(Stop(until), 1 << 20) is None:
         pass
     motion = session.motion()
@@ -189,15 +198,45 @@ def few(radius: float) -> es.Scene:
         (few(0.1), None, 1500),
         (few(0.01), 600.0, None),
         (few(1e-4), 900.0, None),
+        (es.gallery("cooling", n=2), None, 500),
+        (es.gallery("cooling", n=3), None, 800),
         (es.gallery("cooling", n=10), None, 2000),
         (es.gallery("cooling", n=60), None, 6000),
+        (lattice_gas(2, 0.3, es.Box, restitution=es.Restitution(0.9, 1.0)), None, 1500),
+        (lattice_gas(2, 0.3, es.Box), None, 1000),
+        (lattice_gas(5, 0.3, es.Channel), None, 600),
     ],
 )
-def test_turnovers_are_few_in_a_periodic_domain(scene: es.Scene, until: float | None, events: int | None) -> None:
+def test_turnovers_are_few(scene: es.Scene, until: float | None, events: int | None) -> None:
     """Where contacts are rare, and where a gas cools to a hundred thousandth of its speed: windows follow its pace."""
     run = es.simulate(scene, until=until, events=events, engine="reference")
     assert run.stopped in ("until", "events")
     assert run.counters.turnovers < 0.05 * (run.counters.events + run.counters.wraps)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_gas_cools_until_its_speeds_are_below_the_digits(engine: str) -> None:
+    """The clock goes on; what ends the run is that all that is left of the motion is what rounding made of the momentum."""
+    skip_without(engine)
+    run = es.simulate(es.gallery("cooling", n=5), events=10_000, engine=engine, log=True)
+    velocity = run.state.velocity - run.state.velocity.mean(axis=0)
+    assert (run.stopped, run.counters.events) == ("digits", 1783)
+    assert "drift" in str(run.reason)
+    assert float(np.abs(velocity).max()) < 2.0**-50
+    earlier = es.simulate(run.scene, events=1500, engine=engine)
+    assert (earlier.stopped, len(run.log)) == ("events", 1783)
+
+
+@pytest.mark.slow
+def test_a_cooled_gas_costs_no_more_an_event() -> None:
+    """The work of kernels and of turnovers between 50,000 and 95,000 events, beside that of the first 50,000."""
+    pytest.importorskip("numba")
+    work = []
+    for events in (50_000, 95_000):
+        c = es.simulate(es.gallery("cooling"), events=events, engine="fast").counters
+        assert c.events == events
+        work.append(c.events + c.wraps + c.crossings + c.stale + 200 * c.turnovers)
+    assert work[1] < 2.0 * work[0]
 
 
 def test_windows_beyond_2_to_the_13_epochs_are_found_by_replay() -> None:

@@ -62,12 +62,13 @@ class CertifiedLoop(ReferenceSession):
         generation.sort(key=row_order)
         return generation
 
-    def _exact_velocities(self) -> tuple[Floats, Floats] | None:
-        """The velocities of all disks (n,), if their balls are floats."""
-        vx, vy = self.state.vx, self.state.vy
-        if any(deviation(speed, float(speed)) for speed in (*vx, *vy)):
-            return None
-        return np.array(list(map(float, vx))), np.array(list(map(float, vy)))
+    def _only_wraps(self) -> bool:
+        """Whether disks will wrap for ever; not known of velocities that are no floats."""
+        return not any(deviation(v, float(v)) for v in (*self.state.vx, *self.state.vy)) and super()._only_wraps()
+
+    def _sunk_speeds(self) -> str | None:
+        """None: velocities are not rounded here."""
+        return None
 
     def _go_back(self) -> None:
         """Stay: all pairs are predicted, so nothing is searched for beyond the last contact."""

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.base import Motion, Session, Snapshot, Stop
-from eventsim.engines.clock_end import at_the_last_epoch
-from eventsim.engines.drift import only_wraps
+from eventsim.engines.ends import end_of_clock, sunk_speeds
 from eventsim.engines.fast import FastOptions, layout, tally
 from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
 from eventsim.engines.fast.machine import FOREVER, Machine
 from eventsim.engines.fast.rules import kind_of
 from eventsim.engines.fast.rulings import Rulings
+from eventsim.engines.only_wraps import only_wraps
 from eventsim.engines.reference.ahead import meets_again
 from eventsim.engines.turnover import epochs_to_kick, epochs_to_wrap, exponent_after, exponent_kicked
 from eventsim.formulas.clock import EARLY, FIRST_WINDOW, MOST_EPOCHS, epochs_before, remainder_since
@@ -181,6 +181,10 @@ class FastSession(Session):
                 return None
         if state.epoch >= MOST_EPOCHS:  # nothing more can be logged
             return self._stop_at_the_end(machine.next_contact())
+        if state.window_rows and (sentence := sunk_speeds(self.stage, state.window_rows, state.anchors)) is not None:
+            self._rulings.reason = sentence
+            self._pass_to(state.window_end)
+            return "digits"
         idles = for_ever and not state.window_rows
         self._remember(for_ever)
         self._idle = self._idle + state.window_end if idles else 0.0
@@ -191,7 +195,7 @@ class FastSession(Session):
             int(state.window_end / state.epoch_length),
             exponent_after(self.stage, state.window, state.window_rows, state.anchors),
         )
-        return "quiet" if idles and self._drifts() else None
+        return "quiet" if idles and self._only_wraps() else None
 
     def _came(self) -> None:
         """A row has come: the clock does not jump back, and a window that was open ends with the epoch."""
@@ -205,7 +209,7 @@ class FastSession(Session):
         """Stop at the end of the clock, at or before a time at which the next contact is due: why."""
         state = self.state
         end = min(state.window_end, (MOST_EPOCHS - state.epoch) * state.epoch_length) if state.opened else state.window_end
-        word, self._rulings.reason = at_the_last_epoch(self.stage, state.epoch, end, due)
+        word, self._rulings.reason = end_of_clock(self.stage, state.epoch, end, due, self._meets_again())
         if word != "quiet":
             self._pass_to(end)
         return word
@@ -306,11 +310,9 @@ class FastSession(Session):
         partners = self.state.words[: self.state.n, layout.PARTNER]
         return self._machine.grid.levels is not None and bool(np.isin(partners, (layout.LOOK, layout.NOTHING)).all())
 
-    def _drifts(self) -> bool:
+    def _only_wraps(self) -> bool:
         """Whether disks will wrap for ever, and never meet anything again."""
-        state = self.state
-        straight = not (np.any(state.gravity_x.every()) or np.any(state.gravity_y.every()))
-        return straight and only_wraps(self.stage, state.vx.every(), state.vy.every(), self._idle)
+        return only_wraps(self.stage, self.state.anchors(), self._idle)
 
     def _remember(self, for_ever: bool) -> None:
         """Before the clock turns over: keep where the last flight began; on the open plane it may have been the last of all."""

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from eventsim.engines.base import Motion, Session, Snapshot, Stop, rows_from
-from eventsim.engines.clock_end import at_the_last_epoch
 from eventsim.engines.collapse import LIES_STILL, named
-from eventsim.engines.drift import only_wraps
+from eventsim.engines.ends import end_of_clock, sunk_speeds
+from eventsim.engines.only_wraps import only_wraps
 from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.ahead import meets_again
@@ -29,7 +29,7 @@ from eventsim.formulas.clock import EARLY, MOST_EPOCHS, epochs_before, remainder
 from eventsim.formulas.doubt import latest_tie, screen_in
 from eventsim.formulas.real import Real
 from eventsim.formulas.simultaneous import SqueezedError
-from eventsim.record.events import Floats, Rows
+from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
 
 
@@ -208,14 +208,22 @@ class ReferenceSession(Session):
                 return None
         if state.epoch >= MOST_EPOCHS:  # nothing more can be logged
             return self._stop_at_the_end(self._next_contact(), for_ever)
+        if state.window_rows and (sentence := self._sunk_speeds()) is not None:
+            self.reason = sentence
+            self._pass_to(state.window_end)
+            return "digits"
         idles = for_ever and not state.window_rows
         self._idle = self._idle + float(state.window_end) if idles else 0.0
         self._remember(for_ever)
         self._turn_over(state.window_end, int(state.window_end / state.epoch_length))
-        if idles and self._drifts():
+        if idles and self._only_wraps():
             self._go_back()
             return "quiet"
         return None
+
+    def _sunk_speeds(self) -> str | None:
+        """A sentence where speeds have sunk below the digits, so that the run ends with the window."""
+        return sunk_speeds(self.stage, self.state.window_rows, self.state.anchors)
 
     def _epochs_to_wrap(self) -> int | None:
         return epochs_to_wrap(self.stage, self.state.epoch, self.state.window, self.state.anchors())
@@ -224,7 +232,7 @@ class ReferenceSession(Session):
         """Stop at the end of the clock, at or before a time at which the next contact is due: why."""
         state = self.state
         end = min(state.window_end, (MOST_EPOCHS - state.epoch) * state.epoch_length) if state.opened else state.window_end
-        word, self.reason = at_the_last_epoch(self.stage, state.epoch, end, float(due))
+        word, self.reason = end_of_clock(self.stage, state.epoch, end, float(due), self._meets_again())
         if word != "quiet":
             self._pass_to(end)
         elif for_ever:
@@ -317,16 +325,9 @@ class ReferenceSession(Session):
             return True
         return meets_again(self.stage, self.snapshot(), self.motion())
 
-    def _drifts(self) -> bool:
+    def _only_wraps(self) -> bool:
         """Whether disks will wrap for ever, and never meet anything again."""
-        velocities = self._exact_velocities()
-        if velocities is None or not all(g is None or g == 0.0 for g in (*self.state.gravity_x, *self.state.gravity_y)):
-            return False
-        return only_wraps(self.stage, *velocities, self._idle)
-
-    def _exact_velocities(self) -> tuple[Floats, Floats] | None:
-        """The velocities of all disks (n,), if they are floats."""
-        return np.array(self.state.vx), np.array(self.state.vy)
+        return only_wraps(self.stage, self.state.anchors(), self._idle)
 
     def _remember(self, for_ever: bool) -> None:
         """Before the clock turns over: keep where the last flight began; on the open plane it may have been the last of all."""

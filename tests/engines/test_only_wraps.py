@@ -17,10 +17,13 @@ NEVER = {
     "lanes": ([[1.0, 1.0], [1.0, 2.0]], [[1.0, 0.0], [-0.5, 0.0]], BOX, ()),
     "lanes that rise together": ([[1.0, 1.0], [1.0, 2.0]], [[1.0, 0.25], [-0.5, 0.25]], BOX, ()),
     "lanes upwards": ([[1.0, 1.0], [2.0, 1.0], [3.0, 2.0]], [[0.0, 1.0], [0.0, -0.5], [0.0, 0.0]], BOX, (POST,)),
+    "one disk and a wall beside its way": ([[1.0, 1.0]], [[4.0, 3.0]], BOX, (es.Segment((0.5, 2.0), (0.6, 2.1)),)),
+    "a way that closes after rounds": ([[1.0, 1.0], [3.0, 1.0]], [[3.0, 1.5], [-1.0, -1.5]], BOX, ()),
 }
 SOME_TIME = {
     "one disk and a wall ahead": ([[1.0, 1.0]], [[1.0, 0.003]], BOX, (es.Segment((0.5, 1.5), (0.6, 1.5)),)),
     "one lane": ([[1.0, 1.0], [3.0, 1.1]], [[1.0, 0.0], [0.999, 0.0]], BOX, ()),
+    "a way that closes late": ([[1.0, 1.0], [3.0, 1.0]], [[4.0, 3.1], [0.0, 0.0]], BOX, ()),
     "a slow one meets a wall": ([[1.0, 1.0], [1.0, 2.0]], [[1.0, 0.0], [-0.0001, 0.0]], BOX, (POST,)),
 }
 ENGINES = ["reference", "certified", pytest.param("fast", marks=pytest.mark.slow)]
@@ -45,6 +48,29 @@ def test_disks_that_meet_something_after_many_rounds_are_waited_for(engine, name
     ended = run(engine, *SOME_TIME[name])
     assert (ended.stopped, ended.counters.events) == ("events", 1)
     assert ended.counters.wraps > 16
+
+
+@pytest.mark.parametrize("engine", ENGINES[::2])
+def test_a_disk_that_falls_around_a_torus_is_quiet(engine):
+    if engine == "fast":
+        pytest.importorskip("numba")
+    sim = es.Simulation(es.Scene(es.Disks([[1.0, 1.0]], [[1.0, 0.3]], 0.2), BOX, gravity=(0.0, -1.0)), engine=engine)
+    assert len(sim.step()) == 0
+    assert sim.time > 0.0
+
+
+@pytest.mark.parametrize("engine", ENGINES[::2])
+def test_a_step_ends_where_nobody_knows_whether_an_event_is_ahead(engine, monkeypatch):
+    """Points of no size: nothing tells that they will never meet."""
+    if engine == "fast":
+        pytest.importorskip("numba")
+    monkeypatch.setattr("eventsim.simulation.MOST_WRAPS", 10_000)
+    points = es.Disks([[1.0, 1.0], [3.0, 1.0]], [[1.0, 0.7], [-0.9, 0.6]], 0.0)
+    sim = es.Simulation(es.Scene(points, BOX), engine=engine)
+    with pytest.raises(es.EventsimError, match=r"no event in 10000 wraps .* advance_to"):
+        sim.step()
+    sim.advance_to(sim.time + 1.0)
+    assert len(sim.log) == 0
 
 
 def apart(n):
