@@ -1,0 +1,74 @@
+"""The tangent map of a contact: what becomes of a small deviation from a trajectory.
+
+A deviation is (x, y, vx, vy) per disk, all at one time.  In free flight the places gain t times the velocities, and gravity drops
+out.  At a contact the neighbouring trajectory meets a little earlier or later, and along another normal:
+
+    shift = -(n d) / (n u)                    how much later it meets; d, u: relative deviation and velocity before
+    turn  = curvature (t (d + u shift))       by how much its normal is turned; t: the tangent, n rotated by a right angle
+
+Everything is linear in the deviation.  So deviations may be floats, or arrays of several ones.
+Source: Gaspard, Chaos, Scattering and Statistical Mechanics (1998), section 1.4; Dellago, Posch, Hoover, Phys. Rev. E 53, 1485
+(1996), doi:10.1103/PhysRevE.53.1485.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+
+class Meeting(NamedTuple):
+    """How a neighbouring trajectory meets.
+
+    shift: how much later.  (push_x, push_y): the change of (n u) n, of which each body gets its part.
+    """
+
+    shift: Any
+    push_x: Any
+    push_y: Any
+
+
+def meeting(
+    nx: float,
+    ny: float,
+    ux: float,
+    uy: float,
+    curvature: float,
+    dx: Any,
+    dy: Any,
+    du: Any,
+    dw: Any,
+    gx: float = 0.0,
+    gy: float = 0.0,
+) -> Meeting:
+    """Return how a neighbour meets.
+
+    Args:
+        nx, ny: the unit normal, towards the first body.
+        ux, uy: the velocity of the first body relative to the second one; (n u) below 0.
+        curvature: 1 / distance from the centre of curvature, 1 / length; below 0 where the wall is met from inside.
+        dx, dy, du, dw: the relative deviation of place and velocity.
+        gx, gy: the relative acceleration.
+    """
+    approach = nx * ux + ny * uy
+    shift = -(nx * dx + ny * dy) / approach
+    along = nx * (dy + uy * shift) - ny * (dx + ux * shift)
+    turn = curvature * along
+    sideways = nx * uy - ny * ux
+    change = nx * (du + gx * shift) + ny * (dw + gy * shift) + turn * sideways
+    return Meeting(shift, change * nx - approach * turn * ny, change * ny + approach * turn * nx)
+
+
+def after(
+    part: float, approach: float, nx: float, ny: float, how: Meeting, x: Any, y: Any, u: Any, w: Any
+) -> tuple[Any, Any, Any, Any]:
+    """Return the deviation of one body behind the contact.
+
+    Args:
+        part: its velocity changes by -part (n u) n; 1 + e at a wall.
+        approach: (n u), below 0.
+        nx, ny: as in `meeting`.
+        how: what `meeting` gave.
+        x, y, u, w: its deviation before.
+    """
+    moved = part * approach * how.shift
+    return x + moved * nx, y + moved * ny, u - part * how.push_x, w - part * how.push_y

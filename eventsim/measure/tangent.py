@@ -1,0 +1,195 @@
+"""Deviations from a run, carried along its rows by the tangent map (`formulas.tangent`)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, TypeAlias
+
+from eventsim.formulas.tangent import after, meeting
+from eventsim.formulas.walls.boundary import Boundary
+from eventsim.formulas.walls.shape import Shape
+from eventsim.record.events import Kind, Rows
+from eventsim.scene.scene import Scene
+from eventsim.scene.stage import Stage, stage_of
+from eventsim.scene.walls import parts_of
+
+UNSEEN = 1e-12
+"""Share of a velocity below which its change tells no direction: rounding."""
+
+NEAR = 2.0**-13
+"""Share of a distance over which a normal is looked at again for its curvature, whose error is the square of this."""
+
+Deviation: TypeAlias = tuple[Any, Any, Any, Any]
+"""(x, y, vx, vy) of a disk: floats, or arrays of several deviations."""
+
+Vector: TypeAlias = tuple[float, float]
+
+Rounding: TypeAlias = Callable[[Deviation, float, float, float, float, float], Deviation]
+"""A deviation with what rounding adds, from (deviation, x, y, vx, vy, time that is rounded)."""
+
+
+class Passed(NamedTuple):
+    """What a row did.
+
+    Attributes:
+        event, time: as in the log.
+        disks: that took part.
+        lags: time since the row before of each; inf where there was none.
+        shift: how much later a neighbour meets; 0.0 where nothing approached.
+        joint: whether it is one of several contacts at one instant.
+    """
+
+    event: int
+    time: float
+    disks: tuple[int, ...]
+    lags: tuple[float, ...]
+    shift: Any
+    joint: bool
+
+
+class Tangent:
+    """Deviations of all disks of a run, each at the time of the disk's last row.
+
+    off: the deviations, by disk.
+
+    Laws are taken as the log shows them: what share of the approach velocity came back is no function of it.
+    """
+
+    def __init__(self, scene: Scene, off: list[Deviation], rounding: Rounding | None = None) -> None:
+        """Begin with deviations; rounding: what each row adds."""
+        stage = stage_of(scene)
+        self.off = off
+        self._rounding = rounding
+        self._stage = stage
+        self._periods = tuple(length or math.inf for length in stage.period)
+        gravity = stage.gravity or (0.0, 0.0)
+        self._fall = [(0.0, 0.0) if math.isinf(mass) else gravity for mass in scene.disks.mass.tolist()]
+        self._pull: list[Vector] = list(self._fall)
+        self._slopes = [(float(ax), float(ay)) for ax, ay in stage.slopes]
+        self._radius = scene.disks.radius.tolist()
+        self._since: list[Vector | None] = [None] * stage.n
+        self._velocity = list(zip(stage.vx.tolist(), stage.vy.tolist(), strict=True))
+        self._pieces = _pieces_of(stage)
+        first = len(stage.wall_names) - len(parts_of(scene.walls))
+        self._scales = {
+            first + k: part.curvature_radius() or part.length() for k, part in enumerate(parts_of(scene.walls))
+        }
+
+    def follow(self, rows: Rows) -> Iterator[Passed]:
+        """Take the deviations through rows, one by one; what each did."""
+        names = "event", "time", "kind", "a", "b", "wall", "joint", "epoch", "remainder"
+        places = "xa", "ya", "vxa", "vya", "xb", "yb", "vxb", "vyb"
+        columns = (rows[name].tolist() for name in names + places)
+        for event, time, kind, a, b, wall, joint, epoch, remainder, xa, ya, vxa, vya, xb, yb, vxb, vyb in zip(
+            *columns, strict=True
+        ):
+            before, lag = self._arrive(a, epoch, remainder, xa, ya)
+            if kind == Kind.PAIR:
+                other, lag_b = self._arrive(b, epoch, remainder, xb, yb)
+                between = _shortest(xa - xb, self._periods[0]), _shortest(ya - yb, self._periods[1])
+                shift = self._pass_pair(a, b, between, (before, (vxa, vya)), (other, (vxb, vyb)))
+                self._velocity[b] = vxb, vyb
+                self._pull[b] = self._fall[b]
+                passed = Passed(event, time, (a, b), (lag, lag_b), shift, joint >= 0)
+            else:
+                shift = self._pass_wall(a, wall, kind, (xa, ya), before, (vxa, vya))
+                passed = Passed(event, time, (a,), (lag,), shift, joint >= 0)
+            self._velocity[a] = vxa, vya
+            self._pull[a] = self._slopes[wall] if kind == Kind.REST else self._fall[a]
+            yield passed
+
+    def _arrive(self, i: int, epoch: int, remainder: float, x: float, y: float) -> tuple[Vector, float]:
+        """Fly disk i to a row: its velocity there, and the time since its last row."""
+        since, (vx, vy), (gx, gy) = self._since[i], self._velocity[i], self._pull[i]
+        begun, rest = since or (0, 0.0)
+        lag = (epoch - begun) * self._stage.epoch_length + (remainder - rest)
+        dx, dy, du, dw = self.off[i]
+        vx, vy = vx + gx * lag, vy + gy * lag
+        off = dx + du * lag, dy + dw * lag, du, dw
+        self.off[i] = off if self._rounding is None else self._rounding(off, x, y, vx, vy, lag + remainder)
+        self._since[i] = epoch, remainder
+        return (vx, vy), math.inf if since is None else lag
+
+    def _pass_pair(
+        self, i: int, j: int, between: Vector, one: tuple[Vector, Vector], other: tuple[Vector, Vector]
+    ) -> Any:
+        """Take the deviations of two disks through their contact, from velocities (before, after); the shift."""
+        (ax, ay), (vx, vy) = one
+        (bx, by), (ux, uy) = other
+        reach = self._radius[i] + self._radius[j]
+        # In a small domain the nearest image need not be the one that was met: the push tells the normal.
+        nx, ny = _pushed(vx - ax, vy - ay, ax, ay) or _pushed(bx - ux, by - uy, bx, by) or _pushed(*between, 0.0, 0.0) or (1.0, 0.0)
+        approach = nx * (ax - bx) + ny * (ay - by)
+        if not (approach < 0.0 and reach > 0.0):
+            return 0.0
+        (px, py, pu, pw), (qx, qy, qu, qw) = self.off[i], self.off[j]
+        gx, gy = self._pull[i][0] - self._pull[j][0], self._pull[i][1] - self._pull[j][1]
+        how = meeting(nx, ny, ax - bx, ay - by, 1.0 / reach, px - qx, py - qy, pu - qu, pw - qw, gx, gy)
+        part_i, part_j = (
+            -(nx * (u - before) + ny * (w - other)) / approach
+            for u, w, before, other in ((vx, vy, ax, ay), (ux, uy, bx, by))
+        )
+        self.off[i] = after(part_i, approach, nx, ny, how, px, py, pu, pw)
+        self.off[j] = after(part_j, approach, nx, ny, how, qx, qy, qu, qw)
+        return how.shift
+
+    def _pass_wall(self, i: int, wall: int, kind: int, place: Vector, before: Vector, behind: Vector) -> Any:
+        """Take the deviation of a disk through a row without a partner; the shift."""
+        dx, dy, du, dw = self.off[i]
+        if kind == Kind.KICK:  # another velocity, at a time that nothing shifts
+            self.off[i] = dx, dy, 0.0 * du, 0.0 * dw
+            return 0.0
+        (ax, ay), (vx, vy) = before, behind
+        normal = _pushed(vx - ax, vy - ay, ax, ay)
+        approach = 0.0 if normal is None else normal[0] * ax + normal[1] * ay
+        if normal is None or not approach < 0.0:
+            return 0.0
+        nx, ny = normal
+        how = meeting(nx, ny, ax, ay, self._curvature(wall, i, place, normal), dx, dy, du, dw, *self._pull[i])
+        part = -(nx * (vx - ax) + ny * (vy - ay)) / approach
+        self.off[i] = after(part, approach, nx, ny, how, dx, dy, du, dw)
+        return how.shift
+
+    def _curvature(self, wall: int, i: int, place: Vector, normal: Vector) -> float:
+        """The curvature, at a place of disk i, of the line on which centres touch that wall with this normal.
+
+        It is how fast the normal turns beside the place, looked at a little above it: on the wall itself, a point may be behind it.
+        """
+        (x, y), (nx, ny), radius = place, normal, self._radius[i]
+        if not self._pieces[wall]:
+            return 0.0
+        step = NEAR * (radius or self._scales[wall])
+        best, piece = math.inf, None
+        for one in self._pieces[wall]:
+            mx, my, away = one.nearest(x + nx * step, y + ny * step)
+            miss = abs(away - radius - step) / step + math.hypot(mx - nx, my - ny) if away < math.inf else math.inf
+            if miss < best:
+                best, piece = miss, one
+        if piece is None:
+            return 0.0
+        x, y = x + nx * step, y + ny * step
+        (ax, ay, a), (bx, by, b) = (piece.nearest(x - s * ny, y + s * nx) for s in (step, -step))
+        if math.isinf(a) or math.isinf(b):
+            return 0.0
+        turn = float(nx * (ay - by) - ny * (ax - bx)) / (2.0 * step)
+        return turn / (1.0 - turn * step)
+
+
+def _pieces_of(stage: Stage) -> dict[int, list[Shape]]:
+    """The shapes of each wall, by its number in the log; none for straight sides of the domain."""
+    pieces: dict[int, list[Shape]] = {surface.wall: [] for surface in stage.surfaces}
+    for surface in stage.surfaces:
+        if not isinstance(surface, Boundary):
+            pieces[surface.wall].append(surface.shape)
+    return pieces
+
+
+def _shortest(d: float, period: float) -> float:
+    return d if math.isinf(period) else d - period * round(d / period)
+
+
+def _pushed(dx: float, dy: float, vx: float, vy: float) -> Vector | None:
+    """The direction of a change of velocity; None where it is rounding."""
+    size = math.hypot(dx, dy)
+    return (dx / size, dy / size) if size > UNSEEN * math.hypot(vx, vy) else None
