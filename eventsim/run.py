@@ -17,6 +17,7 @@ from eventsim.scene import Scene
 
 if TYPE_CHECKING:
     from eventsim.measure import Measures
+    from eventsim.measure.trust import Trust
 
 
 @dataclass(slots=True)
@@ -24,13 +25,15 @@ class Run(PastRun):
     """What a simulation gives: the state it ended in, the log if one was kept, how good it is and why it stopped.
 
     begun_by: the engine that handed over to `engine`, where `auto` began with another one.
-    log_path: where the log was streamed to.  measures: where they were asked for.  stopped: `until`, `events`, `quiet` (no
-    event ahead), `collapse`, `digits`, `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s:
-    simulating only; compile_s and write_s (waiting for rows to be written and measured) apart, seconds.  trajectory: samples,
-    of a stepped engine, whose motion does not follow from its log.
+    log_path: where the log was streamed to.  measures: where they were asked for.  trust: until when positions hold, where that
+    was asked for or cost little.  stopped: `until`, `events`, `quiet` (no event ahead), `collapse`, `digits`, `interrupted`.
+    reason: a sentence about that where there is more to say.  elapsed_s: simulating only; compile_s and write_s (waiting for rows
+    to be written and measured) apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its
+    log.
     """
 
     measures: Measures | None = None
+    trust: Trust | None = None
 
     def __repr__(self) -> str:
         name = self.scene.name or "a scene without a name"

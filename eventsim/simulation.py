@@ -48,6 +48,7 @@ def simulate(
     on_event: OnEvent | None = None,
     measure: bool | float = False,
     profile: str | None = None,
+    trust: bool | None = None,
     command: str | None = None,
     checkpoint: str | PathLike[str] | None = None,
     every: int | str = "60s",
@@ -60,7 +61,9 @@ def simulate(
     (counters only), True (in memory) or a path (.csv, .jsonl, .npz, .parquet; streamed; `compact` leaves out what replay
     computes).  digest: compute the digest also where no log is kept.  progress(fraction, events, time): called a few times a
     second.  on_event(rows): called with each block of new rows.  measure: True, or the time at the beginning to leave out, for
-    `run.measures`, in constant memory and without a log.  profile: "x" or "y", for profiles along it as well.  checkpoint: a file
+    `run.measures`, in constant memory and without a log.  profile: "x" or "y", for profiles along it as well.
+    trust: estimate until when positions hold, for `run.trust`; None: where that costs little, with the reference engine, and at
+    the beginning of a log.  checkpoint: a file
     that `resume` can go on from, replaced `every` so many events (1000000) or so much time ("90s", "5min", "2h"), and at the end.
     interrupt: ends the run between two events once another thread asks it to (`Interrupt().ask()`).  options: the engine's own,
     such as check=True.
@@ -88,15 +91,24 @@ def simulate(
         wanted.checkpoint, wanted.every = place_for(checkpoint), interval(every)
         if measure is not False:
             raise EventsimError("measures are not in a checkpoint: keep a log, and measure that")
-    if measure is False:
-        return Run.of(run_scene(chosen, scene, stop, wanted, given))
-    from eventsim.measure import Meter  # only who measures pays for it
+    meter = line = None
+    if measure is not False:
+        from eventsim.measure import Meter  # only who measures pays for it
 
-    meter = Meter(scene, None if measure is True else measure, profile=profile)
-    wanted.takers.append(meter.write)
+        meter = Meter(scene, None if measure is True else measure, profile=profile)
+        wanted.takers.append(meter.write)
+    if trust or (trust is None and (chosen.name == "reference" or (chosen.name == "auto" and log is not False))):
+        if not chosen.replays:
+            raise EventsimError(f"trust is about the last bits of event-driven runs, and the engine {chosen.name} is none")
+        from eventsim.measure.trust import UNASKED, TrustLine
+
+        line = TrustLine(scene, None if trust or chosen.name == "reference" else UNASKED)
+        wanted.takers.append(line.write)
     run = Run.of(run_scene(chosen, scene, stop, wanted, given))
-    if run.time > scene.start_time:
+    if meter is not None and run.time > scene.start_time:
         run.measures = meter.finish(run.time - scene.start_time)
+    if line is not None:
+        run.trust = line.found()
     return run
 
 

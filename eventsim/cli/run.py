@@ -108,6 +108,10 @@ def command(
       horizon                  null without --horizon; {event, time: of the first contact that runs from
                                starts a last bit apart disagree on, null where none (exact ties part
                                them at once); events, until: how far they were compared}
+      trust                    null where nobody asked and it would cost; {event, time: from which on places
+                               are off by more than 1e-3 of length (null: never); error: in shares of
+                               length, the smallest reach; events looked at; gentle: errors grow as a power
+                               of time; reason: why there is no estimate}
       stopped, reason          until | events | quiet (no event ahead) | collapse | digits |
                                undecided tie | interrupted; and why, in words
       log, state, checkpoint   the files written (null without)
@@ -159,6 +163,8 @@ def command(
     wanted: dict[str, Any] = {"until": until, "events": events, "log": files.log, "digest": digest}
     wanted |= {"engine": engine, "checkpoint": files.checkpoint, "every": every}
     wanted = {name: value for name, value in wanted.items() if value is not None}
+    if horizon and not resume:
+        wanted["trust"] = True
     with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
         wanted |= {"progress": progress, "interrupt": interrupt}
         if chosen is None or resume:

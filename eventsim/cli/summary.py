@@ -12,6 +12,8 @@ from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.cli.options import Files
+    from eventsim.measure.trust import Trust
+    from eventsim.run import Run
     from eventsim.runner.outcome import Outcome
     from eventsim.validation.horizon import Horizon
 
@@ -20,7 +22,7 @@ WORTH_A_WORD, MOMENT = 0.01, 1e-3
 """Of the time that simulating took, and seconds: what takes less is left out of the text."""
 
 
-def summary_data(asked: str, run: Outcome, files: Files, horizon: Horizon | None = None) -> dict[str, object]:
+def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> dict[str, object]:
     """Return the keys that `eventsim run --help` documents."""
     return {
         "scene": asked,
@@ -42,13 +44,14 @@ def summary_data(asked: str, run: Outcome, files: Files, horizon: Horizon | None
         "digest": run.digest,
         "residuals": asdict(run.residuals),
         "horizon": None if horizon is None else asdict(horizon),
+        "trust": None if run.trust is None else asdict(run.trust),
         "stopped": run.stopped,
         "reason": run.reason,
         **{name: None if path is None else str(path) for name, path in files._asdict().items()},
     }
 
 
-def summary_text(asked: str, run: Outcome, files: Files, horizon: Horizon | None = None) -> str:
+def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> str:
     """Return the summary as aligned lines."""
     counters, residuals = run.counters, run.residuals
     rows = [
@@ -62,6 +65,8 @@ def summary_text(asked: str, run: Outcome, files: Files, horizon: Horizon | None
     ]
     if counters.pair_contacts == 0:
         rows = [row for row in rows if row[0] != "overlap"]
+    if run.trust is not None:
+        rows.append(("trust", trust_words(run.trust)))
     if horizon is not None:
         rows.append(("horizon", horizon_words(horizon)))
     if run.digest is not None:
@@ -88,6 +93,21 @@ def horizon_words(horizon: Horizon) -> str:
         f"not reached in {plural(horizon.events, 'event')}, to t = {short(horizon.until)}: "
         "starts that differ in the last bit still tell the same story there"
     )
+
+
+def trust_words(trust: Trust) -> str:
+    """Return until when positions hold."""
+    from eventsim.measure.trust import HELD
+
+    if trust.event is not None and trust.time is not None:
+        return (
+            f"positions hold to {HELD:g} of the smallest reach until event {trust.event:,}, t = {short(trust.time)}; "
+            "statistics after that"
+        )
+    if trust.reason is not None:
+        return f"no estimate of how long positions hold: {trust.reason}"
+    grown = ", and errors grow as a power of time" if trust.gentle else ""
+    return f"positions hold to {trust.error:.0e} of the smallest reach until the end{grown}"
 
 
 def _rate(run: Outcome) -> float | None:

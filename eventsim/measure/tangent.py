@@ -119,7 +119,12 @@ class Tangent:
         (bx, by), (ux, uy) = other
         reach = self._radius[i] + self._radius[j]
         # In a small domain the nearest image need not be the one that was met: the push tells the normal.
-        nx, ny = _pushed(vx - ax, vy - ay, ax, ay) or _pushed(bx - ux, by - uy, bx, by) or _pushed(*between, 0.0, 0.0) or (1.0, 0.0)
+        nx, ny = (
+            _pushed(vx - ax, vy - ay, ax, ay)
+            or _pushed(bx - ux, by - uy, bx, by)
+            or _pushed(*between, 0.0, 0.0)
+            or (1.0, 0.0)
+        )
         approach = nx * (ax - bx) + ny * (ay - by)
         if not (approach < 0.0 and reach > 0.0):
             return 0.0
@@ -154,7 +159,7 @@ class Tangent:
     def _curvature(self, wall: int, i: int, place: Vector, normal: Vector) -> float:
         """The curvature, at a place of disk i, of the line on which centres touch that wall with this normal.
 
-        It is how fast the normal turns beside the place, looked at a little above it: on the wall itself, a point may be behind it.
+        It is how fast the normal turns beside the place. Looked at a little above it, since a point on the wall may be behind it.
         """
         (x, y), (nx, ny), radius = place, normal, self._radius[i]
         if not self._pieces[wall]:

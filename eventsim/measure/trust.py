@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -25,6 +26,12 @@ LAST_BIT = 2.0**-53
 
 DRAWS, SEED = 4096, 1
 """Draws of chance, used again and again, and their seed."""
+
+UNASKED = 20_000
+"""Rows that are looked at where nobody asked: a fifth of a second."""
+
+FEWEST = 16
+"""Events from which on a growth can be told."""
 
 GENTLE = 8.0
 """Errors that grow by less than this from half of the events to all of them grow as a power of time, not by chaos."""
@@ -59,9 +66,10 @@ class TrustLine:
     >>> line = TrustLine(scene); line.write(rows); line.write(more_rows); line.found()
     """
 
-    def __init__(self, scene: Scene) -> None:
-        """Begin with a scene."""
+    def __init__(self, scene: Scene, most: int | None = None) -> None:
+        """Begin with a scene; most: rows after which nothing is looked at any more."""
         n = len(scene.disks)
+        self._most = math.inf if most is None else most
         self._tangent = Tangent(scene, [(0.0, 0.0, 0.0, 0.0)] * n, self._round)
         self._length = smallest_reach(scene)
         self._shift = [0.0] * n
@@ -75,12 +83,15 @@ class TrustLine:
 
     def write(self, rows: Rows) -> None:
         """Follow a block of rows, as far as it is needed."""
-        if self._event is not None or self._reason is not None:
+        if self._is_told():
             return
         for passed in self._tangent.follow(rows):
+            if self._events >= self._most:
+                self._reason = f"only the first {self._events:,} events were looked at"
+                return
             self._events += 1
             self._judge(passed)
-            if self._event is not None or self._reason is not None:
+            if self._is_told():
                 return
 
     def found(self) -> Trust:
@@ -92,9 +103,12 @@ class TrustLine:
             error=self._error / self._length,
             length=self._length,
             events=self._events,
-            gentle=self._event is None and now <= GENTLE * before,
+            gentle=self._event is None and self._events >= FEWEST and now <= GENTLE * before,
             reason=self._reason,
         )
+
+    def _is_told(self) -> bool:
+        return self._event is not None or self._reason is not None
 
     def _round(self, off: Deviation, x: float, y: float, vx: float, vy: float, span: float) -> Deviation:
         """Add what rounding may do to a flight over a span of the clock."""
@@ -133,7 +147,7 @@ class TrustLine:
 def smallest_reach(scene: Scene) -> float:
     """Return the smallest positive distance at which a disk meets a disk or a wall; of points, the size of what they meet."""
     radii = sorted(scene.disks.radius.tolist())
-    found = [one + other for one, other in zip(radii, radii[1:], strict=False)]
+    found = [one + other for one, other in pairwise(radii)]
     if scene.walls or not isinstance(scene.domain, Open | Periodic):
         found += radii
     if not any(length > 0.0 for length in found):

@@ -41,7 +41,9 @@ def generic_scene(seed):
             position.append(place)
     velocity = rng.normal(size=(n, 2))
     velocity[np.isinf(masses)] = 0.0
-    return es.Scene(es.Disks(position, velocity, radii, masses), domain, walls, gravity=gravity, events=ROWS_PER_DISK * n)
+    return es.Scene(
+        es.Disks(position, velocity, radii, masses), domain, walls, gravity=gravity, events=ROWS_PER_DISK * n
+    )
 
 
 def truth(scene, rows):
