@@ -10,5 +10,11 @@ EXCHANGE = (".xyz", ".gsd")
 
 STATES = (".csv", ".npz", *EXCHANGE)
 TABLES = (".csv", ".parquet")
+READ_TABLES = (".csv", ".npz", ".parquet")
+"""Columns that another program wrote."""
+
+TRAJECTORIES = (*READ_TABLES, *EXCHANGE)
+"""Positions at times that another program wrote."""
+
 FIGURES = (".png", ".svg", ".pdf")
 ANIMATIONS = (".mp4", ".gif", ".html", ".png")

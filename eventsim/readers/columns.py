@@ -1,0 +1,127 @@
+"""From named columns to samples: one row for each disk and time, one row for each time, or arrays of all disks.
+
+    time, disk, x, y [, vx, vy] [, radius, mass]     a row for each disk and time; without `disk`: in one order at each time
+    time, x0, y0, x1, y1, ... [, vx0, vy0, ...]      a row for each time
+    time (T,), position (T, n, 2) [, velocity], or x, y (T, n) [, vx, vy]     arrays, in .npz
+
+`t` is another name of `time`, `id` of `disk`.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.errors import EventsimError
+from eventsim.readers.samples import Columns, Floats, Samples, checked, last_digit, times_of_frames
+
+SHORT = {"t": "time", "id": "disk"}
+
+
+def samples_of(columns: Columns, source: str, dt: float | None = None) -> Samples:
+    """The samples that columns hold; EventsimError, naming the source, where they are of no such kind."""
+    named = {SHORT.get(name, name): column for name, column in columns.items()}
+    if "position" in named or ("x" in named and named["x"].ndim == 2):
+        return _of_arrays(named, source, dt)
+    if "x" in named and "y" in named:
+        return _of_rows(named, source)
+    if "x0" in named and "y0" in named:
+        return _of_times(named, source, dt)
+    raise EventsimError(
+        f"{source}: has the columns {', '.join(columns)}; positions are time, disk, x, y (a row for each disk and time) "
+        "or time, x0, y0, x1, y1, ... (a row for each time)"
+    )
+
+
+def _of_arrays(named: Columns, source: str, dt: float | None) -> Samples:
+    """Arrays of all times: position (T, n, 2 or 3), or x and y (T, n)."""
+    if "position" in named:
+        if named["position"].ndim != 3:
+            raise EventsimError(f"{source}: position has the shape {named['position'].shape}: must be (T, n, 2)")
+        position, velocity = _numbers(named, "position", source)[..., :2], None
+        step = last_digit(named["position"])
+        if "velocity" in named:
+            velocity = _numbers(named, "velocity", source)[..., :2]
+    else:
+        shapes = {name: named[name].shape for name in ("x", "y", "vx", "vy") if name in named}
+        if len(set(shapes.values())) > 1 or "y" not in named:
+            raise EventsimError(f"{source}: x, y (and vx, vy) must be (T, n) all, not {shapes}")
+        position, step = _stacked(named, ("x", "y"), source), last_digit(named["x"])
+        velocity = _stacked(named, ("vx", "vy"), source) if "vx" in named and "vy" in named else None
+    frames: list[float | None] = [None] * len(position)
+    times = _numbers(named, "time", source) if "time" in named else times_of_frames(source, frames, dt)
+    radius, mass = (_per_disk(named, name, source) for name in ("radius", "mass"))
+    return checked(Samples(source, times, position, velocity, radius, mass, step=step))
+
+
+def _per_disk(named: Columns, name: str, source: str) -> Floats | None:
+    """Radius or mass of the disks, where it is told once for all times."""
+    return _numbers(named, name, source) if name in named and named[name].ndim == 1 else None
+
+
+def _of_rows(named: Columns, source: str) -> Samples:
+    """A row for each disk and time."""
+    if "time" not in named:
+        raise EventsimError(f"{source}: lacks a column time")
+    time = _numbers(named, "time", source)
+    if len(time) == 0:
+        raise EventsimError(f"{source}: holds no row")
+    disk = _numbers(named, "disk", source) if "disk" in named else np.zeros(len(time))
+    order = np.lexsort((disk, time))
+    times, counts = np.unique(time, return_counts=True)
+    n = int(counts[0])
+    if np.any(counts != n):
+        other = int(np.argmax(counts != n))
+        raise EventsimError(
+            f"{source}: holds {n} disks at the time {times[0]:g} and {counts[other]} at {times[other]:g}: must be the same"
+        )
+    if "disk" in named:
+        which = disk[order].reshape(-1, n)
+        if np.any(which != which[0]) or np.any(np.diff(which[0]) <= 0.0):
+            raise EventsimError(f"{source}: the column disk must name the same {n} disks at each time, each once")
+
+    def of(name: str) -> Floats:
+        return _numbers(named, name, source)[order].reshape(-1, n)
+
+    position = np.stack([of("x"), of("y")], axis=-1)
+    velocity = np.stack([of("vx"), of("vy")], axis=-1) if "vx" in named and "vy" in named else None
+    radius, mass = (of(name)[0] if name in named else None for name in ("radius", "mass"))
+    return checked(Samples(source, times, position, velocity, radius, mass, step=last_digit(named["x"])))
+
+
+def _of_times(named: Columns, source: str, dt: float | None) -> Samples:
+    """A row for each time."""
+    n = 1 + max(int(match[1]) for name in named if (match := re.fullmatch(r"x(\d+)", name)))
+    position = np.stack([_stacked(named, (f"x{i}", f"y{i}"), source) for i in range(n)], axis=1)
+    moving = all(f"v{axis}{i}" in named for axis in "xy" for i in range(n))
+    velocity = np.stack([_stacked(named, (f"vx{i}", f"vy{i}"), source) for i in range(n)], axis=1) if moving else None
+    frames: list[float | None] = [None] * len(position)
+    times = _numbers(named, "time", source) if "time" in named else times_of_frames(source, frames, dt)
+    return checked(Samples(source, times, position, velocity, step=last_digit(named["x0"])))
+
+
+def _stacked(named: Columns, names: tuple[str, str], source: str) -> Floats:
+    return np.stack([_numbers(named, name, source) for name in names], axis=-1)
+
+
+def _numbers(named: Columns, name: str, source: str) -> Floats:
+    """A column as numbers; EventsimError where it is missing or holds others."""
+    if name not in named:
+        raise EventsimError(f"{source}: lacks a column {name}")
+    return numbers_of(named[name], name, source)
+
+
+def numbers_of(column: NDArray[Any], name: str, source: str) -> Floats:
+    """A column as numbers; EventsimError, with the first row, where there are others in it."""
+    try:
+        return np.asarray(column, dtype=np.float64)
+    except (ValueError, TypeError):
+        for row, value in enumerate(column.ravel().tolist()):
+            try:
+                float(value)
+            except (ValueError, TypeError):
+                raise EventsimError(f"{source}: row {row}: {name} = {value!r}: must be a number") from None
+        raise EventsimError(f"{source}: {name} must be numbers") from None

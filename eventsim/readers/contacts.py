@@ -1,0 +1,71 @@
+"""Contacts that an engine tells of: who met whom, when.
+
+Columns: time, a, b, wall.  b is -1 or empty at a contact with a wall, whose name `wall` may tell.  An event log is such a table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.errors import EventsimError
+from eventsim.readers import read_columns
+from eventsim.readers.columns import SHORT, numbers_of
+from eventsim.readers.samples import Floats
+
+CONTACTS = ("pair", "wall")
+"""Kinds of rows of an event log that are contacts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """Contacts in order of time: time (K,), a and b (K,), a < b or b = -1; wall: (K,) names, empty where none is told."""
+
+    time: Floats
+    a: NDArray[np.int64]
+    b: NDArray[np.int64]
+    wall: tuple[str, ...]
+
+
+def read_contacts(path: Path, n: int) -> Told:
+    """The contacts between n disks and with walls; EventsimError, naming the file, for what is no such table."""
+    named = {SHORT.get(name, name): column for name, column in read_columns(path).items()}
+    missing = [name for name in ("time", "a", "b") if name not in named]
+    if missing:
+        raise EventsimError(f"{path}: lacks {', '.join(missing)}: contacts have the columns time, a, b (-1: a wall), wall")
+    kept = np.ones(len(named["time"]), dtype=bool)
+    if "kind" in named:
+        kept = np.isin(named["kind"].astype(np.str_), CONTACTS)
+    b = named["b"][kept]
+    if b.dtype.kind == "U":
+        b = np.where(b == "", "-1", b)
+    wall = named["wall"][kept].astype(np.str_).tolist() if "wall" in named else [""] * int(kept.sum())
+    time, a, b = (
+        numbers_of(column, name, str(path))
+        for name, column in (("time", named["time"][kept]), ("a", named["a"][kept]), ("b", b))
+    )
+    return told_from(time, a, np.where(np.isfinite(b), b, -1.0), wall, n, str(path))
+
+
+def told_from(time: Floats, a: Floats, b: Floats, wall: Sequence[str], n: int, source: str) -> Told:
+    """Contacts from columns; EventsimError where they name disks that there are not."""
+    for name, column, least in (("a", a, 0), ("b", b, -1)):
+        wrong = ~((column >= least) & (column < n) & (column == np.floor(column)))
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise EventsimError(f"{source}: row {row}: {name} = {column[row]:g}: names no disk; they are 0 to {n - 1}")
+    if np.any(a == b):
+        raise EventsimError(f"{source}: row {int(np.argmax(a == b))}: a disk meets itself")
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    alone = b < 0
+    order = np.argsort(time, kind="stable")
+    return Told(
+        time[order],
+        np.where(alone, a, low)[order].astype(np.int64),
+        np.where(alone, -1, high)[order].astype(np.int64),
+        tuple(wall[k] for k in order),
+    )

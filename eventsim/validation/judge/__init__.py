@@ -1,0 +1,8 @@
+"""An engine judged by the motion that it gives: `judge` compares positions at times, and contacts, with the event-driven run.
+
+    flights       free paths through samples, and where they turn
+    told          who met whom, from the turns              surroundings   gaps between disks, distances of walls
+    matching      which contact is which of the truth       outcome        restitution, masses, momentum of a contact
+    faults        what is wrong, and what comes first       judgement      all of it
+    words         the verdict in sentences                  stepping       an engine that is a function
+"""

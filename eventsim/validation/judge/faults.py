@@ -1,0 +1,172 @@
+"""Faults: what an engine does that the laws of its scene forbid, each with its time and what was seen.
+
+A difference from the truth is a fault where the engine's own path asks for something else.  Where the path itself is off, by
+errors before, a contact more or less is a consequence of these.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventsim.record.contacts import Key
+from eventsim.record.events import Floats, Kind
+from eventsim.scene.stage import Stage
+from eventsim.validation.judge.flights import Flights, Turn
+from eventsim.validation.judge.outcome import named, wrong_outcome
+from eventsim.validation.judge.surroundings import Surroundings
+from eventsim.validation.judge.told import NEAR, Met
+
+GRAZE = 0.02
+"""In reaches: a missed contact whose own path overlaps by less is called a graze."""
+
+THROUGH = 3.0
+"""Radii that a disk flies after a missed contact with a wall, while it is looked at whether it gets through."""
+
+DRIFT = 1e-3
+"""Of the energy: what free flights may gain or lose in all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something that cannot be: when, of which kind, and a sentence.
+
+    kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, drift.  disks: whose.  clear: whether it is
+    larger than what can happen between two samples.
+    """
+
+    time: float
+    kind: str
+    sentence: str
+    disks: tuple[int, ...] = ()
+    clear: bool = True
+
+
+class Witness:
+    """What looks at the engine's own path around a time.
+
+    window: how long before and after, time.  resolution: a smaller overlap cannot be told, length.
+    """
+
+    def __init__(self, flights: Flights, around: Surroundings, mass: Floats, window: float, resolution: float) -> None:
+        self._flights, self._around, self._mass, self._window = flights, around, mass, window
+        self._stage: Stage = around.stage
+        self._resolution = resolution
+
+    def is_blurred(self, key: Key, time: float) -> bool:
+        """Whether those who should meet turn then, all of them that can: the contact may be there, entangled with others."""
+        disks = key[1:] if key[0] == Kind.PAIR else key[1:2]
+        near = self._flights.turned[self._span(time)]
+        return all(near[:, disk].any() for disk in disks if np.isfinite(self._mass[disk]))
+
+    def missed(self, key: Key, time: float) -> Fault | None:
+        """The fault of a contact that is not found; None where the own path does not come to it."""
+        span = self._span(time)
+        kind, a, other = key
+        who = named(key, self._stage)
+        if kind == Kind.WALL:
+            return self._leak(a, other, time, span)
+        reach = float(self._stage.radius[a] + self._stage.radius[other])
+        gap = self._around.gap(a, other, self._flights.place[span, a], self._flights.place[span, other])
+        if gap >= -self._resolution:
+            return None
+        deep = -gap / reach if reach > 0.0 else 0.0
+        how = f"a graze: their paths overlap by {deep:.2%} of their reach" if deep < GRAZE else f"they overlap by {deep:.0%}"
+        clear = -gap > self._flown(span, a) + self._flown(span, other)
+        return Fault(time, "missed", f"missed: the contact of {who} at t = {time:.6g} ({how})", (a, other), clear)
+
+    def _flown(self, span: slice, disk: int) -> float:
+        """How far a disk flies from one sample to the next."""
+        step = float(np.diff(self._flights.times[span]).max(initial=0.0))
+        return step * float(np.hypot(*self._flights.after[span, disk].T).max())
+
+    def _leak(self, a: int, wall: int, time: float, span: slice) -> Fault | None:
+        close, who = self._flights.place[span, a], named((int(Kind.WALL), a, wall), self._stage)
+        radius = float(self._stage.radius[a])
+        for surface in self._around.surfaces:
+            if self._around.wall_of(surface) != wall:
+                continue
+            normal, _ = self._around.to_wall(surface, close[0])
+            speed = abs(float(self._flights.after[span.start, a] @ np.array(normal)))
+            through = self._span(time, THROUGH * radius / speed if speed > 0.0 else 0.0)
+            if self._around.beyond(surface, self._flights.place[through, a]):
+                return Fault(time, "leak", f"leak: {who} at t = {time:.6g}: it goes through", (a,))
+            depth = max(radius - self._around.to_wall(surface, place)[1] for place in close)
+            if self._resolution < depth < np.inf:
+                said = f"missed: the contact of {who} at t = {time:.6g} (it is {depth:.3g} deep)"
+                return Fault(time, "missed", said, (a,), depth > self._flown(span, a))
+        return None
+
+    def surplus(self, met: Met, nearest: Met | None) -> Fault | None:
+        """The fault of a contact that there is not; None where the own path comes to it.
+
+        nearest: the nearest other contact of the same two.
+        """
+        kind, a, other = met.key
+        who, time = named(met.key, self._stage), met.time
+        disks = (a,) if kind == Kind.WALL else (a, other)
+        if nearest is not None and abs(time - nearest.time) < 2.0 * self._window and not self._parted(met, nearest):
+            said = f"doubled: the contact of {who} at t = {time:.6g}, with that at {nearest.time:.6g}"
+            return Fault(time, "doubled", said, disks)
+        span = self._span(time)
+        if kind == Kind.WALL:
+            places = self._flights.place[span, a]
+            near = [
+                self._around.to_wall(surface, place)[1]
+                for surface in self._around.surfaces
+                if self._around.wall_of(surface) == other
+                for place in places
+            ]
+            gap, scale = min(near, default=np.inf) - float(self._stage.radius[a]), float(self._stage.radius[a])
+        else:
+            gap = self._around.gap(a, other, self._flights.place[span, a], self._flights.place[span, other])
+            scale = float(self._stage.radius[a] + self._stage.radius[other])
+        if gap <= NEAR * scale:
+            return None
+        return Fault(time, "false", f"false: a contact of {who} at t = {time:.6g}, which are {gap:.3g} apart", disks)
+
+    def _parted(self, one: Met, other: Met) -> bool:
+        """Whether something else happened to one of the two between two contacts of theirs, so that they may meet again."""
+        before, met = sorted((one, other), key=lambda each: each.time)
+        if self._stage.gravity is not None or 0 < met.first <= before.last + 1:
+            return True
+        disks = met.key[1:] if met.key[0] == Kind.PAIR else met.key[1:2]
+        times = self._flights.times
+        first, last = (int(place) for place in np.searchsorted(times, [before.time, met.time]))
+        return bool(self._flights.turned[first + 1 : max(last - 2, first + 1), list(disks)].any())
+
+    def outcome(self, met: Met) -> Fault | None:
+        """The fault of what a contact did; None where it is right."""
+        said = wrong_outcome(met, self._stage, self._mass, self._flights.least)
+        if said is None:
+            return None
+        kind = said.split(":")[0]
+        disks = tuple(disk for disk in met.key[1:] if disk >= 0) if met.key[0] == Kind.PAIR else met.key[1:2]
+        return Fault(met.time, kind, f"{said} (t = {met.time:.6g})", disks)
+
+    def turn(self, turn: Turn) -> Fault:
+        """The fault of a disk that turns with nothing near."""
+        said = f"turn: disk {turn.disk} turns at t = {turn.time:.6g}, where nothing is near"
+        return Fault(turn.time, "turn", said, (turn.disk,))
+
+    def drift(self, gained: Floats, energy: float) -> Fault | None:
+        """The fault of energy that free flights gain or lose: gained (T,) until each sample, of `energy` at the start."""
+        if not energy > 0.0:
+            return None
+        share = gained / energy
+        over = np.flatnonzero(np.abs(share) > DRIFT)
+        if not len(over):
+            return None
+        times = self._flights.times
+        rate = float(share[over[0]]) / float(times[over[0]] - times[0])
+        time = float(times[over[0]])
+        said = f"drift: free flights change the energy by {rate:+.2e} of it per time unit, {DRIFT:g} by t = {time:.6g}"
+        return Fault(time, "drift", said)
+
+    def _span(self, time: float, longer: float = 0.0) -> slice:
+        """The samples around a time, for so much longer after it."""
+        times = self._flights.times
+        first = int(np.searchsorted(times, time - self._window)) - 1
+        last = int(np.searchsorted(times, time + self._window + longer)) + 1
+        return slice(max(first, 0), max(last, first + 2))

@@ -1,0 +1,156 @@
+"""Flights: where the paths of sampled disks are free, and where they turn.
+
+A free path is a straight line, or a parabola, through consecutive samples.  Where it is none, the disk has met something: a
+turn, with the flight before it and the flight after it.  Velocities are differences of positions where none are told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eventsim.record.events import Floats
+from eventsim.scene.pace import typical_speed
+from eventsim.scene.stage import Stage
+
+Mask: TypeAlias = NDArray[np.bool_]
+
+LEAST_TURN = 1e-3
+"""Of the typical speed: a smaller change of velocity is no turn."""
+
+ABOVE_NOISE = 8.0
+"""A turn is so many times larger than the change that half of all disks show at a sample, which is noise or drift."""
+
+UNLIKE = 0.02
+"""Of the typical speed: told velocities that differ more from the motion of the positions (the median) are not used."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A disk flies free until sample `first` and from sample `last` on.
+
+    time: where the two flights cross.  before: the velocity with which it comes there.  change: what it was given, gravity
+    apart.  ends: whether the samples end before the flight after it is known.
+    """
+
+    disk: int
+    first: int
+    last: int
+    time: float
+    before: Floats
+    change: Floats
+    ends: bool = False
+
+    @property
+    def is_sharp(self) -> bool:
+        """Whether it is over within one step, and the flight after it is known."""
+        return self.last - self.first <= 1 and not self.ends
+
+
+@dataclass(frozen=True, slots=True)
+class Flights:
+    """Paths of n disks through T samples.
+
+    Attributes:
+        times: (T,) on the scene's clock.
+        place: (T, n, 2) relative to the stage's corner, not wrapped.
+        before, after: (T, n, 2) velocities of the flights that end and that begin at a sample.
+        turned: whether a disk turns there, (T, n); or on the way to the next sample, (T - 1, n), where velocities are told.
+        least: the smallest change of velocity that is seen as a turn.
+        told: whether velocities are those that were told.
+        pull: (n, 2) gravity on each disk.
+    """
+
+    times: Floats
+    place: Floats
+    before: Floats
+    after: Floats
+    turned: Mask
+    least: float
+    told: bool
+    pull: Floats
+
+    def turns(self) -> Iterator[Turn]:
+        """All turns, disk by disk."""
+        for disk in range(self.place.shape[1]):
+            marks = np.flatnonzero(np.diff(np.concatenate([[False], self.turned[:, disk], [False]]).astype(np.int8)))
+            for begin, end in marks.reshape(-1, 2).tolist():
+                yield self._turn(disk, begin, end if self.told else end - 1)
+
+    def velocity(self) -> Floats:
+        """(T, n, 2) velocities at the samples; a turn is where its flights cross."""
+        speeds = self.before.copy()
+        for turn in () if self.told else self.turns():
+            span = slice(turn.first, turn.last + 1)
+            lag = (self.times[span] - turn.time)[:, None]
+            come = turn.before + np.where(lag < 0.0, 0.0, turn.change)
+            speeds[span, turn.disk] = come + self.pull[turn.disk] * lag
+        return speeds
+
+    def _turn(self, disk: int, first: int, last: int) -> Turn:
+        lag = float(self.times[last] - self.times[first])
+        before, after, pull = self.before[first, disk], self.after[last, disk], self.pull[disk]
+        change = after - before - pull * lag
+        back = self.place[last, disk] - after * lag + 0.5 * pull * lag * lag
+        size = float(change @ change)
+        since = float((self.place[first, disk] - back) @ change) / size if size > 0.0 and lag > 0.0 else 0.0
+        time = float(self.times[first]) + min(max(since, 0.0), lag)
+        ends = not self.told and last >= len(self.times) - 2
+        return Turn(disk, first, last, time, before + pull * (time - float(self.times[first])), change, ends)
+
+
+def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | None, start: Floats, step: float) -> Flights:
+    """The flights through samples; the first is the start of the scene.
+
+    Args:
+        stage: the scene.
+        times: (T,) on its clock.
+        place: (T, n, 2) relative to its corner.
+        velocity: (T, n, 2), or None.
+        start: (n, 2) velocities at the start.
+        step: about the last digit of positions, length.
+    """
+    mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass
+    pull = np.where(np.isfinite(mass)[:, None], np.array(stage.gravity or (0.0, 0.0)), 0.0)
+    dt = np.diff(times)[:, None, None]
+    way = np.diff(place, axis=0)
+    for axis, length in enumerate(stage.period):
+        if length is not None:
+            way[..., axis] -= length * np.round(way[..., axis] / length)
+    place = np.concatenate([place[:1], place[:1] + np.cumsum(way, axis=0)])
+    mean = way / dt
+    speed = typical_speed(mean[..., 0], mean[..., 1]) or 1.0
+    told = velocity is not None and float(np.median(np.abs(mean - 0.5 * (velocity[1:] + velocity[:-1])))) < UNLIKE * speed
+    if told:
+        assert velocity is not None
+        before = after = velocity
+        changes = np.diff(velocity, axis=0) - pull * dt
+    else:
+        before = np.concatenate([start[None], mean + 0.5 * pull * dt])
+        after = np.concatenate([mean - 0.5 * pull * dt, before[-1:]])
+        changes = after - before
+    size = np.hypot(changes[..., 0], changes[..., 1])
+    moving = size[:, np.isfinite(mass)]
+    usual = float(np.median(moving)) if moving.size else 0.0
+    blurred = 0.0 if told else 4.0 * step / float(dt.min())
+    least = max(LEAST_TURN * speed, ABOVE_NOISE * usual, blurred)
+    return Flights(times, place, before, after, size > least, least, told, pull)
+
+
+def energy_on_the_way(flights: Flights, mass: Floats) -> Floats:
+    """(T,) the energy that free flights have been given until each sample: 0 where flights are free."""
+    ways = np.zeros(len(flights.times))
+    quiet = ~flights.turned
+    if flights.told:
+        v = flights.after
+        gain = 0.5 * np.sum(v[1:] ** 2 - v[:-1] ** 2, axis=-1)
+        gain -= np.sum(flights.pull * 0.5 * (v[1:] + v[:-1]), axis=-1) * np.diff(flights.times)[:, None]
+        ways[1:] = np.sum(np.where(quiet, gain, 0.0) * mass, axis=1)
+    else:
+        gain = 0.5 * np.sum(flights.after**2 - flights.before**2, axis=-1)
+        ways[:] = np.sum(np.where(quiet, gain, 0.0) * mass, axis=1)
+    return np.cumsum(ways)

@@ -1,0 +1,255 @@
+"""The judgement of a motion: contacts, positions, energy and gaps beside those of the event-driven run; what is wrong first."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from eventsim.errors import EventsimError
+from eventsim.readers.contacts import Told
+from eventsim.readers.samples import Samples
+from eventsim.record.events import Floats, Kind
+from eventsim.scene import Scene
+from eventsim.scene.cells import Cells, Indices
+from eventsim.scene.overlaps import period_of
+from eventsim.scene.stage import Stage, stage_of
+from eventsim.validation.follow import distances
+from eventsim.validation.judge.charge import Charge, Window, charged, in_our_form
+from eventsim.validation.judge.faults import Fault, Witness
+from eventsim.validation.judge.flights import Flights, energy_on_the_way, flights_of
+from eventsim.validation.judge.surroundings import Surroundings
+from eventsim.validation.judge.told import contacts_from
+from eventsim.validation.truth import BELIEVED, Truth, truth_of
+
+LOOKS = 600
+"""Times at most at which positions are compared and gaps are looked for."""
+
+ASTRAY = 0.1
+"""In diameters: a disk that is further from its place has lost its way, and later contacts of it are not charged."""
+
+STEPS_LATE, FLOWN = 2.0, 0.1
+"""The usual tolerance of contact times: so many steps, and the time in which a typical disk flies so many diameters."""
+
+SMALLEST = 1e-9
+"""In radii: an overlap of paths below is rounding."""
+
+SAME_START = 0.01
+"""In diameters: how far positions at the start may be from those of the scene."""
+
+COARSE = 0.3
+"""Of the typical speed: where the least turn that can be told from noise is larger, contacts cannot be told from positions."""
+
+
+@dataclass(slots=True)
+class Judgement:
+    """What an engine's motion is worth.
+
+    Attributes:
+        name: of the scene.
+        source: where the motion is from.
+        truth: the event-driven run.
+        samples: times and disks that were told, and whether contacts and velocities were.
+        tolerance: how far apart the times of one contact may be.
+        charge: which contacts were found, missed, doubled, false.
+        looks: (L,) times at which positions were compared.
+        errors: (L,) root mean square distance from the truth, in diameters.
+        energy: (T,) relative change of the energy, at `times`; None where there is none.
+        momentum: the largest change, over sum m |v|, where nothing outside gives any; None elsewhere.
+        deepest: (depth in reaches, a, b, time) of the deepest overlap at the looks.
+        faults: all that were seen, in order of time.
+        remarks: sentences on what could not be judged.
+        elapsed: CPU seconds per time unit of a function that was stepped; None of a file.
+    """
+
+    name: str
+    source: str
+    truth: Truth
+    times: Floats
+    told: str
+    tolerance: float
+    charge: Charge
+    looks: Floats
+    errors: Floats
+    energy: Floats | None
+    momentum: float | None
+    deepest: tuple[float, int, int, float]
+    faults: list[Fault] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+    elapsed: float | None = None
+
+    @property
+    def first_fault(self) -> Fault | None:
+        """The first wrong event; None where none was seen."""
+        return self.faults[0] if self.faults else None
+
+    @property
+    def lost(self) -> float:
+        """From when on positions are further than ASTRAY diameters from the truth; inf: never."""
+        over = np.flatnonzero(self.errors > ASTRAY)
+        return float(self.looks[over[0]]) if len(over) else math.inf
+
+    @property
+    def believed(self) -> float:
+        """Until when the event-driven run itself can be believed; inf: to the end."""
+        good = np.all(self.truth.uncertainty <= BELIEVED)
+        return math.inf if good else self.truth.horizon
+
+
+def judge(scene: Scene, samples: Samples, contacts: Told | None = None, tolerance: float | None = None) -> Judgement:
+    """Judge a motion.
+
+    Args:
+        scene: what was simulated.
+        samples: positions at times, from the start of the scene on or from later.
+        contacts: those that the engine tells; None: they are read from its paths.
+        tolerance: how far apart the times of one contact may be; None: the usual one.
+
+    Raises:
+        EventsimError: where the samples are not of this scene.
+    """
+    stage = stage_of(scene)
+    samples = _placed(scene, stage, samples)
+    times = samples.times
+    looks = times[np.unique(np.linspace(0, len(times) - 1, min(LOOKS, len(times))).astype(int))]
+    looks = looks[looks > scene.start_time]
+    truth = truth_of(scene, looks.tolist())
+    looks = truth.times
+    mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass
+    place = samples.position - np.array(stage.corner)
+    start = np.column_stack([stage.vx, stage.vy])
+    flights = flights_of(stage, times, place, samples.velocity, start, samples.step)
+    around = Surroundings(stage)
+    remarks = [] if truth.run.stopped is None else [f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})"]
+    remarks += _doubts(flights, samples, truth, contacts)
+    read = contacts_from(flights, around, mass)
+    met = read.met if contacts is None else in_our_form(contacts, stage)
+    step = float(np.median(np.diff(times)))
+    if tolerance is None:
+        tolerance = STEPS_LATE * step + 2.0 * FLOWN * truth.radius / truth.speed
+    seen = np.searchsorted(times, looks)
+    apart = distances(stage, samples.position[seen], truth.run.position[: len(looks)]) / (2.0 * truth.radius)
+    resolution = max(SMALLEST * truth.radius, 4.0 * samples.step)
+    witness = Witness(flights, around, mass, max(tolerance, step), resolution)
+    window = Window(tolerance, 0.0 if contacts is not None else step, _lost_from(truth, apart), float(looks[-1]))
+    charge = charged(truth, met, window, witness, 0.0 if contacts is not None else flights.least)
+    weight, velocity = np.where(np.isfinite(mass), mass, 0.0), flights.velocity()
+    energy = _energy(flights, velocity, weight)
+    drift = witness.drift(energy_on_the_way(flights, weight), float(energy[0]))
+    seen_here = [*map(witness.outcome, read.met), drift, *map(witness.turn, read.unexplained), *charge.faults]
+    return Judgement(
+        name=scene.name or "this scene",
+        source=samples.source,
+        truth=truth,
+        times=times,
+        told=_what_is_told(samples, flights, contacts),
+        tolerance=tolerance,
+        charge=charge,
+        looks=looks,
+        errors=np.sqrt(np.mean(apart**2, axis=1)),
+        energy=energy / energy[0] - 1.0 if energy[0] > 0.0 else None,
+        momentum=_momentum(velocity, stage, mass),
+        deepest=_deepest(scene, samples, looks, seen),
+        faults=sorted((fault for fault in seen_here if fault is not None), key=lambda fault: fault.time),
+        remarks=remarks,
+    )
+
+
+def _placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
+    """The samples on the scene's axes, from its start on; EventsimError where they are of another scene."""
+    if samples.n != stage.n:
+        raise EventsimError(f"{samples.source}: has {samples.n} disks, and the scene {stage.n}")
+    for name, told, own in (("radius", samples.radius, stage.radius), ("mass", samples.mass, scene.disks.mass)):
+        if told is not None and not np.allclose(told, own, rtol=1e-5, atol=0.0):
+            if samples.cell is not None and np.all(told == told[0]):
+                continue  # what the gsd library gives where a file tells nothing
+            disk = int(np.argmax(~np.isclose(told, own, rtol=1e-5, atol=0.0)))
+            raise EventsimError(f"{samples.source}: disk {disk} has the {name} {told[disk]:g}, in the scene {own[disk]:g}")
+    samples = samples.placed(scene.domain.origin if scene.domain.size is not None else (0.0, 0.0))
+    begin, first = scene.start_time, float(samples.times[0])
+    if first < begin - 1e-9 * abs(begin):
+        raise EventsimError(f"{samples.source}: begins at {first:g}, before the scene does at {begin:g}")
+    own = scene.disks.position
+    diameter = 2.0 * (float(np.median(stage.radius)) or 1.0)
+    if first <= begin + 1e-9 * abs(begin):
+        away = distances(stage, samples.position[0], own)
+        disk = int(np.argmax(away))
+        if away[disk] > SAME_START * diameter:
+            here, there = samples.position[0, disk].tolist(), own[disk].tolist()
+            raise EventsimError(
+                f"{samples.source}: disk {disk} begins at ({here[0]:.6g}, {here[1]:.6g}), in the scene at ({there[0]:.6g}, "
+                f"{there[1]:.6g}): another scene, another order of disks, or other axes?"
+            )
+        return samples
+    velocity = None
+    if samples.velocity is not None:
+        velocity = np.concatenate([scene.disks.velocity[None], samples.velocity])
+    position = np.concatenate([own[None], samples.position])
+    times = np.concatenate([[begin], samples.times])
+    return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
+
+
+def _what_is_told(samples: Samples, flights: Flights, contacts: Told | None) -> str:
+    """In words."""
+    told = ["positions", *(["velocities"] if flights.told else []), *(["contacts"] if contacts is not None else [])]
+    return f"{', '.join(told)} of {samples.n} disks at {len(samples.times)} times"
+
+
+def _doubts(flights: Flights, samples: Samples, truth: Truth, contacts: Told | None) -> list[str]:
+    """What the samples cannot tell."""
+    found = []
+    if samples.velocity is not None and not flights.told:
+        found.append("the velocities that are told are not those with which positions move: they are not used")
+    if contacts is None and flights.least > COARSE * truth.speed:
+        found.append(
+            "the samples are too coarse, or too blurred, to tell contacts from positions: tell velocities, more digits, "
+            "more times, or the contacts (--contacts)"
+        )
+    return found
+
+
+def _lost_from(truth: Truth, apart: Floats) -> Floats:
+    """(n,) from when on a disk is astray, or rests; inf: never."""
+    astray = apart > ASTRAY
+    first = np.argmax(astray, axis=0)
+    lost = np.where(astray.any(axis=0), truth.times[first], np.inf)
+    rests = truth.run.rows[truth.run.rows["kind"] == Kind.REST]
+    np.minimum.at(lost, rests["a"], rests["time"])
+    over = truth.uncertainty > BELIEVED
+    return np.minimum(lost, truth.times[int(np.argmax(over))] if over.any() else np.inf)
+
+
+def _energy(flights: Flights, velocity: Floats, weight: Floats) -> Floats:
+    """(T,) the energy; heights count from the start."""
+    height = np.sum(weight * np.sum(flights.pull * flights.place, axis=-1), axis=1)
+    kinetic = 0.5 * np.sum(weight * np.sum(velocity**2, axis=-1), axis=1)
+    return np.asarray(kinetic - (height - height[0]))
+
+
+def _momentum(velocity: Floats, stage: Stage, mass: Floats) -> float | None:
+    """The largest change of the momentum over sum m |v|; None where walls, gravity or immovable disks give any."""
+    if stage.surfaces or stage.gravity is not None or not np.all(np.isfinite(mass)):
+        return None
+    whole = np.sum(mass[:, None] * velocity, axis=1)
+    scale = float(np.sum(mass * np.hypot(*velocity[0].T)))
+    return float(np.hypot(*(whole - whole[0]).T).max()) / scale if scale > 0.0 else None
+
+
+def _deepest(scene: Scene, samples: Samples, looks: Floats, seen: Indices) -> tuple[float, int, int, float]:
+    """(depth in reaches, a, b, time) of the deepest overlap of two disks at the looks."""
+    disks, period, origin = scene.disks, period_of(scene.domain), np.array(scene.domain.origin)
+    deepest = (0.0, -1, -1, math.nan)
+    for time, sample in zip(looks.tolist(), seen.tolist(), strict=True):
+        place = samples.position[sample] - origin
+        for axis, length in enumerate(period):
+            if math.isfinite(length):
+                place[:, axis] %= length
+        for found in Cells(place, disks.radius, disks.mass, period).pairs():
+            if not len(found.depth):
+                continue
+            share = found.depth / (disks.radius[found.first] + disks.radius[found.second])
+            worst = int(np.argmax(share))
+            if share[worst] > deepest[0]:
+                deepest = (float(share[worst]), int(found.first[worst]), int(found.second[worst]), time)
+    return deepest

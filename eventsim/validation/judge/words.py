@@ -1,0 +1,92 @@
+"""A judgement in sentences: the first wrong event first."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventsim.validation.judge.judgement import ASTRAY, Judgement
+from eventsim.validation.truth import BELIEVED
+
+
+def judged_in_words(judgement: Judgement) -> list[str]:
+    """What a judgement comes to."""
+    lines = [_first(judgement), _contacts(judgement), _positions(judgement), _conserved(judgement)]
+    return [line for line in [*lines, *judgement.remarks] if line]
+
+
+def _first(judgement: Judgement) -> str:
+    """The first wrong event, or that there is none."""
+    fault, parting = judgement.first_fault, judgement.charge.parting
+    if fault is not None:
+        further = _further(judgement)
+        return f"First wrong event: {fault.sentence}.{further}"
+    if parting is not None:
+        return f"No wrong event. It parts from the truth by the errors of its times: {parting[1]}."
+    return f"No wrong event until t = {judgement.times[-1]:g}."
+
+
+def _further(judgement: Judgement) -> str:
+    """How many others of the same kind follow."""
+    kinds: dict[str, int] = {}
+    for fault in judgement.faults[1:]:
+        kinds[fault.kind] = kinds.get(fault.kind, 0) + 1
+    if not kinds:
+        return ""
+    return f" After it: {', '.join(f'{kind} {count}' for kind, count in kinds.items())}."
+
+
+def _contacts(judgement: Judgement) -> str:
+    """Found, missed, doubled, false, and times."""
+    charge = judgement.charge
+    if not charge.ahead and not charge.doubled and not charge.false:
+        return "No contact could be charged: no disk that was still in its place met anything."
+    text = (
+        f"Of {charge.ahead} contacts of disks that were in their places it finds {charge.found} and misses {charge.missed}; "
+        f"{charge.doubled} are doubled, {charge.false} false"
+    )
+    if charge.unseen:
+        text += f"; {charge.unseen} more are too weak, or too close to others, to be seen in the samples"
+    if charge.found:
+        late = charge.errors[:, 1]
+        worst = int(np.argmax(np.abs(late)))
+        text += (
+            f". Times are late by {late.mean():+.2g} (mean), {np.sqrt(np.mean(late**2)):.2g} (root mean square), "
+            f"{late[worst]:+.2g} (the worst, at t = {charge.errors[worst, 0]:.5g})"
+        )
+    return f"{text}. Contacts are matched within {judgement.tolerance:.2g}."
+
+
+def _positions(judgement: Judgement) -> str:
+    """How far they can be followed, by whom."""
+    errors, looks = judgement.errors, judgement.looks
+    free = judgement.truth.mean_free_time
+    early = int(np.searchsorted(looks, judgement.truth.scene.start_time + free))
+    early = min(early, len(looks) - 1)
+    text = f"Positions are off by {errors[early]:.2g} diameters at t = {looks[early]:.4g} (a contact a disk)"
+    if math.isfinite(judgement.lost):
+        text += f", by more than {ASTRAY:g} from t = {judgement.lost:.4g} on"
+    else:
+        text += f", never by more than {errors.max():.2g}"
+    if math.isfinite(judgement.believed):
+        text += f"; float64 itself can be believed (to {BELIEVED:g}) until t = {judgement.believed:.4g}"
+    return f"{text}."
+
+
+def _conserved(judgement: Judgement) -> str:
+    """Energy, momentum, overlaps."""
+    parts = []
+    if judgement.energy is not None:
+        change = judgement.energy
+        worst = int(np.argmax(np.abs(change)))
+        parts.append(f"the energy changes by {change[-1]:+.2e} in all, by {change[worst]:+.2e} at most")
+    if judgement.momentum is not None:
+        parts.append(f"the momentum by {judgement.momentum:.1e}")
+    depth, a, b, time = judgement.deepest
+    if depth > 0.0:
+        parts.append(f"the deepest overlap is {depth:.2%} of the reach (disks {a} and {b}, t = {time:.5g})")
+    else:
+        parts.append("no disks overlap at the times that were looked at")
+    text = ", ".join(parts)
+    return f"{text[0].upper()}{text[1:]}."
