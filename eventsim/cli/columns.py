@@ -20,6 +20,23 @@ def series_columns(measures: Measures) -> Columns:
     return measures.series.to_dict()
 
 
+MOST_LAGS = 8
+"""Lags of D that are told."""
+
+
+def diffusion_columns(measures: Measures) -> Columns:
+    """D against the lag as columns: the longest lags, each twice as long as the one before."""
+    found = measures.correlations
+    place = [k for k, error in enumerate(found.diffusion_error.tolist()) if error > 0.0]
+    longest = found.lag[place[-1]] if place else math.nan
+    chosen = [k for k in place if (longest / found.lag[k]) in {2.0**power for power in range(MOST_LAGS)}]
+    return {
+        "lag": found.lag[chosen].tolist(),
+        "D": found.diffusion[chosen].tolist(),
+        "error": found.diffusion_error[chosen].tolist(),
+    }
+
+
 def profile_columns(measures: Measures) -> Columns:
     """The profile as columns: the middle of each slice, and what was measured there of each species."""
     profile = measures.profile

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import click
 
-from eventsim.cli.columns import profile_columns, series_columns, table_of, write_columns
+from eventsim.cli.columns import diffusion_columns, profile_columns, series_columns, table_of, write_columns
 from eventsim.cli.options import json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import say
 from eventsim.cli.source import chosen_scene, demand_no_scene_options, is_log, log_of, run_of, stop_options
@@ -53,7 +54,8 @@ Keys of --json:
                             given; fixed: conservation laws fix the value; deviation in standard errors; a unit
                             "2^1800 energy" where the value would be no float in the scene's own
   speeds                    histograms: species, edges, density, error, theory, misfit
-  correlations              lag, msd, msd_error, vacf, vacf_error
+  correlations              lag, msd, msd_error, vacf, vacf_error; diffusion (slope of msd / 4 between half the lag
+                            and the lag), diffusion_error
   series                    columns time, contacts (of a disk), energy, temperature, pressure, collision_rate
   profile                   null without --profile; axis, edges, species: density, velocity, temperature, each with
                             its error, and theory of the density (hydrostatics under gravity)
@@ -150,6 +152,9 @@ def measures_text(asked: str, measures: Measures, structure: Structure | None) -
         how = "as asked" if measures.discard_given else "found from the pressure"
         lines.append(f"  left out at the beginning: {short(measures.discarded)} ({how})")
     lines.append(measures.table())
+    if "diffusion" in measures and math.isfinite(measures["diffusion"].value):
+        lines.append("  D against lag, from the slope between half the lag and the lag:")
+        lines.append(table_of(diffusion_columns(measures)))
     for histogram in measures.speeds:
         if histogram.misfit is not None:
             kind = f" of species {histogram.species}" if len(measures.speeds) > 1 else ""
@@ -164,7 +169,7 @@ def _verdict(measures: Measures) -> str:
     if not measures.steady:
         return f"  no steady state: {measures.doubts[0]}; --series tells it along the run"
     if measures.disks < 2:
-        return f"  {measures.doubts[0]}"
+        return f"  no equilibrium to come to: {measures.doubts[0]}"
     if not measures.doubts:
         return "  equilibrated, as far as this run can tell"
     return "  NOT known to be equilibrated: " + ";\n    ".join(measures.doubts)

@@ -293,6 +293,7 @@ def _gas(scene: Scene) -> dict[str, Any]:
         "freedoms": ensemble.freedoms,
         "kept": [axis < kept for axis in range(2)],
         "mass": float(disks.mass[ensemble.counted].sum()),
+        "middle": ensemble.middle,
         "area": ensemble.area,
         "noTemperature": ensemble.no_temperature,
         "noPressure": ensemble.no_pressure,

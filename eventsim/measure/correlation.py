@@ -9,7 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from eventsim.measure.plain import plain
 from eventsim.record.events import Floats
 
 LAGS_PER_LEVEL = 8
@@ -29,6 +31,28 @@ class Correlations(NamedTuple):
     msd_error: Floats
     vacf: Floats
     vacf_error: Floats
+
+    @property
+    def diffusion(self) -> Floats:
+        """D against the lag (lags,): the slope of <r^2> / 4 from half the lag to the lag; NaN where there is no half."""
+        half, known = self._half()
+        return np.where(known, (self.msd - self.msd[half]) / (2.0 * self.lag), np.nan)
+
+    @property
+    def diffusion_error(self) -> Floats:
+        """The standard error of `diffusion`."""
+        # the displacement at half the lag is part of that at the lag: their errors do not add
+        return np.where(self._half()[1], self.msd_error / (2.0 * self.lag), np.nan)
+
+    def _half(self) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+        """(Index of half of each lag, whether there is such a lag)."""
+        half = np.minimum(np.searchsorted(self.lag, 0.5 * self.lag), max(len(self.lag) - 1, 0))
+        return half, self.lag[half] == 0.5 * self.lag
+
+    def to_dict(self) -> dict[str, list[float | None]]:
+        """As plain data."""
+        told = {**self._asdict(), "diffusion": self.diffusion, "diffusion_error": self.diffusion_error}
+        return {name: plain(array) for name, array in told.items()}
 
 
 class Correlator:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.measure.billiard_table import Table, table_of
+from eventsim.record.events import Floats
 from eventsim.scene.disks import species_among
 from eventsim.scene.domain import Box, Channel, Open, Periodic
 from eventsim.scene.scene import Scene
@@ -21,6 +22,10 @@ MOST_SPECIES = 8
 
 LAST_DIGITS = 2.0**-40
 """A share of the energy that is mostly rounding: sums of squares over a long run are good to some 2**-45."""
+
+KEPT_DIGITS = 2.0**-94
+"""Of the energy at the start: momenta are kept to some 2**-52 of what they were then, so a gas that has cooled below this
+share, by many times the square, may owe its energy to rounding."""
 
 CHANCE = 4.0
 """Times kT that one freedom has by chance in one case of 200."""
@@ -115,14 +120,18 @@ class Ensemble:
             return "contacts take energy"
         if self.pushed:
             return "moving obstacles change the energy"
-        gravity = self.scene.gravity
         if not self.held:
             return "on the open plane disks fly apart"
-        if gravity is not None and any(
-            g != 0.0 and p for g, p in zip(gravity, self.scene.domain.periodic, strict=True)
-        ):
-            return "along the period disks fall for ever"
-        return None
+        return "along the period disks fall for ever" if self.falls else None
+
+    @property
+    def falls(self) -> bool:
+        """Whether nothing ends the fall of disks."""
+        gravity = self.scene.gravity
+        if gravity is None:
+            return False
+        along = any(g != 0.0 and p for g, p in zip(gravity, self.scene.domain.periodic, strict=True))
+        return along or not self.held
 
     @cached_property
     def no_temperature(self) -> str | None:
@@ -135,6 +144,8 @@ class Ensemble:
             return "one disk shares its energy with nobody"
         if self.drowned:
             return "the energy of the common motion leaves no digits of the thermal energy"
+        if not self.scene.disks.radius[self.counted].any():
+            return "points never meet: each keeps its energy"
         return None
 
     @cached_property
@@ -238,20 +249,27 @@ class Ensemble:
 
     @property
     def kept_momenta(self) -> int:
-        """How many components of the total momentum are conserved."""
-        if not self.alone or self.scene.gravity is not None or self.circle is not None:
+        """How many components of the total momentum are conserved; of one it is that along x."""
+        gravity, domain = self.scene.gravity, self.scene.domain
+        if not self.alone or self.circle is not None or isinstance(domain, Box):
             return 0
-        return (
-            2 if isinstance(self.scene.domain, Open | Periodic) else 1 if isinstance(self.scene.domain, Channel) else 0
-        )
+        if gravity is not None:
+            return 1 if gravity[0] == 0.0 else 0
+        return 1 if isinstance(domain, Channel) else 2
+
+    @property
+    def middle(self) -> tuple[float, float] | None:
+        """Of a lone round container, where the angular momentum about it is conserved."""
+        free = self.posts is None and self.scene.gravity is None
+        return self.circle.center if self.circle is not None and free else None
 
     @cached_property
     def angular_momentum(self) -> float | None:
         """About the middle of a lone round container, where it is conserved: mass length^2 / time."""
-        if self.circle is None or self.posts is not None or self.scene.gravity is not None:
+        if self.middle is None:
             return None
         disks = self.scene.disks
-        arm, velocity = (disks.position - np.array(self.circle.center))[self.counted], disks.velocity[self.counted]
+        arm, velocity = (disks.position - np.array(self.middle))[self.counted], disks.velocity[self.counted]
         return float((disks.mass[self.counted] * (arm[:, 0] * velocity[:, 1] - arm[:, 1] * velocity[:, 0])).sum())
 
     @property
@@ -265,13 +283,23 @@ class Ensemble:
         return float(self.scene.disks.mass[self.counted].sum())
 
     @cached_property
+    def _kept_momentum(self) -> Floats:
+        """(2,) of the total momentum, what is conserved; 0 in other directions."""
+        disks, momentum = self.scene.disks, np.zeros(2)
+        kept = self.kept_momenta if self.n else 0
+        momentum[:kept] = (disks.mass[self.counted, None] * disks.velocity[self.counted]).sum(axis=0)[:kept]
+        return momentum
+
+    @cached_property
+    def drift(self) -> Floats:
+        """(2,) velocity of the common motion that never changes."""
+        return self._kept_momentum / (self.total_mass or 1.0)
+
+    @cached_property
     def drift_energy(self) -> float:
         """Kinetic energy of the common motion that never changes."""
-        disks = self.scene.disks
-        momentum = (disks.mass[self.counted, None] * disks.velocity[self.counted]).sum(axis=0)
-        kept = momentum[: self.kept_momenta]
         # not p^2 / 2 M: the square of a momentum of very light or very heavy disks is no float
-        return float((0.5 * kept * (kept / self.total_mass)).sum()) if self.n else 0.0
+        return float((0.5 * self._kept_momentum * self.drift).sum())
 
     @property
     def at_rest(self) -> bool:
@@ -284,8 +312,7 @@ class Ensemble:
         if self.angular_momentum is None or not self.n:
             return False
         disks = self.scene.disks
-        assert self.circle is not None
-        arm2 = ((disks.position - np.array(self.circle.center))[self.counted] ** 2).sum(axis=1)
+        arm2 = ((disks.position - np.array(self.middle))[self.counted] ** 2).sum(axis=1)
         inertia = float((disks.mass[self.counted] * arm2).sum())
         rotation = 0.5 * self.angular_momentum**2
         return rotation > CHANCE * self.start_energy / self.n * inertia
@@ -303,8 +330,10 @@ class Ensemble:
         return 0.5 * float((disks.mass[self.counted] * speed2).sum())
 
     def temperature(self, energy: float) -> float:
-        """KT of a kinetic energy: shared evenly by the degrees of freedom."""
-        return 2.0 * (energy - self.drift_energy) / self.freedoms if self.freedoms > 0 else math.nan
+        """KT of a kinetic energy: shared evenly by the degrees of freedom; NaN where rounding leaves no digits of it."""
+        thermal = energy - self.drift_energy
+        known = thermal >= KEPT_DIGITS * self.start_energy and thermal >= LAST_DIGITS * energy
+        return 2.0 * thermal / self.freedoms if self.freedoms > 0 and known else math.nan
 
     def thermal_share(self, mass: float) -> float:
         """Mean thermal energy of a disk over kT: 1, less its share in the momentum that is kept at zero."""

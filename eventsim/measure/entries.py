@@ -33,12 +33,11 @@ def average(
 
     note: what the number does not say.  Where it has no bar, the reason goes before.  remembered: as in `Records.ratio`.
     """
-    bar = records.ratio(above, below, remembered)
+    bar, why = records.barred(above, below, remembered)
     if not above.any():
         entry = Measure(0.0, unit=unit, doubt="none in this run", name=name)
     else:
-        why = records.no_bar(bar._replace(error=0.0 if math.isnan(bar.error) else bar.error))
-        doubts = [text for text in (why if math.isnan(bar.error) else None, note) if text]
+        doubts = [text for text in (why, note) if text]
         entry = Measure(
             bar.mean,
             bar.error,

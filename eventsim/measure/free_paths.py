@@ -9,13 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventsim.measure.theory import compressibility_factor, contact_value
 from eventsim.record.events import Floats
 from eventsim.replay.flights import FlightTable
-from eventsim.scene.scene import Scene
-
-MANY = 20
-"""Disks from which on kinetic theory is worth a comparison."""
 
 
 def free_paths(table: FlightTable) -> Floats:
@@ -26,18 +21,6 @@ def free_paths(table: FlightTable) -> Floats:
     paths = np.diff(gone[at])[same]
     result: Floats = paths[paths > 0.0]  # contacts of one instant have no path between them
     return result
-
-
-def mean_free_path(scene: Scene) -> float | None:
-    """Return Enskog's mean free path; None where the scene is no gas of equal disks in a rectangle."""
-    disks = scene.disks
-    equal = len(np.unique(disks.radius)) == 1 == len(np.unique(disks.mass)) and disks.radius[0] > 0.0
-    if scene.domain.size is None or not equal or scene.gravity is not None or scene.walls or len(disks) < MANY:
-        return None
-    area, diameter = scene.domain.size[0] * scene.domain.size[1], 2.0 * float(disks.radius[0])
-    density = len(disks) / area
-    eta = density * np.pi * diameter**2 / 4.0
-    return float(1.0 / (2.0 * np.sqrt(2.0) * density * diameter * contact_value(eta, compressibility_factor(eta))))
 
 
 def path_density(x: Floats) -> Floats:

@@ -49,12 +49,12 @@ def _doubts(records: Records) -> list[str]:
     if records.no_temperature is not None:
         return [records.no_temperature]
     if not records.mixed:
-        return [
-            f"{records.events / ensemble.n:.2g} contacts of a disk are too few to tell (at least {FEWEST_CONTACTS:g})"
-        ]
+        if records.shared < FEWEST_CONTACTS:
+            return [f"{records.shared:.2g} contacts of a disk are too few to tell (at least {FEWEST_CONTACTS:g})"]
+        return [f"the disks fall into {records.groups} groups that have not met"]
     rates = records.channel(sums.VIRIAL) / records.time
     late = records.discard is None and transient(records.discarded - records.origin, records.end - records.origin)
-    way = np.hypot(*records.sums.disks[ensemble.counted, sums.WX : sums.WY + 1].T)
+    way = np.hypot(*(records.sums.disks[ensemble.counted, sums.WX : sums.WY + 1] - records.end * ensemble.drift).T)
     longest = float(way.max())
     moved = longest * float(np.sqrt(((way / longest) ** 2).mean())) if longest > 0.0 else 0.0
     return doubts(ensemble, rates, block_average(rates), late, moved) + _exchanging(records)

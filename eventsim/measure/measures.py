@@ -160,7 +160,7 @@ class Measures:
             "doubts": list(self.doubts),
             "quantities": {quantity.name: quantity.to_dict() for quantity in self.quantities},
             "speeds": [histogram.to_dict() for histogram in self.speeds],
-            "correlations": {name: array.tolist() for name, array in self.correlations._asdict().items()},
+            "correlations": self.correlations.to_dict(),
             "series": self.series.to_dict(),
             "profile": None if self.profile is None else self.profile.to_dict(),
         }

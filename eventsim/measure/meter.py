@@ -18,13 +18,14 @@ from eventsim.measure.compiled import Kernels, kernels
 from eventsim.measure.correlation import Correlator
 from eventsim.measure.ensemble import Ensemble, ensemble_of
 from eventsim.measure.gathered import measures_of
+from eventsim.measure.groups import Groups
 from eventsim.measure.measures import Measures
 from eventsim.measure.pace import at_full_pace, slowed_rows
 from eventsim.measure.profile import Profiler
 from eventsim.measure.records import Records
 from eventsim.measure.speeds import FASTEST
 from eventsim.measure.walls import described_walls
-from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.events import ROW, Floats, Kind, Rows
 from eventsim.record.provenance import Kick, Provenance
 from eventsim.replay.log import EventLog, stream_log
 from eventsim.scene.pace import later, pace_of_scene, slowed_scene
@@ -95,6 +96,7 @@ class Meter:
         self._plan = sums.Plan(len(ensemble.species), walls, *(length or 0.0 for length in stage.period))
         self._sums = _sums(scene, stage, ensemble, self._plan, watched)
         self._sums.numbers[sums.ORIGIN] = self.discard or 0.0
+        self._groups = Groups(ensemble.counted)
         self._block = np.empty(BLOCK, dtype=ROW)
         self._filled, self._rows = 0, 0
         self._correlator: Correlator | None = None
@@ -144,6 +146,7 @@ class Meter:
             thermal_speed=_thermal_speed(self.ensemble),
             correlations=correlator.result(),
             profile=None if self._profiler is None else self._profiler.result(),
+            groups=self._groups.count,
         )
         measures = measures_of(records)
         return at_full_pace(measures, self._pace) if self._pace else measures
@@ -154,6 +157,8 @@ class Meter:
         time = np.maximum.accumulate(np.maximum(time, self._time))  # logged times may step back by an ulp
         self._scales(float(time[-1]), len(rows))
         self._rows += len(rows)
+        pairs = rows[rows["kind"] == Kind.PAIR]
+        self._groups.add(pairs["a"].astype(np.intp), pairs["b"].astype(np.intp))
         kernel = kernels(self._rows)
         self._hold(kernel)
         self._time = float(time[-1])
@@ -200,7 +205,9 @@ class Meter:
             way, velocity = self._sums.way[:filled], self._sums.velocity[:filled]
             taken = int(counts[sums.SAMPLED])
             times = numbers[sums.INTERVAL] * np.arange(taken - filled, taken, dtype=np.float64)
-            self._correlator.add(way[:, self._correlated], velocity[:, self._correlated])
+            drift = self.ensemble.drift  # diffusion is motion about the common one
+            moved = way[:, self._correlated] - times[:, None, None] * drift
+            self._correlator.add(moved, velocity[:, self._correlated] - drift)
             if self.ensemble.angular_momentum is not None:
                 self._add_rotation(times, way)
             if self._profiler is not None:
@@ -213,12 +220,11 @@ class Meter:
 
     def _add_rotation(self, times: Floats, way: Floats) -> None:
         """Add the energy of the common rotation, L^2 / 2 I, at the times of samples."""
-        circle, turning = self.ensemble.circle, self.ensemble.angular_momentum
-        assert circle is not None
+        turning = self.ensemble.angular_momentum
         assert turning is not None
         watched = self._sums.watched
         mass = self._sums.disks[watched, sums.MASS]
-        arm = way + (self.scene.disks.position[watched] - np.array(circle.center))
+        arm = way + (self.scene.disks.position[watched] - np.array(self.ensemble.middle))
         inertia = np.einsum("swk,swk,w->s", arm, arm, mass) * (self.ensemble.total_mass / mass.sum())
         bins = self._sums.bins
         place = np.minimum((times / self._sums.numbers[sums.WIDTH]).astype(np.int64), len(bins) - 1)

@@ -31,6 +31,9 @@ STEEP = 5.0
 LAYERED = 2.0
 """Diameters beside a wall in which disks form layers."""
 
+FINE = 16
+"""Steps of hydrostatics in a slice."""
+
 FEWEST = 16
 """Disks below which the energy that falls and rises changes the temperature on the way."""
 
@@ -139,7 +142,7 @@ class Profiler:
         return Profile(self.axis, self.edges, species)
 
     def _species(self, kind: int, sums: Floats, samples: Floats) -> SpeciesProfile:
-        one = self._ensemble.species[kind]
+        one, share = self._ensemble.species[kind], self._ensemble.thermal_share(self._ensemble.species[kind].mass)
         density = [ratio_average(sums[:, k, COUNT], samples) for k in range(SLICES)]
         areas = self._areas()
         velocity = np.full((SLICES, 2), np.nan)
@@ -157,13 +160,13 @@ class Profiler:
                 square = (
                     here[:, V2] - 2.0 * (vx * here[:, VX] + vy * here[:, VY]) + (vx * vx + vy * vy) * here[:, COUNT]
                 )
-                bar = ratio_average(0.5 * one.mass * square, here[:, COUNT])
+                bar = ratio_average(0.5 * one.mass / share * square, here[:, COUNT])
                 temperature[k], temperature_error[k] = bar.mean, bar.error
         mean = np.array([bar.mean for bar in density]) / areas
         error = np.array([bar.error if bar.error > 0.0 else math.nan for bar in density]) / areas
         heat = float(np.nansum(temperature * mean * areas) / max(float((mean * areas).sum()), 1e-300))
         return SpeciesProfile(
-            kind, mean, error, velocity, velocity_error, temperature, temperature_error, self._barometric(kind, heat)
+            kind, mean, error, velocity, velocity_error, temperature, temperature_error, self._barometric(kind, heat, mean)
         )
 
     def _areas(self) -> Floats:
@@ -177,8 +180,12 @@ class Profiler:
         areas: Floats = np.diff(below)
         return areas
 
-    def _barometric(self, kind: int, kt: float) -> Floats | None:
-        """Return the density that hydrostatics expects in each slice; None where it does not hold."""
+    def _barometric(self, kind: int, kt: float, density: Floats) -> Floats | None:
+        """Return the density that hydrostatics expects in each slice; None where it does not hold.
+
+        Beside walls disks stand in layers, which take up a number of their own.  So hydrostatics speaks of the slices between, and
+        of as many disks as were seen there.
+        """
         ensemble, scene = self._ensemble, self._scene
         gravity, size, along = scene.gravity, scene.domain.size, AXES.index(self.axis)
         if gravity is None or size is None or not ensemble.alone or not ensemble.equal or not ensemble.steady:
@@ -191,19 +198,18 @@ class Profiler:
         scale = kt / (one.mass * gravity[along])  # height over which a dilute gas falls by e, upwards where positive
         if abs(scale) < STEEP * 2.0 * radius:
             return None
-        fine = 8 * SLICES
-        low, high = self._low + radius, self._low + self._length - radius
-        place = low + (high - low) * (np.arange(fine) + 0.5) / fine
-        found = barometric_density(ensemble.n / wide, high - low, radius, scale, fine)
+        beside = radius + LAYERED * 2.0 * radius
+        free = (self.edges[:-1] >= self._low + beside) & (self.edges[1:] <= self._low + self._length - beside)
+        if not free.any():
+            return None
+        share = size[1 - along] / wide
+        height = float(np.diff(self.edges)[free].sum())
+        number = float((density * np.diff(self.edges))[free].sum()) * share
+        found = barometric_density(number, height, radius, scale, FINE * int(free.sum()))
         if found is None:
             return None
-        middle = 0.5 * (self.edges[1:] + self.edges[:-1])
-        # a slice reaches from wall to wall, the centres stay a radius away from both
-        theory = np.interp(middle, place, found) * (wide / size[1 - along])
-        half = 0.5 * self._length / SLICES
-        theory[(middle - half < low + LAYERED * 2.0 * radius) | (middle + half > high - LAYERED * 2.0 * radius)] = (
-            np.nan
-        )
+        theory = np.full(SLICES, np.nan)
+        theory[free] = found.reshape(-1, FINE).mean(axis=1) / share
         return theory
 
 

@@ -16,6 +16,7 @@ from eventsim.measure.equilibration import settled_after
 from eventsim.measure.profile import Profile
 from eventsim.measure.sums import Plan, Sums
 from eventsim.record.events import Floats
+from eventsim.scene.names import plural
 
 FEWEST_EVENTS = 32
 """Contacts, of all disks together, from which on their scatter says how sure a mean is: some 18 % of the bar itself."""
@@ -25,6 +26,9 @@ MEMORY = 6.0
 
 FEWEST_CONTACTS = 10.0
 """Contacts of a disk after which it may have forgotten how it began; a few are enough in a gas, at least one in a crowd."""
+
+APART = 50.0
+"""Contacts of a disk after which groups that never met are held apart: by chance a disk misses so many once in 1e21."""
 
 NO_SCATTER = 1e-9
 """Share of a value below which its bar is rounding: what repeats itself for ever has no scatter to make a bar of."""
@@ -43,6 +47,7 @@ class Records:
         discard: what is asked to be left out; None: what the pressure tells.
         thermal_speed: the unit of speeds of a unit mass.
         correlations, profile: of samples.
+        groups: into how many the disks that carry energy fall by their contacts with each other.
         found: the values of quantities so far, by name.
     """
 
@@ -56,6 +61,7 @@ class Records:
     thermal_speed: float
     correlations: Correlations
     profile: Profile | None
+    groups: int = 1
     found: dict[str, float] = field(default_factory=dict)
 
     # --- bins of time
@@ -131,6 +137,32 @@ class Records:
         """Impulse given to one side of a wall."""
         return self.channel(sums.first_wall(self.plan) + sums.SIDES * place + side)
 
+    def turning_at(self, time: Floats) -> Floats:
+        """Energy of the common rotation in a round container, L^2 / 2 I, at times since the start, (K,)."""
+        samples = self.bins[:, sums.SAMPLES]
+        if not samples.any():
+            return np.zeros_like(time)
+        middle = self.origin + np.cumsum(self.all_widths) - 0.5 * self.all_widths
+        known = samples > 0.0
+        found: Floats = np.interp(time, middle[known], self.bins[known, sums.ROTATION] / samples[known])
+        return found
+
+    @cached_property
+    def boundary_force(self) -> Floats:
+        """Impulse x distance from the middle, (all bins,), at the sides of the domain or a lone round container."""
+        levers = self.sums.walls[: self.plan.walls, sums.LEVER]
+        first = sums.first_wall(self.plan)
+        given = self.bins[:, first : first + sums.SIDES * self.plan.walls].reshape(self.count, -1, sums.SIDES)
+        found: Floats = given.sum(axis=2) @ levers
+        return found
+
+    @cached_property
+    def reach_force(self) -> Floats:
+        """Reach x impulse, (all bins,), between disks and at what bounds them: what kinetic energy leaves of P V."""
+        at_walls = self.boundary_force - self.bins[:, sums.WALL_VIRIAL]
+        found: Floats = self.bins[:, sums.VIRIAL] + at_walls
+        return found
+
     def _over(self, kinds: range, place: int) -> Floats:
         return sum((self.species(kind, place) for kind in kinds), np.zeros_like(self.time))
 
@@ -166,15 +198,22 @@ class Records:
 
     # --- what the run was like
 
-    @property
-    def events(self) -> float:
-        """Contacts in what is kept, of all disks, with each other and with walls."""
-        return float(self.pair_contacts.sum() + self.wall_contacts.sum())
+    @cached_property
+    def pairs(self) -> float:
+        """Contacts in what is kept between disks that carry energy: those that share it out."""
+        return float(self.channel(sums.PAIRS).sum())
 
     @property
-    def per_disk(self) -> float:
-        """Contacts of a disk with others in what is kept."""
-        return float(self.pair_contacts.sum()) / max(self.ensemble.n, 1)
+    def shared(self) -> float:
+        """Contacts of a disk in which energy is shared, in what is kept."""
+        return 2.0 * self.pairs / max(self.ensemble.n, 1)
+
+    @property
+    def contacts_seen(self) -> float:
+        """Contacts in what is kept, with disks, posts and walls, of disks that carry energy, else of tracers."""
+        if not self.ensemble.n:
+            return float(self.sums.disks[self.ensemble.movers, sums.HIT].sum())
+        return float(self.pair_contacts.sum() + self.wall_contacts.sum()) - self.pairs
 
     @cached_property
     def on_a_line(self) -> str | None:
@@ -200,8 +239,10 @@ class Records:
             return ensemble.no_temperature
         if self.on_a_line is not None:
             return self.on_a_line
-        if ensemble.n < FEW and self.events < FEWEST_CONTACTS * ensemble.n:
-            return f"{self.events:g} contacts are too few to share the energy"
+        if ensemble.n < FEW and self.shared < FEWEST_CONTACTS:
+            return f"{plural(int(self.pairs), 'contact')} between disks: too few to share the energy"
+        if self.groups > 1 and self.shared > APART:
+            return f"the disks fall into {self.groups} groups that never meet"
         return None
 
     @cached_property
@@ -212,36 +253,42 @@ class Records:
     @property
     def mixed(self) -> bool:
         """Whether every disk has had the contacts to come into equilibrium: else theory has nothing to say yet."""
-        return self.no_temperature is None and self.events >= FEWEST_CONTACTS * self.ensemble.n
+        return self.no_temperature is None and self.shared >= FEWEST_CONTACTS and self.groups == 1
 
     # --- bars
 
     def ratio(self, above: Floats, below: Floats, remembered: bool = False) -> ErrorBar:
-        """sum(above) / sum(below), with an error bar where the run can tell one.
+        """sum(above) / sum(below), with an error bar where the run can tell one; see `barred`."""
+        return self.barred(above, below, remembered)[0]
+
+    def barred(self, above: Floats, below: Floats, remembered: bool = False) -> tuple[ErrorBar, str | None]:
+        """sum(above) / sum(below), with an error bar, or the reason why the run can tell none.
 
         remembered: of what disks keep from one contact to the next, such as speeds.  Stretches are then at least as long as
         that memory, however few are left: in a short run the scatter itself could not tell it.
         """
         step = 1
-        if remembered and self.events > 0.0:
-            memory = MEMORY * float(self.time.sum()) * self.ensemble.n / self.events
+        if remembered and self.shared > 0.0:
+            memory = MEMORY * float(self.time.sum()) / self.shared
             step = max(min(math.ceil(memory / self.width), len(above) // FEWEST_BLOCKS), 1)
         starts = np.arange(0, len(above), step)
         bar = ratio_average(np.add.reduceat(above, starts), np.add.reduceat(below, starts))
         bar = bar._replace(length=bar.length * step)
-        return bar if self.no_bar(bar) is None else bar._replace(error=math.nan)
+        why = self._no_bar(bar, above)
+        return (bar, None) if why is None else (bar._replace(error=math.nan), why)
 
-    def no_bar(self, bar: ErrorBar) -> str | None:
-        """Why a ratio of sums has no error bar, a clause; None where it has one."""
-        events = self.events if self.ensemble.n else float(self.sums.disks[self.ensemble.movers, sums.HIT].sum())
+    def _no_bar(self, bar: ErrorBar, above: Floats) -> str | None:
+        """Why a ratio of sums has no error bar, a clause; None where it has one.  above: (bins,) the sums above."""
         if not self.ensemble.steady:
             return "an average over this run, which has no steady state"
-        if events < FEWEST_EVENTS:
-            return f"{events:g} contacts are too few for an error bar"
+        if self.contacts_seen < FEWEST_EVENTS:
+            return f"{plural(int(self.contacts_seen), 'contact')}: too few for an error bar"
+        if np.count_nonzero(above) < FEWEST_BLOCKS:
+            return "too few such contacts for an error bar"
         if math.isnan(bar.error):
             return "the run is too short for an error bar"
         if bar.error <= NO_SCATTER * abs(bar.mean):
-            return "it repeats itself, without a scatter to make an error bar of"
+            return "it is the same at all times: no scatter to make an error bar of"
         return None
 
 

@@ -27,8 +27,8 @@ class TimeSeries:
         time: at the end of the part, since the start of the run.
         contacts: of a disk with others, since what is discarded, by then.
         energy: kinetic; at `time` where contacts alone change it, else the mean over the part.
-        temperature: kT of that energy; NaN where the energy is shared by too few.
-        pressure: over the part, from the virial; NaN where nothing bounds the gas, and under gravity.
+        temperature: kT of that energy; NaN where there is nobody to share it, and below the digits.
+        pressure: over the part, on average over directions; NaN where nothing bounds the gas, and under gravity.
         collision_rate: contacts of a disk with others per time, over the part.
     """
 
@@ -90,7 +90,7 @@ def _along_time(records: Records) -> TimeSeries:
     met = np.cumsum(parts(records.all_contacts))
     movers = max(int(records.ensemble.movers.sum()), 1)
     energy = parts(records.bins[:, sums.ENERGY]) / span
-    virial = parts(records.bins[:, sums.VIRIAL])
+    virial = parts(records.reach_force)
     contacts = np.concatenate([[0.0], met / movers])
     return _series(records, time, contacts, energy, energy, span, virial)
 
@@ -102,9 +102,12 @@ def _series(
     ensemble = records.ensemble
     kt = np.full(len(time), np.nan)
     pressure = kt.copy()
-    if ensemble.n > 1 and not ensemble.drowned and records.on_a_line is None:
-        kt = np.array([ensemble.temperature(float(e)) for e in energy])
+    # after a kick nobody knows what is conserved
+    common = ensemble.kept_momenta > 0 or ensemble.angular_momentum is not None
+    if ensemble.n > 1 and records.on_a_line is None and not (ensemble.kicked and common) and not ensemble.falls:
+        turning = records.turning_at(time)
+        kt = np.array([ensemble.temperature(float(e)) for e in energy - turning])
         if ensemble.area is not None and ensemble.alone and ensemble.scene.gravity is None and not ensemble.turns:
-            mean = np.array([ensemble.temperature(float(e)) for e in mean_energy])
+            mean = np.array([ensemble.temperature(float(e)) for e in mean_energy - turning])
             pressure = (ensemble.n * mean + 0.5 * virial / span) / ensemble.area
     return TimeSeries(time, contacts[1:], energy, kt, pressure, np.diff(contacts) / span)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.measure.ensemble import Ensemble
+from eventsim.measure.plain import plain
 from eventsim.measure.records import Records
 from eventsim.measure.sums import SPEED_BINS, first_speed
 from eventsim.measure.theory import survival
@@ -28,7 +29,8 @@ FEWEST_FREEDOMS = 4
 class SpeedHistogram:
     """The share of time that disks of one species spend at speeds between edges (bins + 1,).
 
-    density: per speed, (bins,), with its error.  theory: the same of Maxwell's distribution (at fixed energy), or None.
+    density: per speed, (bins,), with its error; NaN where too little was seen.  theory: the same of Maxwell's distribution (at
+    fixed energy), or None.
     """
 
     species: int
@@ -51,7 +53,7 @@ class SpeedHistogram:
             "species": self.species,
             "edges": self.edges.tolist(),
             "density": self.density.tolist(),
-            "error": self.error.tolist(),
+            "error": plain(self.error),
             "theory": None if self.theory is None else self.theory.tolist(),
             "misfit": self.misfit,
         }
@@ -78,7 +80,7 @@ def speed_histograms(records: Records) -> tuple[SpeedHistogram, ...]:
             theory = -np.diff(above) / width
         density = np.array([bar.mean for bar in bars]) / width
         error = np.array([bar.error for bar in bars]) / width
-        result.append(SpeedHistogram(kind, edges, density, np.nan_to_num(error), theory))
+        result.append(SpeedHistogram(kind, edges, density, error, theory))
     return tuple(result)
 
 

@@ -44,11 +44,12 @@ PIECES = 4
 MOST_POINTS = 2048
 POINT_TIME, POINT_ENERGY, POINT_VIRIAL = 0, 1, 2
 POINT_COLUMNS = 3
-"""Columns of the points along the contacts: time, energy, and the sum of VIRIAL by then."""
+"""Columns of the points along the contacts: time, energy, and the sum of FORCE by then."""
 
 WIDTH, ORIGIN, INTERVAL, HEAT, FORCE = range(5)
 NUMBERS = 5
-"""Numbers that change: width of a bin; time at which the bins begin; interval of samples; energy now; sum of VIRIAL so far."""
+"""Numbers that change: width of a bin; time at which the bins begin; interval of samples; energy now; sum of reach x impulse so
+far, between disks and at the walls that hold them."""
 
 PLACE, SAMPLED, FILLED, CONTACTS, STRIDE, POINTS = range(6)
 COUNTS = 6
@@ -61,17 +62,19 @@ DISK_COLUMNS = 16
 the start of the run, the wall on which it rests or -1.  Length of its flights, number of its contacts.  What it is: mass, 0 where
 it carries no energy; radius; species; acceleration in free flight; bins of the histogram per unit of speed."""
 
-WALL_X, WALL_Y, NORMAL_X, NORMAL_Y, LEVER, INSET, PRESS, SLOPE_X, SLOPE_Y, BEND = range(10)
-WALL_COLUMNS = 10
-"""Columns of a wall: a point of a straight one, the centre of a round one; the normal of a straight one, to its left or into the
-domain, 0, 0 of a round one; from the middle of the region to the wall, a disk's own being shorter by `INSET` radii; how hard a
-disk of unit mass presses that rests on it, and its acceleration; the radius of a round one."""
+WALL_X, WALL_Y, OUT_X, OUT_Y, LEVER, INSET, PRESS, SLOPE_X, SLOPE_Y, BEND, HALF, FACE = range(12)
+WALL_COLUMNS = 12
+"""Columns of a wall: its middle; from there to the left, as far as a straight one is long, or from the centre of a round one to
+its middle; from the middle of the region to the wall, a disk's own being shorter by `INSET` radii; how hard a disk of unit mass
+presses that rests on it, and its acceleration; the radius of a round one, 0 of a straight one; the cosine of half its turn;
+the side that all disks are on, or `BOTH`."""
 
 SIDES = 3
+LEFT, RIGHT, END, BOTH = 0, 1, 2, -1
 """Of a wall: left or inner, right or outer, ends."""
 
-AT_END = 1e-7
-"""Share of a wall's size by which a centre may be off its place beside the wall: well above rounding, and below what is seen."""
+POINT_LIKE = 1e-7
+"""Share of a wall's size below which a radius does not tell on which side a centre is: well above rounding."""
 
 
 class Block(NamedTuple):
@@ -281,23 +284,27 @@ def nearest(d: float, period: float) -> float:
 
 
 def side_of(plan: Plan, sums: Sums, wall: int, radius: float, x: float, y: float, vx: float, vy: float) -> int:
-    """Which side a disk that has just met a wall is on: 0 left or inner, 1 right or outer, 2 at an end."""
+    """Which side a disk that has just met a wall is on; at an end where its foot is not on the wall."""
     walls = sums.walls
-    nx, ny = walls[wall, NORMAL_X], walls[wall, NORMAL_Y]
+    face = int(walls[wall, FACE])
+    if face != BOTH:
+        return face
     dx, dy = nearest(x - walls[wall, WALL_X], plan.period_x), nearest(y - walls[wall, WALL_Y], plan.period_y)
-    if nx == 0.0 and ny == 0.0:
-        far = math.sqrt(dx * dx + dy * dy)
-        off, away = far - walls[wall, BEND], dx * vx + dy * vy
-        size = far
+    ox, oy, bend = walls[wall, OUT_X], walls[wall, OUT_Y], walls[wall, BEND]
+    if bend > 0.0:
+        cx, cy = dx + ox, dy + oy
+        far = math.sqrt(cx * cx + cy * cy)
+        if cx * ox + cy * oy < far * bend * walls[wall, HALF]:
+            return END
+        off, away, size = far - bend, cx * vx + cy * vy, bend
     else:
-        norm = math.sqrt(nx * nx + ny * ny)
-        off, away = -(nx * dx + ny * dy) / norm, -(nx * vx + ny * vy)
-        size = max(norm, abs(dx) + abs(dy))
-    if abs(abs(off) - radius) > AT_END * size:
-        return 2
-    if radius > AT_END * size:
-        return 1 if off > 0.0 else 0
-    return 1 if away > 0.0 else 0  # a point leaves on the side that it is on
+        size = math.sqrt(ox * ox + oy * oy)
+        if abs(dx * oy - dy * ox) > 0.5 * size * size:
+            return END
+        off, away = -(ox * dx + oy * dy) / size, -(ox * vx + oy * vy)
+    if radius > POINT_LIKE * size:
+        return RIGHT if off > 0.0 else LEFT
+    return RIGHT if away > 0.0 else LEFT  # a point leaves on the side that it is on
 
 
 def sample(sums: Sums, time: float) -> None:
@@ -404,6 +411,7 @@ def take(block: Block, first: int, plan: Plan, sums: Sums) -> int:
         if kind == PAIR:
             meet(plan, sums, a, b, time, block.impulse[row])
         elif kind != KICK:
+            numbers[FORCE] += sums.walls[wall, INSET] * disks[a, RADIUS] * block.impulse[row]
             if time >= numbers[ORIGIN]:
                 side = side_of(plan, sums, wall, disks[a, RADIUS], block.xa[row], block.ya[row], vx, vy)
                 strike(plan, sums, a, wall, side, block.impulse[row])

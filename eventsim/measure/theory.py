@@ -125,6 +125,18 @@ def cooling_exponent(restitution: float) -> float:
     return 0.5 * (1.0 - restitution * restitution)
 
 
+def shear_damping(eta: float) -> float:
+    """Nu / (omega d^2): how fast shear flow dies out, per contact of a disk, kinematic viscosity nu and rate omega by Enskog.
+
+    Source: D. M. Gass, J. Chem. Phys. 54, 1898 (1971), doi:10.1063/1.1675116.
+    """
+    g = contact_value(eta, compressibility_factor(eta))
+    cover = 2.0 * eta
+    viscosity = 1.022 * (1.0 / g + cover + 0.8729 * g * cover * cover)  # of sqrt(m kT / pi) / 2 d
+    density = 4.0 * eta / math.pi  # times d^2
+    return viscosity / (4.0 * math.pi * density * density * g)
+
+
 class Component(NamedTuple):
     """One species of a mixture: number per area, diameter, mass."""
 

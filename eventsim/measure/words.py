@@ -46,16 +46,22 @@ def _shared_doubts(quantities: Sequence[Measure]) -> dict[str, int]:
     return {why: k for k, why in enumerate(several, 1)}
 
 
-NONE_SEEN = "none in this run"
+NONE_SEEN, EXACT = "none in this run", "(exact)"
 
 
 def _row(one: Measure, shared: dict[str, int]) -> tuple[str, str, str, str, str]:
     digits = _digits(one.value, one.error)
     theory = "" if one.theory is None else f"{one.theory:.{digits}g}"
     name = one.name if one.plain else f"{one.name} [{one.unit}]"
-    doubt = None if one.doubt is None else f"[{shared[one.doubt]}]" if one.doubt in shared else f"({one.doubt})"
-    words = "  ".join(text for text in (one.source, doubt) if text)
+    words = "  ".join(text for text in (one.source, _remark(one, shared)) if text)
     return name, value_with_error(one), theory, _difference(one), words
+
+
+def _remark(one: Measure, shared: dict[str, int]) -> str | None:
+    """What a number does not say, or the number of the line that says it."""
+    if one.doubt is None:
+        return EXACT if one.fixed else None
+    return f"[{shared[one.doubt]}]" if one.doubt in shared else f"({one.doubt})"
 
 
 def value_with_error(one: Measure) -> str:

@@ -32,8 +32,8 @@ def test_disks_at_rest_have_no_temperature_and_no_steady_state(mass):
 @pytest.mark.parametrize("power", [-300, -100, 300, 480])
 def test_measures_scale_exactly_with_the_unit_of_length(domain, power):
     unit = 2.0**power
-    one = es.simulate(two_disks(domain), until=30.0, log=True).log
-    other = es.simulate(two_disks(domain, unit), until=30.0 * unit, log=True).log
+    one = es.simulate(two_disks(domain), until=60.0, log=True).log
+    other = es.simulate(two_disks(domain, unit), until=60.0 * unit, log=True).log
     here, there = measure(one), measure(other)
     assert there["mean_free_path"].value == here["mean_free_path"].value * unit
     assert there["collision_rate"].error == here["collision_rate"].error / unit

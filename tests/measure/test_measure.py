@@ -68,9 +68,9 @@ def test_free_paths_and_speeds_are_those_of_the_flights(gas_log):
 
 
 def test_displacements_are_those_of_the_flights(gas_log):
-    from eventsim.measure.displacement import displacements
     from eventsim.replay.flights import flight_table
     from eventsim.replay.replay import Replay
+    from tests.measure.ways import displacements
 
     correlations = measure(gas_log, discard=0.0).correlations
     table = flight_table(Replay(gas_log))

@@ -3,9 +3,10 @@
 
 const BINS = 24, PRESSURE_SECONDS = 5, CURVE_POINTS = 60;
 
-/* Kinetic energy, potential energy, momentum and number of the disks of finite positive mass. */
-function sums(world, state) {
-  let kinetic = 0, potential = 0, px = 0, py = 0, count = 0;
+/* Kinetic energy, potential energy, momentum, number, angular momentum and moment of inertia about (x0, y0), of the disks of finite
+   positive mass. */
+function sums(world, state, x0, y0) {
+  let kinetic = 0, potential = 0, px = 0, py = 0, count = 0, turning = 0, inertia = 0;
   for (let i = 0; i < world.count; i++) {
     const mass = world.disks.mass[i];
     if (!(mass < Infinity) || mass === 0) continue;
@@ -13,9 +14,12 @@ function sums(world, state) {
     if (world.gravity) potential -= mass * (world.gravity[0] * state.x[i] + world.gravity[1] * state.y[i]);
     px += mass * state.vx[i];
     py += mass * state.vy[i];
+    const x = state.x[i] - x0, y = state.y[i] - y0;
+    turning += mass * (x * state.vy[i] - y * state.vx[i]);
+    inertia += mass * (x * x + y * y);
     count++;
   }
-  return { kinetic, energy: kinetic + potential, px, py, count };
+  return { kinetic, energy: kinetic + potential, px, py, count, turning, inertia };
 }
 
 class WallImpulses {
@@ -52,9 +56,11 @@ class Readouts {
 
   /* view: what is shown; its state lies in world.now.  gas: what `measure` knows of the scene as a gas, and where it has a dash. */
   show(world, stage, gas, impulses, view) {
-    const state = world.now, found = sums(world, state);
+    const state = world.now, [x0, y0] = gas.middle || stage.corner;
+    const found = sums(world, state, x0 - stage.corner[0], y0 - stage.corner[1]);
     const drift = (gas.kept[0] ? found.px ** 2 : 0) + (gas.kept[1] ? found.py ** 2 : 0);
-    const temperature = gas.noTemperature ? 0 : (2 * (found.kinetic - (drift ? drift / (2 * gas.mass) : 0))) / gas.freedoms;
+    const common = (drift ? drift / (2 * gas.mass) : 0) + (gas.middle && found.inertia ? found.turning ** 2 / (2 * found.inertia) : 0);
+    const temperature = gas.noTemperature ? 0 : (2 * (found.kinetic - common)) / gas.freedoms;
     const events = world.eventsUntil(view.time), from = Math.max(view.time - view.speed, 0);
     const lasted = view.time > 0 ? Math.min(view.time, view.speed) / view.speed : 1;
     const pressure = this._pressure(world, stage, impulses, view, events);

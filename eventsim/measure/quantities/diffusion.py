@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from eventsim.measure.correlation import FROM_LAG, TO_LAG, diffusion
+from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.entries import dash
 from eventsim.measure.measures import Measure
 from eventsim.measure.records import Records
@@ -17,7 +18,7 @@ UNIT = "length^2 / time"
 
 
 def measures(records: Records) -> Iterator[Measure]:
-    """Yield D = d <r^2> / d (4 t); in two dimensions it grows with the lag, and with the number of disks."""
+    """Yield D = d <r^2> / d (4 t), displacements taken about the common motion."""
     ensemble = records.ensemble
     free_time = records.found.get("mean_free_time")
     why = records.no_temperature if ensemble.n else None
@@ -50,7 +51,17 @@ def measures(records: Records) -> Iterator[Measure]:
             + " are known",
         )
         return
-    grows = "it grows with the lag and with N" if ensemble.torus else "walls bound it at longer lags"
-    note = f"slope between lags {slope.first:.3g} and {slope.last:.3g}; in two dimensions {grows}"
+    note = f"slope between lags {slope.first:.3g} and {slope.last:.3g}{_beyond(ensemble)}"
     records.found["diffusion"] = slope.value
     yield Measure(slope.value, slope.error if slope.error > 0.0 else math.nan, unit=UNIT, doubt=note, name="diffusion")
+
+
+def _beyond(ensemble: Ensemble) -> str:
+    """What is known of D at longer lags."""
+    if not ensemble.torus:
+        return "; walls bound it at longer lags"
+    if ensemble.kept_momenta:
+        return "; in two dimensions it grows with the lag and with N"
+    if not ensemble.n:
+        return "; it grows with the lag where straight lanes lead between the posts"
+    return ""

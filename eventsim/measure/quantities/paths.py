@@ -13,12 +13,14 @@ from eventsim.measure.entries import Expected, average, dash
 from eventsim.measure.expected import CLOSED
 from eventsim.measure.measures import Measure
 from eventsim.measure.quantities.rates import expected_rate
-from eventsim.measure.quantities.speeds import as_fixed
+from eventsim.measure.quantities.speeds import as_fixed, with_drift
 from eventsim.measure.records import Records
 from eventsim.record.events import Floats
 
 ENOUGH = 16
 """Tracers from which on their own scatter is a bar as well."""
+
+GAINS = "an average over this run: tracers gain speed without end from disks that push them"
 
 TABLE = "pi A / P of the table"
 
@@ -31,7 +33,16 @@ def measures(records: Records) -> Iterator[Measure]:
     if ensemble.billiard:
         yield from _billiard(records, ensemble.tracers if not ensemble.n else 0, "")
     elif ensemble.tracers is not None:
-        yield from _billiard(records, ensemble.tracers, "tracer_")
+        pushed = any(records.met(ensemble.tracers, kind).any() for kind in records.everyone)
+        for entry in _billiard(records, ensemble.tracers, "tracer_"):
+            yield _without_bar(entry) if pushed else entry
+
+
+def _without_bar(entry: Measure) -> Measure:
+    """Return the entry as an average over this run: a tracer keeps no balance with the disks that push it."""
+    if math.isnan(entry.error) and entry.doubt is not None:
+        return entry
+    return replace(entry, error=math.nan, doubt=GAINS)
 
 
 def _gas(records: Records) -> Iterator[Measure]:
@@ -49,7 +60,7 @@ def _gas(records: Records) -> Iterator[Measure]:
         kt, mass = records.found["temperature"], ensemble.species[0].mass
         speed = theory.mean_speed(kt, mass, ensemble.thermal_share(mass), 0.5 * ensemble.freedoms - 1.0)
         way = Expected(speed / rate.value, 0.0, CLOSED if rate.source == CLOSED else rate.source)
-    yield average(records, "mean_free_path", records.path, met, "length", way)
+    yield average(records, "mean_free_path", records.path, met, "length", way, note=with_drift(records))
 
 
 def _billiard(records: Records, kind: int | None, prefix: str) -> Iterator[Measure]:

@@ -47,8 +47,13 @@ def measures(records: Records) -> Iterator[Measure]:
             same = Expected(closed["Z"], 0.0, CLOSED) if closed else Expected(
                 records.found["Z"], 0.0 if math.isnan(excess.error) else excess.error, "virial theorem: the measured Z"
             )  # fmt: skip
+        if not lever.any():
+            for name, unit in (("Z_walls", "1"), ("pressure", "energy / length^2")):
+                yield dash(name, unit, "no contact with a wall was seen")
+            return
         yield average(records, "Z_walls", lever / (2.0 * n), heat, "1", same)
-        yield average(records, "pressure", lever / (2.0 * area), records.time, "energy / length^2")
+        force = records.boundary_force[records.skipped :]
+        yield average(records, "pressure", force / (2.0 * area), records.time, "energy / length^2")
     if ensemble.torus and ensemble.equal and ensemble.diameter > 0.0:
         eta = ensemble.packing_fraction
         assert eta is not None

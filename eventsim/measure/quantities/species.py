@@ -9,7 +9,7 @@ from eventsim.measure import sums, theory
 from eventsim.measure.entries import Expected, average
 from eventsim.measure.expected import MIXTURE, mixture_of
 from eventsim.measure.measures import Measure
-from eventsim.measure.quantities.speeds import expected_speed
+from eventsim.measure.quantities.speeds import expected_speed, with_drift
 from eventsim.measure.records import Records
 
 
@@ -22,15 +22,16 @@ def measures(records: Records) -> Iterator[Measure]:
         flown = species.number * records.time
         share = ensemble.thermal_share(species.mass)
         if share > 0.0 and records.no_temperature is None and ensemble.angular_momentum is None:
-            drift = 2.0 * ensemble.drift_energy / ensemble.total_mass
-            heat = 0.5 * species.mass * (records.species(kind, sums.SPEED2) - drift * flown) / share
+            common = 2.0 * ensemble.drift_energy / ensemble.total_mass
+            heat = 0.5 * species.mass * (records.species(kind, sums.SPEED2) - common * flown) / share
             even = None
             if records.mixed and ensemble.simple:
                 even = Expected(records.found["temperature"], 0.0, "equipartition")
             yield average(records, f"temperature_{kind}", heat, flown, "energy", even, remembered=True)
         path = records.species(kind, sums.PATH)
         speed = expected_speed(records, kind)
-        yield average(records, f"mean_speed_{kind}", path, flown, "length / time", speed, remembered=True)
+        drift = with_drift(records)
+        yield average(records, f"mean_speed_{kind}", path, flown, "length / time", speed, drift, remembered=True)
         expected = _rates(records, kind)
         met = records.contacts(kind) / species.number
         total = sum(expected.values()) if expected else math.nan

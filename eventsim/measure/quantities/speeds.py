@@ -20,9 +20,18 @@ def measures(records: Records) -> Iterator[Measure]:
     if ensemble.n:
         expected = expected_speed(records, 0) if ensemble.kinds == 1 else None
         entry = average(
-            records, "mean_speed", records.path, ensemble.n * records.time, "length / time", expected, remembered=True
-        )
+            records, "mean_speed", records.path, ensemble.n * records.time, "length / time", expected,
+            note=with_drift(records), remembered=True,
+        )  # fmt: skip
         yield as_fixed(entry) if ensemble.n == 1 and ensemble.conserved else entry
+
+
+def with_drift(records: Records) -> str | None:
+    """What to say of speeds and ways where all drift together."""
+    if records.ensemble.at_rest or not records.ensemble.steady:
+        return None
+    x, y = records.ensemble.drift.tolist()
+    return f"the common drift ({x:.4g}, {y:.4g}) included"
 
 
 def as_fixed(entry: Measure) -> Measure:
