@@ -183,8 +183,8 @@ class Profiler:
     def _barometric(self, kind: int, kt: float, density: Floats) -> Floats | None:
         """Return the density that hydrostatics expects in each slice; None where it does not hold.
 
-        Beside walls disks stand in layers, which take up a number of their own.  So hydrostatics speaks of the slices between, and
-        of as many disks as were seen there.
+        Beside walls disks stand in layers, which take up a number of their own.  So hydrostatics speaks of slices between,
+        and of as many disks as were seen there.
         """
         ensemble, scene = self._ensemble, self._scene
         gravity, size, along = scene.gravity, scene.domain.size, AXES.index(self.axis)
