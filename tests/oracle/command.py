@@ -1,4 +1,7 @@
-"""python -m tests.oracle --family NAME --scenes N --seed S [--engine reference|fast|both]: random scenes, judged."""
+"""python -m tests.oracle --family NAME --scenes N --seed S [--engine reference|fast|both]: random scenes, judged.
+
+With --scene FILE [FILE ...]: these scenes instead.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,7 @@ import statistics
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -38,6 +40,9 @@ SPARE = 100
 
 WHOLE_ROUNDS, MOST_ROWS = (400,), 600
 """Digits and rows to which a scene is followed where it must be told to its end."""
+
+LONGEST = 20_000
+"""Rows after which the scene of a file is stopped, where it does not say how many."""
 
 LOOSE = 1e-3
 """What is right for contacts that floats do not determine, where they must be told all the same: their order, roughly when."""
@@ -179,12 +184,28 @@ def survey(
     return tally
 
 
+def judge_files(paths: Sequence[str], engines: Sequence[str], shown: bool) -> int:
+    """Judge the scenes of files, a line for each; 1 where an answer was wrong without a word."""
+    wrong = 0
+    for path in paths:
+        scene = es.load_scene(path)
+        case = Case(scene if scene.events is not None else replace(scene, events=LONGEST))
+        if shown:
+            show(case)
+        verdict = verdict_of(case, engines)
+        wrong += verdict.word == WRONG
+        at = f" row {verdict.row}:" if verdict.row >= 0 else ""
+        print(f"{verdict.word:8} {verdict.judged} of {verdict.total} rows judged, {path}:{at} {verdict.why}", flush=True)
+    return 1 if wrong else 0
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Judge families and print the table; 1 where an answer was wrong without a word."""
     parser = argparse.ArgumentParser(prog="python -m tests.oracle", description=__doc__)
     parser.add_argument(
         "--family", action="append", help="a name of --list, or the beginning of several; all by default"
     )
+    parser.add_argument("--scene", nargs="+", metavar="FILE", help="judge the scenes of these files, and no family")
     parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
@@ -199,6 +220,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for name, make in FAMILIES.items():
             print(f"{name:16} {(make.__doc__ or '').splitlines()[0]}")
         return 0
+    if wishes.scene:
+        return judge_files(wishes.scene, ENGINES[wishes.engine], wishes.show)
     chosen = [name for name in FAMILIES if not wishes.family or any(name.startswith(f) for f in wishes.family)]
     if not chosen:
         parser.error(f"no family is called {wishes.family}; see --list")
@@ -237,11 +260,6 @@ def show(case: Case) -> None:
                 f"     {part.disk:3} at {place} +- {part.place_error:.1g}, velocity {velocity} +- {part.velocity_error:.1g}"
             )
     print(told.ending, told.why, float(told.time))
-
-
-def write_scene(case: Case, path: Path) -> None:
-    """Keep a scene as a file."""
-    case.scene.save(path)
 
 
 if __name__ == "__main__":
