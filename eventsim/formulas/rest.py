@@ -68,7 +68,7 @@ class Support(NamedTuple):
 
     face: its line; of a wall of the domain, a piece of unit length.  ax, ay: gravity along it, what a disk on it has.  low,
     high: where the support ends, in terms of e.(p - start); walls that go on in line belong to it, a wall of the domain has
-    no end.
+    no end.  line: the same number for walls that are in line, for which a series of bounces is one.
     """
 
     face: Face
@@ -76,6 +76,7 @@ class Support(NamedTuple):
     ay: float
     low: float
     high: float
+    line: int
 
 
 class Held(NamedTuple):
@@ -84,6 +85,16 @@ class Held(NamedTuple):
     place: int
     side: int
     how: int
+
+
+def has_struck(supports: Sequence[Support | None] | None, met: tuple[tuple[int, int, int], ...], place: int) -> bool:
+    """Whether a disk that remembers `met` struck a wall last, or one in line with it."""
+    if any(one[0] == -1 - place and one[2] == STRUCK for one in met):
+        return True
+    if supports is None or len(met) != 1 or met[0][0] >= 0 or met[0][2] != STRUCK:
+        return False
+    one, last = supports[place], supports[-1 - met[0][0]]
+    return one is not None and last is not None and one.line == last.line
 
 
 def held_by(met: tuple[tuple[int, int, int], ...]) -> Held | None:

@@ -19,7 +19,7 @@ from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.low_place import Low, apart, wide_border_delay, wide_pair_delay
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.rest import STRUCK, border_contact, launch, shape_contact
+from eventsim.formulas.rest import STRUCK, border_contact, has_struck, launch, shape_contact
 from eventsim.formulas.roots import Moment, order_of
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.shape import seen
@@ -102,7 +102,7 @@ class Contacts:
     def launched(self, contact: Contact) -> float:
         """Return the speed, in terms of the normal, at which a disk left the straight wall that it falls back to; else 0."""
         number, side, supports, disk = -1 - contact.b, contact.image[0], self._stage.supports, self._disks[contact.a]
-        if supports is None or supports[number] is None or (contact.b, side, STRUCK) not in disk.met:
+        if supports is None or supports[number] is None or not has_struck(supports, disk.met, number):
             return 0.0
         nx, ny = self._stage.normal(number, side, disk.x, disk.y)
         fall = nx * disk.gx + ny * disk.gy
@@ -194,7 +194,7 @@ class Contacts:
         shape, x, y = seen(surface.shape, disk.x, disk.y, disk.low_place)
         flight = (x, y, disk.vx, disk.vy, disk.gx, disk.gy)
         beside = disk.side_beside(number)
-        touches = stage.settles and since == 0.0
+        touches = stage.settles and met != 0 and since == 0.0
         delay, met_side, how = shape_contact(
             stage.supports, disk.held, number, shape, flight, disk.radius, met, e, disk.t, since, touches, beside
         )

@@ -10,7 +10,7 @@ from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import NEVER, Acceleration
-from eventsim.formulas.rest import NOT_LAST, STRUCK, SUPPORTED, Held, held_by
+from eventsim.formulas.rest import NOT_LAST, SUPPORTED, Held, has_struck, held_by
 from eventsim.replay.clock_windows import Windows
 from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
@@ -127,8 +127,8 @@ class DiskFlight:
             self.gx, self.gy = self._free if support is None else (support.ax, support.ay)
 
     def since_met(self, wall: int) -> float:
-        """Return how long before the flight began a wall, -1 - its place, was struck; NOT_LAST if it was not met last."""
-        return self.t - self.contact_time if any(met[0] == wall and met[2] == STRUCK for met in self.met) else NOT_LAST
+        """Return how long before the flight began a wall, -1 - its place, or one in line with it, was struck; else NOT_LAST."""
+        return self.t - self.contact_time if has_struck(self._supports, self.met, -1 - wall) else NOT_LAST
 
     def fly(self, period: tuple[float | None, float | None], windows: Windows, window: int, remainder: float) -> None:
         """Follow the flight to (window, remainder): the last wrap or turnover before it becomes the anchor.

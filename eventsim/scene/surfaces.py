@@ -136,21 +136,22 @@ def supports_of(
     """The supports that walls of the domain (axis, position) and shapes give; None for a shape that is no face, or gives none."""
     straight = [one for one in faces if one is not None]
     inside = [None if one is None else face_support(one, straight, gravity) for one in faces]
-    return (*(border_support(*border, gravity) for border in borders), *inside)
+    return (*(border_support(*border, gravity, -1 - k) for k, border in enumerate(borders)), *inside)
 
 
-def border_support(axis: int, position: float, gravity: tuple[float, float]) -> Support:
+def border_support(axis: int, position: float, gravity: tuple[float, float], line: int) -> Support:
     """The support that a wall of the domain across an axis gives; its normal points up the axis, as side +1 says."""
-    line = face(position, 1.0, position, 0.0) if axis == 0 else face(0.0, position, 1.0, position)
-    return Support(line, *slope(line, *gravity), -math.inf, math.inf)
+    piece = face(position, 1.0, position, 0.0) if axis == 0 else face(0.0, position, 1.0, position)
+    return Support(piece, *slope(piece, *gravity), -math.inf, math.inf, line)
 
 
 def face_support(one: Face, faces: Sequence[Face], gravity: tuple[float, float]) -> Support:
     """The support that one of the faces of a scene gives; O(n log n) for n of them."""
-    pieces = []
-    for other in faces:
+    pieces, line = [], -1
+    for k, other in enumerate(faces):
         ends = (other.x, other.y), (other.x + other.ex, other.y + other.ey)
         if all(is_in_line(one, *end) for end in ends):
+            line = k if line < 0 else line
             pieces.append(sorted(one.ex * (x - one.x) + one.ey * (y - one.y) for x, y in ends))
     slack = TOUCHING * one.along2
     low, high = 0.0, one.along2
@@ -163,7 +164,7 @@ def face_support(one: Face, faces: Sequence[Face], gravity: tuple[float, float])
     first_sealed, second_sealed = (end_of(one.ends, second, 1)[1] for second in (False, True))
     low = -math.inf if first_sealed and low == 0.0 else low  # nothing slides over an end on another wall
     high = math.inf if second_sealed and high == one.along2 else high
-    return Support(one, *slope(one, *gravity), low, high)
+    return Support(one, *slope(one, *gravity), low, high, line)
 
 
 def any_lies(support: Support, flights: tuple[Floats, ...], radius: Floats, gravity: tuple[float, float]) -> bool:

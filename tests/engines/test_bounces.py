@@ -84,7 +84,24 @@ def test_a_drop_is_at_rest_at_its_zeno_time(kind, restitution, engine):
         assert run.residuals.momentum < 1e-13
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_series_on_one_of_several_links_in_line_is_no_arrival_on_the_others(engine):
+    """Links that were not struck took the last bounces for slow arrivals, and let the disk rest at once."""
+    for angle in np.linspace(-1.1, 1.2, 12):
+        ex, ey = math.cos(angle), math.sin(angle)
+        chain = es.Polyline([(m * ex, m * ey) for m in (0.0, 1.0, 1.5, 3.0)])
+        x, y = 0.5 * ex - 0.1001 * ey, 0.5 * ey + 0.1001 * ex
+        scene = es.Scene(es.Disks([[x, y]], radius=0.1), es.Open(), [chain], gravity=(0.0, -1.0), restitution=0.5)
+        run = es.simulate(scene, until=0.5, engine=engine, log=True)
+        length = mp.hypot(mpf(ex), mpf(ey))
+        gap = (mpf(ex) * mpf(y) - mpf(ey) * mpf(x)) / length - mpf(0.1)
+        true = zeno_time(gap, mpf(0), mpf(ex) / length, 0.5)
+        rests = run.log.time[run.log.kind == Kind.REST]
+        assert abs((mpf(float(rests[0])) - true) / true) < 1e-8
+
+
 @pytest.mark.slow
+@pytest.mark.timeout(1800)
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("kind", DROPS)
 def test_five_hundred_drops_are_all_at_rest_in_time(kind, engine):

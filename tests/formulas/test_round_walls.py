@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from mpmath import mp, mpf
 
 from eventsim.formulas.contact import inner_delay
 from eventsim.formulas.real import NEVER
@@ -229,3 +230,15 @@ def test_a_disk_is_laid_onto_a_round_wall_along_its_normal(angle):
 def test_a_point_stays_where_it_meets_a_post():
     assert Post(1.0, 2.0).touching(1, 1.0, 2.0, 0.0) == (1.0, 2.0)
     assert Post(1.0, 2.0).touching(1, 1.0 + 2.0**-50, 2.0, 0.0) == (1.0 + 2.0**-50, 2.0)
+
+
+@pytest.mark.parametrize("sagitta", [1e-1, 1e-6, 1e-11, -1e-11])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_disk_is_laid_onto_a_nearly_flat_arc_as_exactly_as_onto_a_line(sagitta, side):
+    """The centre is up to 1e11 away, so places relative to it have no digits left."""
+    shape = arc(1.0, 1.0, 2.0, 1.0 + sagitta, 3.0, 1.0)
+    x, y = shape.touching(side, 1.75, 1.0 + 1e-9, 0.25)
+    with mp.workdps(50):
+        reach = mpf(shape.radius) + mpf(shape.low) + mpf(side) * mpf(0.25)
+        gap = mp.hypot((mpf(x) - mpf(shape.x)) - mpf(shape.ux), (mpf(y) - mpf(shape.y)) - mpf(shape.uy)) - reach
+    assert abs(gap) < 2.0**-51

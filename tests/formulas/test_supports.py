@@ -18,7 +18,7 @@ FLOOR = face(1.0, 2.0, 5.0, 2.0)
 SLOPE = face(1.0, 2.0, 5.0, 5.0)
 """e = (4, 3), normal (-3, 4) of length 5."""
 
-SUPPORTS = [None, Support(FLOOR, 0.0, 0.0, 0.0, 16.0), Support(SLOPE, -0.96, -0.72, 0.0, 25.0)]
+SUPPORTS = [None, Support(FLOOR, 0.0, 0.0, 0.0, 16.0, 0), Support(SLOPE, -0.96, -0.72, 0.0, 25.0, 1)]
 
 
 @pytest.mark.parametrize(

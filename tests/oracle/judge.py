@@ -57,7 +57,8 @@ NOTICED = 1e-5
 
 SMALL, FAR = 1e-6, 1e3
 """The length that errors are measured in is the largest radius, where it is not below this part of the table; a free
-flight is counted as at most so many of these lengths, so that an idle spell excuses nothing."""
+flight is counted as at most so many of these lengths, so that an idle spell excuses nothing; by the mean, which in a
+series of bounces is longer than the median, at most one."""
 
 ENOUGH = 20
 """So many judged rows make a judged scene, whatever follows."""
@@ -195,7 +196,8 @@ class _Judge:
         self.late = SAFE * max((row.time_error for row in last), default=0.0)
         self.unit = self.free_time
         if story.rows:
-            self.free_time = min(story.free_time, FAR * self.free_time) or self.free_time
+            median, mean = story.free_times
+            self.free_time = max(min(median, FAR * self.unit), min(mean, self.unit)) or self.unit
 
     def verdict(self) -> Verdict:
         total = len(self.seen.rows)

@@ -70,7 +70,7 @@ def follow(run: State) -> Story:
         ending, why = "collapse", str(collapse)
     except SqueezedError:
         ending, why = "collapse", "squeezed"
-    return Story(run.table, run.rows, ending, why, run.now, free_time(run), run.parts)
+    return Story(run.table, run.rows, ending, why, run.now, free_times(run), run.parts)
 
 
 def pass_time(run: State) -> str:
@@ -146,15 +146,17 @@ def kick_at_contacts(run: State, disks: list[int]) -> None:
             kick_now(run, kick)
 
 
-def free_time(run: State) -> float:
-    """The median time between two rows of a disk."""
+def free_times(run: State) -> tuple[float, float]:
+    """The median and the mean time between two rows of a disk."""
     last = [ZERO] * run.n
     flights = []
     for row in run.rows:
         for part in row.parts:
             flights.append(row.time - last[part.disk])
             last[part.disk] = row.time
-    return float(sorted(flights)[len(flights) // 2]) if flights else 0.0
+    if not flights:
+        return 0.0, 0.0
+    return float(sorted(flights)[len(flights) // 2]), float(sum(flights) / len(flights))
 
 
 def wraps_ahead(run: State) -> bool:

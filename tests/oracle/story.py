@@ -63,8 +63,8 @@ class Story:
     """All rows that floats determine, and how it goes on.
 
     ending: `until`, `events`, `quiet` (nothing ahead), `collapse` (no answer from `time` on: the run must stop with a
-    reason there), or `beyond` (floats do not determine what comes next).  why: a word on that.  free_time: between
-    two contacts of a disk, the median. state(time): places and velocities at a time after the last row.
+    reason there), or `beyond` (floats do not determine what comes next).  why: a word on that.  free_times: between
+    two contacts of a disk, median and mean. state(time): places and velocities at a time after the last row.
     """
 
     table: Table
@@ -72,7 +72,7 @@ class Story:
     ending: str
     why: str
     time: Decimal
-    free_time: float
+    free_times: tuple[float, float]
     state: Callable[[Decimal], list[Part]]
 
 

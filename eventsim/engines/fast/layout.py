@@ -55,10 +55,10 @@ MOST_DISKS = 1 << 25
 """So many records and buckets still have int32 places."""
 
 
-SUPPORT = 21
-"""Numbers in the table of supports for every wall: the acceleration along it, how far it goes, its face."""
+SUPPORT = 22
+"""Numbers in the table of supports for every wall: the acceleration along it, how far it goes, which line it is on, its face."""
 
-SUPPORT_X, SUPPORT_Y, SUPPORT_LOW, SUPPORT_HIGH, SUPPORT_FACE = 0, 1, 2, 3, 4
+SUPPORT_X, SUPPORT_Y, SUPPORT_LOW, SUPPORT_HIGH, SUPPORT_LINE, SUPPORT_FACE = 0, 1, 2, 3, 4, 5
 """Their places; a wall that supports nobody goes from 0 to 0."""
 
 

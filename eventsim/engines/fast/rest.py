@@ -22,6 +22,7 @@ from eventsim.engines.fast.layout import (
     SUPPORT,
     SUPPORT_FACE,
     SUPPORT_HIGH,
+    SUPPORT_LINE,
     SUPPORT_LOW,
     VX,
     VY,
@@ -62,9 +63,22 @@ def rests(m, i):
 
 
 @inline
+def _has_struck(m, i, place):
+    """Whether disk i struck a wall last, or one in line with it."""
+    if side_met(m, i, place) != 0:
+        return True
+    met = word(m.disks, i * WORDS + MET)
+    if not SEVERAL < met < NOBODY or word(m.disks, i * WORDS + MET_KY) != STRUCK:
+        return False
+    last = -2 - met
+    same = real(m.supports, SUPPORT * place + SUPPORT_LINE) == real(m.supports, SUPPORT * last + SUPPORT_LINE)
+    return same and is_support(m, place) and is_support(m, last)
+
+
+@inline
 def _since_met(m, i, place):
-    """How long before its flight began disk i struck a wall; NOT_LAST if it has met something else since."""
-    if side_met(m, i, place) == 0:
+    """How long before its flight began disk i struck a wall, or one in line with it; else NOT_LAST."""
+    if not _has_struck(m, i, place):
         return NOT_LAST
     return real(m.disks, i * REALS + T) - real(m.disks, i * REALS + CONTACT_TIME)
 
@@ -123,7 +137,7 @@ def shape_rest(m, rules, i, k):
 @part
 def launched(m, rules, i, place, side, nx, ny):
     """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""
-    if side_met(m, i, place) != side or rests(m, i):
+    if not _has_struck(m, i, place) or rests(m, i):
         return 0.0
     ax, ay = pulls(m, rules, i)
     fall = nx * ax + ny * ay

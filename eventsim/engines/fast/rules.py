@@ -94,6 +94,6 @@ def supports_of(stage: Stage) -> Floats | None:
     table = np.zeros((len(stage.supports), SUPPORT))
     for row, support in zip(table, stage.supports, strict=True):
         if support is not None:
-            row[:SUPPORT_FACE] = support.ax, support.ay, support.low, support.high
+            row[:SUPPORT_FACE] = support.ax, support.ay, support.low, support.high, support.line
             row[SUPPORT_FACE:] = support.face
     return table.reshape(-1)

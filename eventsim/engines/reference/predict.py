@@ -203,7 +203,7 @@ class Predictor:
         flight = state.x[i], state.y[i], state.vx[i], state.vy[i], state.gravity_x[i], state.gravity_y[i]
         held = None if state.supports is None else held_by(state.met[i])
         since = state.since_met(i, -1 - place)
-        touches = self._settles and bool(since == 0.0)
+        touches = self._settles and met != 0 and bool(since == 0.0)
         beside = state.side_beside(i, place)
         e, t = self._series_restitution, state.t[i]
         delay, side, how = shape_contact(

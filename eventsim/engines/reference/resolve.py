@@ -16,7 +16,7 @@ from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_
 from eventsim.formulas.impulse import flat_update, pair_update, wall_update
 from eventsim.formulas.low_place import Low, apart
 from eventsim.formulas.real import Real, sqrt
-from eventsim.formulas.rest import STRUCK, launch, rebound
+from eventsim.formulas.rest import has_struck, launch, rebound
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
 from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Kind
@@ -180,7 +180,7 @@ class Resolver:
     def _launched(self, i: int, place: int, side: int) -> Real:
         """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""
         state = self._state
-        if state.supports is None or state.supports[place] is None or (-1 - place, side, STRUCK) not in state.met[i]:
+        if state.supports is None or state.supports[place] is None or not has_struck(state.supports, state.met[i], place):
             return 0.0
         nx, ny = self._stage.normal(place, side, state.x[i], state.y[i])
         fall = nx * state.gravity_x[i] + ny * state.gravity_y[i]

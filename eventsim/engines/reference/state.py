@@ -12,7 +12,7 @@ from eventsim.formulas.clock import FIRST_WINDOW, end_of_epoch, window_length
 from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Acceleration, Real
-from eventsim.formulas.rest import NOT_LAST, STRUCK, SUPPORTED, Support, held_by
+from eventsim.formulas.rest import NOT_LAST, SUPPORTED, Support, has_struck, held_by
 from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
@@ -167,8 +167,8 @@ class EngineState:
             self._pull(i)
 
     def since_met(self, i: int, wall: int) -> Real:
-        """How long before its flight began disk i struck a wall, -1 - its place; NOT_LAST if it has met something else since."""
-        if not any(met[0] == wall and met[2] == STRUCK for met in self.met[i]):
+        """How long before its flight began disk i struck a wall, -1 - its place, or one in line with it; else NOT_LAST."""
+        if not has_struck(self.supports, self.met[i], -1 - wall):
             return NOT_LAST
         begun, struck = self.t[i], self.contact_time[i]
         return 0.0 if begun is struck else begun - struck

@@ -16,7 +16,7 @@ from eventsim.formulas.contact import (
     screened_pair_delay,
 )
 from eventsim.formulas.digits import careful_pair_delay
-from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, Round, on_circle, round_delays
+from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, Round, round_delays
 from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
 from eventsim.formulas.roots import Line, Moment, less_number, reaches
 from eventsim.formulas.walls.face import SLACK, Face
@@ -165,8 +165,14 @@ class Arc(NamedTuple):
         return side * (x - (self.x + self.ux)), side * (y - (self.y + self.uy))
 
     def touching(self, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
-        """The centre of a disk on contact, next to (x, y), but for the last bits."""
-        return on_circle(self.x + self.ux, self.y + self.uy, self.radius + side * radius, x, y)
+        """The centre of a disk on contact, next to (x, y), but for the last bits; from the start, as the centre may be far."""
+        dx, dy = (x - self.x) - self.ux, (y - self.y) - self.uy
+        square = dx * dx + dy * dy
+        if not (is_float(x) and square > 0.0 and self.radius + side * radius > 0.0):
+            return x, y
+        distance = sqrt(square)
+        way = side * radius - _excess(self, x, y) / (distance + self.radius)
+        return x + way * (dx / distance), y + way * (dy / distance)
 
     def nearest(self, x: Real, y: Real) -> tuple[Real, Real, Real]:
         """(nx, ny, distance): the unit normal that points to a centre, and its distance; NEVER beside the arc."""
