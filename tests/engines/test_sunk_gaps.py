@@ -1,8 +1,11 @@
 """Behind contacts that take energy a gap of a few last bits is no contact that anybody knows: the run stops and says so."""
 
+import math
+
 import pytest
 
 import eventsim as es
+from eventsim.record.events import Kind
 
 ENGINES = ["reference", "fast"]
 
@@ -60,3 +63,17 @@ def test_a_gap_of_a_last_bit_at_the_start_is_known(engine, gap):
     disks = es.Disks([(-2.0, 0.0), (0.0, 0.0), (1.0 + gap, 0.0)], [(1.0, 0.0), (0.0, 0.0), (0.0, 0.0)], 0.5)
     run = es.simulate(es.Scene(disks, es.Open(), restitution=0.9), until=10.0, engine=engine, log=True)
     assert list(zip(run.log.a.tolist(), run.log.b.tolist(), strict=True))[:2] == [(0, 1), (1, 2)]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_that_is_kicked_back_into_what_it_has_just_met_meets_it_again(engine):
+    """They touch, whatever rounding makes of their places: so it is known who comes next, and when."""
+    for angle in (0.1, 0.7, 1.3, 2.9, 4.4):
+        x, y = 1.7 * math.cos(angle), 1.7 * math.sin(angle)
+        disks = es.Disks([(0.0, 0.0), (x, y)], [(0.0, 0.0), (-0.9 * x, -0.9 * y)], 0.4)
+        sim = es.Simulation(es.Scene(disks, es.Open(), restitution=0.9), engine=engine)
+        sim.step()
+        sim.set_velocity(1, (-x, -y))
+        sim.advance_to(sim.time + 1.0)
+        assert [row["kind"] for row in sim.log.rows] == [Kind.PAIR, Kind.KICK, Kind.PAIR]
+        assert sim.log.time[2] == pytest.approx(sim.log.time[0], abs=1e-14)

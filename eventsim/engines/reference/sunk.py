@@ -39,6 +39,7 @@ class Sunk:
         """The gap that a contact closes, as it was when the later of the flights began; None where it is known.
 
         It is known where no contact has taken energy from the later flight, and where both places are still those of the start.
+        So it is where two disks met when that flight began, and one was kicked back into the other.
         """
         state, disks = self._state, disks_of(event)
         begin = max(state.t[i] for i in disks)
@@ -46,9 +47,20 @@ class Sunk:
             return None
         if all((state.x[i], state.y[i]) == self._start[i] for i in disks):
             return None
+        if event.b >= 0 and all(state.t[i] == begin for i in disks) and self._have_just_met(event):
+            return None
         approach, size = self._of_pair(event) if event.b >= 0 else self._of_wall(event)
         lag = event.time - begin
         return approach * lag if is_sunk(approach, lag, size) else None
+
+    def _have_just_met(self, event: Event) -> bool:
+        """Whether one of two disks remembers their contact, at which its flight began."""
+        state, a, b = self._state, event.a, event.b
+        kx = event.image[0] + state.wraps_x[a] - state.wraps_x[b]
+        ky = event.image[1] + state.wraps_y[a] - state.wraps_y[b]
+        return any(
+            state.contact_time[i] == state.t[i] and met in state.met[i] for i, met in ((a, (b, kx, ky)), (b, (a, -kx, -ky)))
+        )
 
     def _has_lost(self, i: int) -> bool:
         """Whether the flight of disk i began at a contact that took energy."""
