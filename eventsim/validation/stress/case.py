@@ -11,9 +11,10 @@ import numpy as np
 
 from eventsim.engines import STEPPED, engine_named
 from eventsim.replay.past import PastRun
-from eventsim.runner.loop import run_scene
+from eventsim.runner.loop import run_scene, run_session
 from eventsim.runner.options import RunOptions, stop_of
 from eventsim.scene import Scene
+from eventsim.scene.stage import stage_of
 
 GOES_ON = ("until", "events", "quiet")
 """Reasons to stop that are none of the engine's; with any other it says that it cannot go on."""
@@ -60,6 +61,20 @@ class Bench:
         self._begun = None
         wanted = RunOptions(log=log, progress=self._watch)
         run = PastRun.of(run_scene(engine_named(self.engine), scene, stop_of(scene, until, events), wanted))
+        return self._looked_at(run, may_give_up)
+
+    def run_kicked(self, scene: Scene, wait: float, disk: int, velocity: tuple[float, float], until: float) -> PastRun:
+        """Simulate a scene in which a disk is given another velocity after `wait`."""
+        self._begun = None
+        engine, wanted = engine_named(self.engine), RunOptions(progress=self._watch)
+        session = engine.open(stage_of(scene), keep_rows=False)
+        run_session(session, engine, scene, stop_of(scene, wait, None), wanted)
+        session.kick(disk, *velocity)
+        self._begun = None
+        return self._looked_at(PastRun.of(run_session(session, engine, scene, stop_of(scene, until, None), wanted)), False)
+
+    def _looked_at(self, run: PastRun, may_give_up: bool) -> PastRun:
+        """Keep the change of energy, and raise where a run gave up."""
         change = run.residuals.energy
         if change is not None and abs(change) > abs(self.energy):
             self.energy = change

@@ -1,4 +1,4 @@
-"""The catalogue: one file a family of hard scenes; ids F, T and C name them, in that order."""
+"""The catalogue: one file a family of hard scenes; ids C, F, P and T name them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,18 @@ import re
 
 from eventsim.errors import EventsimError
 from eventsim.validation.stress.case import Case
-from eventsim.validation.stress.catalogue import boundaries, clusters, digits, grazes, long_runs, order, pileups, steps
+from eventsim.validation.stress.catalogue import (
+    boundaries,
+    clusters,
+    corners,
+    digits,
+    grazes,
+    long_runs,
+    order,
+    pileups,
+    spells,
+    steps,
+)
 
 
 def _place(case: Case) -> tuple[str, int, str]:
@@ -21,7 +32,7 @@ CASES: dict[str, Case] = {
     for case in sorted(
         (
             case
-            for family in (grazes, clusters, digits, order, boundaries, pileups, long_runs, steps)
+            for family in (grazes, clusters, digits, order, boundaries, pileups, long_runs, steps, corners, spells)
             for case in family.CASES
         ),
         key=_place,
