@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from eventsim.errors import EventsimError as EventsimError
     from eventsim.errors import LogError as LogError
     from eventsim.errors import SceneError as SceneError
+    from eventsim.judged import Judged as Judged
+    from eventsim.judged import validate as validate
     from eventsim.record.events import State as State
     from eventsim.replay.log import EventLog as EventLog
     from eventsim.replay.log import load_log as load_log
@@ -77,6 +79,8 @@ _HOMES = {
     "simulate": "simulation",
     "resume": "simulation",
     "Simulation": "simulation",
+    "validate": "judged",
+    "Judged": "judged",
     "Run": "run",
     "Stop": "engines.base",
     "State": "record.events",

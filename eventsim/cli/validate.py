@@ -33,6 +33,9 @@ HEAD = (
     metavar="ENGINE",
     help="Only this engine; may be given several times. Default: all of them.",
 )
+@click.option("--trajectory", metavar="FILE", help="Judge your own engine by its motion (.csv, .npz, ...).")
+@click.option("--contacts", metavar="FILE", help="The contacts that it tells: .csv, .npz, .parquet.")
+@click.option("--tolerance", type=float, metavar="T", help="How far apart the times of one contact may be.")
 @click.option("--until", type=float, metavar="T", help="Simulate until this time instead of the scene's.")
 @click.option("--patience", type=float, default=1.0, show_default=True, metavar="S", help=PATIENCE_HELP)
 @click.option("--csv", metavar="FILE.csv", help="Write all numbers, with where they come from.")
@@ -45,6 +48,9 @@ def command(
     seed: int | None,
     steps: tuple[float, ...],
     against: tuple[str, ...],
+    trajectory: str | None,
+    contacts: str | None,
+    tolerance: float | None,
     until: float | None,
     patience: float,
     csv: str | None,
@@ -65,8 +71,22 @@ def command(
     (Chipmunk, an extra, with 10, 1, 30 iterations of its solver in a step).
 
     \b
+    Your own engine: --trajectory FILE has where it moved the disks of SCENE, at any times. Its contacts are read from
+    the paths, or told by --contacts. Matched pair by pair with those of the event-driven run, in order, with the least
+    total difference of times; its first wrong event is named, with disks and time. --dt: time between frames without times.
+
+    
+    Columns of --trajectory (CSV, NPZ, Parquet), disks counted from 0 in the order of the scene:
+      time, disk, x, y [, vx, vy]        a row for each disk and time
+      time, x0, y0, x1, y1, ...          a row for each time
+      time, position [, velocity]        arrays (T,), (T, n, 2) of an .npz file
+    Columns of --contacts: time, a, b (-1: a wall) [, wall]
+
+    
     Examples:
       eventsim validate gas --figure gas.png --csv gas.csv
+      eventsim run gas --until 0 --state start.csv       the start, for an engine of yours
+      eventsim validate gas --trajectory mine.csv --figure mine.png
       eventsim validate corner --against stepped --against penalty
       eventsim validate my.toml --dt 0.01 --dt 0.001 --json
 
@@ -85,10 +105,17 @@ def command(
       orders                   engine -> measured order of convergence (null: not measurable)
       settings, versions       what each engine was told; of what is compared
       left_out, verdict        sentences
+    With --trajectory: first_fault {kind, time, disks, sentence}, faults, contacts {found, missed, doubled, false, ...},
+    late, positions, lost, believed, energy, momentum, deepest_overlap, tolerance, remarks, verdict, versions.
 
     Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.
     """
     csv_path, figure_path = writable(csv, "--csv", (".csv",)), writable(figure, "--figure", suffixes.FIGURES)
+    judging = trajectory is not None
+    if not judging and (contacts is not None or tolerance is not None):
+        raise click.UsageError("--contacts and --tolerance belong to --trajectory")
+    if judging and (against or until is not None or len(steps) > 1):
+        raise click.UsageError("--trajectory judges one motion as it is: --against, --until and several --dt do not go with it")
     for step in steps:
         if not 0.0 < step < math.inf:
             raise click.UsageError(f"--dt {step!r}: a step must be a finite time above 0")
@@ -102,8 +129,13 @@ def command(
     from eventsim.validation.verdict import verdict
     from eventsim.validation.versions import versions
 
-    competitors = chosen_competitors(against)
     chosen = chosen_scene(scene, settings, seed)
+    if trajectory is not None:
+        from eventsim.cli.judge import say_judged
+
+        say_judged(chosen, trajectory, contacts, steps, tolerance, csv_path, figure_path, as_json, quiet)
+        return
+    competitors = chosen_competitors(against)
     with status_line(quiet or as_json) as tell:
         comparison = compare(chosen, competitors, steps or None, until, patience, tell)
     if csv_path is not None:

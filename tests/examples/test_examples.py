@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from shutil import which
 
 import pytest
 
@@ -37,6 +38,12 @@ def test_a_scene_file_runs_to_its_end(name: str) -> None:
     assert run.stopped in ("until", "events", "quiet")
     assert run.counters.events > 0
     assert run.residuals.max_overlap < 1e-12
+
+
+@pytest.mark.skipif(which("node") is None, reason="node is not installed")
+def test_the_engine_in_javascript_writes_the_positions_beside_it() -> None:
+    told = subprocess.run(["node", EXAMPLES / "engine.js"], capture_output=True, text=True, timeout=60, check=True)
+    assert told.stdout == (EXAMPLES / "javascript.csv").read_text()
 
 
 def test_each_output_belongs_to_a_story() -> None:

@@ -82,13 +82,14 @@ class Flights:
                 yield self._turn(disk, begin, end if self.told else end - 1)
 
     def velocity(self) -> Floats:
-        """(T, n, 2) velocities at the samples; a turn is where its flights cross."""
+        """(T, n, 2) velocities at the samples; a turn is where its flights cross, and NaN where that is not known."""
         speeds = self.before.copy()
         for turn in () if self.told else self.turns():
             span = slice(turn.first, turn.last + 1)
             lag = (self.times[span] - turn.time)[:, None]
             come = turn.before + np.where(lag < 0.0, 0.0, turn.change)
-            speeds[span, turn.disk] = come + self.pull[turn.disk] * lag
+            speeds[span, turn.disk] = come + self.pull[turn.disk] * lag if turn.is_sharp else np.nan
+        speeds[0] = self.before[0]
         return speeds
 
     def _turn(self, disk: int, first: int, last: int) -> Turn:

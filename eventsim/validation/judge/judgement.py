@@ -20,7 +20,7 @@ from eventsim.validation.judge.charge import Charge, Window, charged, in_our_for
 from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, energy_on_the_way, flights_of
 from eventsim.validation.judge.surroundings import Surroundings
-from eventsim.validation.judge.told import contacts_from
+from eventsim.validation.judge.told import Read, contacts_from
 from eventsim.validation.truth import BELIEVED, Truth, truth_of
 
 LOOKS = 600
@@ -55,7 +55,7 @@ class Judgement:
         charge: which contacts were found, missed, doubled, false.
         looks: (L,) times at which positions were compared.
         errors: (L,) root mean square distance from the truth, in diameters.
-        energy: (T,) relative change of the energy, at `times`; None where there is none.
+        energy: (T,) relative change of the energy, at `times`; NaN where a velocity is not known; None without energy.
         momentum: the largest change, over sum m |v|, where nothing outside gives any; None elsewhere.
         deepest: (depth in reaches, a, b, time) of the deepest overlap at the looks.
         faults: all that were seen, in order of time.
@@ -122,8 +122,9 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
     flights = flights_of(stage, times, place, samples.velocity, start, samples.step)
     around = Surroundings(stage)
     remarks = [] if truth.run.stopped is None else [f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})"]
-    remarks += _doubts(flights, samples, truth, contacts)
-    read = contacts_from(flights, around, mass)
+    blind = flights.least > COARSE * truth.speed
+    remarks += _doubts(flights, samples, blind and contacts is None)
+    read = Read() if blind else contacts_from(flights, around, mass)
     met = read.met if contacts is None else in_our_form(contacts, stage)
     step = float(np.median(np.diff(times)))
     if tolerance is None:
@@ -133,10 +134,12 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
     resolution = max(SMALLEST * truth.radius, 4.0 * samples.step)
     witness = Witness(flights, around, mass, max(tolerance, step), resolution)
     window = Window(tolerance, 0.0 if contacts is not None else step, _lost_from(truth, apart), float(looks[-1]))
-    charge = charged(truth, met, window, witness, 0.0 if contacts is not None else flights.least)
+    charge = Charge()
+    if contacts is not None or not blind:
+        charge = charged(truth, met, window, witness, 0.0 if contacts is not None else flights.least)
     weight, velocity = np.where(np.isfinite(mass), mass, 0.0), flights.velocity()
     energy = _energy(flights, velocity, weight)
-    drift = witness.drift(energy_on_the_way(flights, weight), float(energy[0]))
+    drift = None if blind else witness.drift(energy_on_the_way(flights, weight), float(energy[0]))
     seen_here = [*map(witness.outcome, read.met), drift, *map(witness.turn, read.unexplained), *charge.faults]
     return Judgement(
         name=scene.name or "this scene",
@@ -196,12 +199,12 @@ def _what_is_told(samples: Samples, flights: Flights, contacts: Told | None) -> 
     return f"{', '.join(told)} of {samples.n} disks at {len(samples.times)} times"
 
 
-def _doubts(flights: Flights, samples: Samples, truth: Truth, contacts: Told | None) -> list[str]:
+def _doubts(flights: Flights, samples: Samples, blind: bool) -> list[str]:
     """What the samples cannot tell."""
     found = []
     if samples.velocity is not None and not flights.told:
         found.append("the velocities that are told are not those with which positions move: they are not used")
-    if contacts is None and flights.least > COARSE * truth.speed:
+    if blind:
         found.append(
             "the samples are too coarse, or too blurred, to tell contacts from positions: tell velocities, more digits, "
             "more times, or the contacts (--contacts)"
@@ -233,7 +236,7 @@ def _momentum(velocity: Floats, stage: Stage, mass: Floats) -> float | None:
         return None
     whole = np.sum(mass[:, None] * velocity, axis=1)
     scale = float(np.sum(mass * np.hypot(*velocity[0].T)))
-    return float(np.hypot(*(whole - whole[0]).T).max()) / scale if scale > 0.0 else None
+    return float(np.nanmax(np.hypot(*(whole - whole[0]).T))) / scale if scale > 0.0 else None
 
 
 def _deepest(scene: Scene, samples: Samples, looks: Floats, seen: Indices) -> tuple[float, int, int, float]:

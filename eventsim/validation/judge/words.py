@@ -24,6 +24,9 @@ def _first(judgement: Judgement) -> str:
         return f"First wrong event: {fault.sentence}.{further}"
     if parting is not None:
         return f"No wrong event. It parts from the truth by the errors of its times: {parting[1]}."
+    if math.isfinite(judgement.lost):
+        how = f"contacts can be compared until its late ones have shifted its disks, about t = {judgement.lost:.4g}"
+        return f"No wrong event: {how}; later, only what each contact does is looked at."
     return f"No wrong event until t = {judgement.times[-1]:g}."
 
 
@@ -77,8 +80,8 @@ def _positions(judgement: Judgement) -> str:
 def _conserved(judgement: Judgement) -> str:
     """Energy, momentum, overlaps."""
     parts = []
-    if judgement.energy is not None:
-        change = judgement.energy
+    if judgement.energy is not None and np.isfinite(judgement.energy[1:]).any():
+        change = judgement.energy[np.isfinite(judgement.energy)]
         worst = int(np.argmax(np.abs(change)))
         parts.append(f"the energy changes by {change[-1]:+.2e} in all, by {change[worst]:+.2e} at most")
     if judgement.momentum is not None:

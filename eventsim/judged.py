@@ -1,0 +1,153 @@
+"""validate(): engines against the event-driven run, from Python: those that there are, or one of your own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
+
+import numpy as np
+
+from eventsim.errors import EventsimError
+from eventsim.readers import read_samples
+from eventsim.readers.contacts import Told, read_contacts, told_from
+from eventsim.readers.samples import Samples, checked
+from eventsim.scene import Scene
+from eventsim.validation.compare import Comparison, compare
+from eventsim.validation.competitors import chosen_competitors
+from eventsim.validation.judge.faults import Fault
+from eventsim.validation.judge.judgement import Judgement, judge
+from eventsim.validation.judge.stepping import Step, stepped
+from eventsim.validation.judge.table import judgement_data
+from eventsim.validation.judge.words import judged_in_words
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+Source: TypeAlias = "str | PathLike[str] | Sequence[Any]"
+"""A file; or arrays: (times, positions) or (times, positions, velocities); of contacts rows (time, a, b)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What an engine's motion is worth: print it, or ask for the numbers.
+
+    Attributes:
+        judgement: all numbers.
+    """
+
+    judgement: Judgement
+
+    @property
+    def verdict(self) -> list[str]:
+        """The verdict in sentences, the first wrong event first."""
+        return judged_in_words(self.judgement)
+
+    @property
+    def first_fault(self) -> Fault | None:
+        """The first wrong event, with its kind, time and disks; None where there is none."""
+        return self.judgement.first_fault
+
+    def to_dict(self) -> dict[str, Any]:
+        """All numbers as plain values: the keys of `eventsim validate --json`."""
+        return judgement_data(self.judgement)
+
+    def save_figure(self, path: str | PathLike[str]) -> None:
+        """Draw it to a .png, .svg or .pdf file."""
+        from eventsim.show.versus.judgement import write_judgement
+
+        write_judgement(self.judgement, path)
+
+    def __str__(self) -> str:
+        return "\n".join(self.verdict)
+
+    def __repr__(self) -> str:
+        return f"Judged({self.judgement.source} on {self.judgement.name}: {self.verdict[0]})"
+
+
+@overload
+def validate(
+    scene: Scene, *, trajectory: Source, contacts: Source | None = ..., dt: float | None = ..., tolerance: float | None = ...
+) -> Judged: ...
+
+
+@overload
+def validate(scene: Scene, *, step: Step, dt: float, until: float | None = ..., tolerance: float | None = ...) -> Judged: ...
+
+
+@overload
+def validate(
+    scene: Scene, *, against: Sequence[str] = ..., dt: float | Sequence[float] | None = ..., until: float | None = ...
+) -> Comparison: ...
+
+
+def validate(
+    scene: Scene,
+    *,
+    trajectory: Source | None = None,
+    contacts: Source | None = None,
+    step: Step | None = None,
+    dt: float | Sequence[float] | None = None,
+    until: float | None = None,
+    tolerance: float | None = None,
+    against: Sequence[str] = (),
+) -> Judged | Comparison:
+    """Compare engines with the event-driven run of a scene.
+
+    With `trajectory` or `step`: judge one engine by its motion. Without: compare the time-stepped engines that there are.
+
+    Args:
+        scene: what is simulated.
+        trajectory: a file of positions at times (.csv, .npz, .parquet, .xyz, .gsd), or arrays: times (T,), positions (T, n, 2)
+            and, if you like, velocities (T, n, 2).
+        contacts: those that the engine tells: a file with the columns time, a, b (-1: a wall), or rows (time, a, b). None: they
+            are read from the paths.
+        step: a function step(position, velocity, dt) that returns both after dt, or changes them in place and returns None.
+        dt: the step; of a trajectory the time between frames that tell none; without both, one or several steps to compare.
+        until: when to stop; None: when the scene does.
+        tolerance: how far apart the times of one contact may be; None: two steps and what a disk needs for a tenth of a diameter.
+        against: the engines to compare with; none: all.
+
+    Raises:
+        EventsimError: for what is no motion of this scene, or arguments that do not go together.
+    """
+    if trajectory is not None and step is not None:
+        raise EventsimError("trajectory and step: give one of them")
+    if trajectory is None and step is None:
+        if contacts is not None or tolerance is not None:
+            raise EventsimError("contacts and tolerance belong to a trajectory")
+        steps = None if dt is None else np.atleast_1d(np.asarray(dt, dtype=np.float64)).tolist()
+        return compare(scene, chosen_competitors(against), steps, until)
+    if dt is not None and not isinstance(dt, float | int):
+        raise EventsimError("dt: one engine has one step")
+    if step is not None:
+        if dt is None:
+            raise EventsimError("step: give its dt, too")
+        done = stepped(scene, step, dt, until)
+        found = judge(scene, done.samples, tolerance=tolerance)
+        found.elapsed = done.elapsed
+        return Judged(found)
+    assert trajectory is not None
+    told = None if contacts is None else _contacts(contacts, len(scene.disks))
+    return Judged(judge(scene, _samples(trajectory, dt), told, tolerance))
+
+
+def _samples(trajectory: Source, dt: float | None) -> Samples:
+    """A motion from a file or from arrays."""
+    if isinstance(trajectory, str | PathLike):
+        return read_samples(Path(trajectory), dt)
+    times, *arrays = (np.asarray(values, dtype=np.float64) for values in trajectory)
+    if len(arrays) not in (1, 2) or any(array.ndim != 3 for array in arrays):
+        raise EventsimError("trajectory: must be a file, (times, positions) or (times, positions, velocities)")
+    velocity = arrays[1][..., :2] if len(arrays) == 2 else None
+    return checked(Samples("the arrays", times, arrays[0][..., :2], velocity))
+
+
+def _contacts(contacts: Source | ArrayLike, n: int) -> Told:
+    """Contacts from a file or from rows."""
+    if isinstance(contacts, str | PathLike):
+        return read_contacts(Path(contacts), n)
+    rows = np.asarray(contacts, dtype=np.float64).reshape(-1, 3)
+    return told_from(rows[:, 0], rows[:, 1], rows[:, 2], [""] * len(rows), n, "the contacts")

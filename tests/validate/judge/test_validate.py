@@ -1,0 +1,131 @@
+"""es.validate and eventsim validate --trajectory, from end to end."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import eventsim as es
+from eventsim.cli.program import main
+from eventsim.scene.files import scene_to_dict
+from tests.validate.judge.engine import motion, scene_of
+from tests.validate.judge.files import write
+
+SCENE = scene_of()
+
+
+@pytest.fixture(scope="module")
+def missed():
+    return motion(SCENE, "missed")
+
+
+@pytest.fixture
+def files(missed, tmp_path):
+    times, places, _, contacts = missed
+    scene = tmp_path / "planted.json"
+    scene.write_text(json.dumps(scene_to_dict(SCENE)))
+    with (tmp_path / "contacts.csv").open("w", newline="") as file:
+        csv.writer(file).writerows([("time", "a", "b", "wall"), *contacts])
+    return scene, write(tmp_path / "mine.csv", "csv", times, places), tmp_path / "contacts.csv"
+
+
+def test_the_command_prints_the_verdict_and_draws_it(files, tmp_path):
+    scene, mine, contacts = map(str, files)
+    told = ["validate", scene, "--trajectory", mine, "--contacts", contacts]
+    done = CliRunner().invoke(main, [*told, "--figure", str(tmp_path / "a.svg"), "--csv", str(tmp_path / "a.csv")])
+    assert done.exit_code == 0, done.output
+    assert "First wrong event: missed: the contact of disks 3 and 4 at t = 0.550291" in done.output
+    assert "Contacts are matched within" in done.output
+    assert (tmp_path / "a.svg").read_text().startswith("<?xml")
+    rows = list(csv.DictReader(line for line in (tmp_path / "a.csv").read_text().splitlines() if not line.startswith("#")))
+    assert {"found", "missed", "position"} <= {row["what"] for row in rows}
+    data = json.loads(CliRunner().invoke(main, [*told, "--json"]).output)
+    assert data["first_fault"]["kind"] == "missed"
+    assert data["first_fault"]["disks"] == [3, 4]
+    assert data["contacts"]["missed"] == 1
+    assert data["versions"]["eventsim"] == es.__version__
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--contacts", "c.csv"], "--contacts and --tolerance belong to --trajectory"),
+        (["--trajectory", "no.csv"], "no.csv: no such file"),
+        (["--trajectory", "no.csv", "--until", "1"], "judges one motion as it is"),
+        (["--trajectory", "no.txt"], "positions at times are read from"),
+    ],
+)
+def test_what_does_not_go_together_is_a_usage_error(arguments, said):
+    done = CliRunner().invoke(main, ["validate", "two-disks", *arguments])
+    assert done.exit_code == 2
+    assert said in " ".join(done.output.split())
+
+
+def test_a_motion_of_another_scene_is_refused_with_the_disk(missed):
+    times, places, _, _ = missed
+    with pytest.raises(es.EventsimError, match=r"disk 0 begins at .* another order of disks"):
+        es.validate(SCENE, trajectory=(times, places[:, ::-1]))
+    with pytest.raises(es.EventsimError, match="has 6 disks, and the scene 7"):
+        es.validate(SCENE, trajectory=(times, places[:, :6]))
+    with pytest.raises(es.EventsimError, match="before the scene does"):
+        es.validate(SCENE, trajectory=(times - 1.0, places))
+
+
+def test_a_function_is_stepped_and_judged():
+    scene = es.gallery("two-disks")
+
+    def step(position, velocity, dt):
+        return position + velocity * dt, velocity
+
+    judged = es.validate(scene, step=step, dt=0.01, until=6.0)
+    assert judged.first_fault.kind == "missed"
+    assert judged.first_fault.disks == (0, 1)
+    assert judged.judgement.source == "step"
+    assert judged.judgement.elapsed > 0.0
+    assert str(judged).startswith("First wrong event: missed")
+    with pytest.raises(es.EventsimError, match="step 1 returns int"):
+        es.validate(scene, step=lambda x, v, dt: 1, dt=0.01, until=6.0)
+
+
+def test_a_function_may_change_its_arrays_in_place():
+    scene = es.Scene(es.Disks([(0, 0), (5, 0)], [(1, 0), (0, 0)], radius=0.5), es.Open(), until=3.0)
+
+    def step(position, velocity, dt):
+        position += velocity * dt
+
+    judged = es.validate(scene, step=step, dt=0.01)
+    assert judged.first_fault is None
+    assert judged.verdict[1].startswith("No contact could be charged")
+
+
+def test_velocities_of_another_unit_are_not_used(missed):
+    times, places, speeds, _ = missed
+    judged = es.validate(SCENE, trajectory=(times, places, 3.6 * speeds))
+    assert "they are not used" in judged.verdict[-1]
+    assert judged.first_fault.kind == "missed"
+
+
+def test_samples_that_are_too_coarse_say_so():
+    times, places, _, _ = motion(SCENE, frame=0.4)
+    judged = es.validate(SCENE, trajectory=(times, places))
+    assert "too coarse" in judged.verdict[-1]
+    assert judged.first_fault is None
+    assert judged.judgement.charge.missed == 0
+
+
+def test_a_periodic_gas_and_a_fall_are_judged_too():
+    fluid = es.gallery("periodic-fluid", n=16, packing_fraction=0.2)  # below the size of the compiled engine
+    run = es.simulate(fluid, until=0.5, log=True)
+    times = np.linspace(0.0, 0.5, 2001)
+    judged = es.validate(fluid, trajectory=(times, np.array([run.state_at(float(time)).position for time in times])))
+    assert judged.first_fault is None
+    assert judged.judgement.charge.found > 10
+    assert judged.judgement.momentum < 1e-9
+    fall = es.gallery("bounce")
+    run = es.simulate(fall, until=2.5, log=True)
+    times = np.linspace(0.0, 2.5, 2501)
+    judged = es.validate(fall, trajectory=(times, np.array([run.state_at(float(time)).position for time in times])))
+    assert judged.first_fault is None
+    assert judged.judgement.charge.found >= 2
