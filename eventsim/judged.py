@@ -55,7 +55,7 @@ class Judged:
         return judgement_data(self.judgement)
 
     def save_figure(self, path: str | PathLike[str]) -> None:
-        """Draw it to a .png, .svg or .pdf file."""
+        """Draw it to the file `path`: .png, .svg or .pdf."""
         from eventsim.show.versus.judgement import write_judgement
 
         write_judgement(self.judgement, path)
