@@ -9,7 +9,7 @@ from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.point import CORNER, closeness, end_of, is_near, is_point
 from eventsim.formulas.walls.post import Post
-from eventsim.formulas.walls.shape import Thin
+from eventsim.formulas.walls.shape import Closed, Thin
 from eventsim.scene.stage import Stage
 from eventsim.scene.surfaces import moved_on
 
@@ -24,12 +24,14 @@ class Sides:
     """Which side of each wall shape points are on.
 
     What is remembered of a point: for each shape 0 where its place tells, else its side, +1 or -1; 2 or -2 in the corner of two
-    walls, one of which it has just met: the other one is met as soon as the point approaches it.
+    walls, one of which it has just met: the other one is met as soon as the point approaches it.  The side of a closed wall never
+    changes.
     """
 
     def __init__(self, stage: Stage) -> None:
         self._shapes = [feature.shape for feature in stage.features]
         self._thin = [shape if isinstance(shape, Thin) else None for shape in self._shapes]
+        self._closed = [shape if isinstance(shape, Closed) else None for shape in self._shapes]
         self._corners = [feature.corners for feature in stage.features]
         self.first = len(stage.boundaries)
         self._on = {step: moved_on(stage.features, step) for step in ((1, 0), (-1, 0), (0, 1), (0, -1))}
@@ -40,7 +42,10 @@ class Sides:
     def at_start(self, x: float, y: float, vx: float, vy: float, radius: float) -> list[int]:
         """What to remember of a point that is placed somewhere: one exactly on a line is on the side that it moves to."""
         found = []
-        for shape in self._thin:
+        for closed, shape in zip(self._closed, self._thin, strict=True):
+            if closed is not None:
+                found.append(closed.side(x, y, vx, vy))
+                continue
             if shape is None or not is_point(radius, shape.size):
                 found.append(0)
                 continue
@@ -93,7 +98,9 @@ class Sides:
         leaves: tuple[float, float],
         contacts: Sequence[Contact],
     ) -> int:
-        shape, place = self._thin[k], self.first + k
+        shape, place, closed = self._thin[k], self.first + k, self._closed[k]
+        if closed is not None:
+            return remembered or closed.side(*flight[:4])
         if shape is None or not is_point(radius, shape.size):
             return 0
         close = closeness(shape.size, *at, *came, t)

@@ -20,7 +20,7 @@ from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.point import is_point
 from eventsim.formulas.walls.post import is_post_to
-from eventsim.formulas.walls.shape import Thin, seen
+from eventsim.formulas.walls.shape import Closed, Thin, seen
 from eventsim.scene.clock import SceneClock, clock_of
 from eventsim.scene.disks import Floats
 from eventsim.scene.domain import Open
@@ -230,7 +230,7 @@ def _slowest(vx: Floats, vy: Floats) -> float:
 
 
 def _has_points(features: tuple[Feature, ...], least: float) -> bool:
-    return any(isinstance(one.shape, Thin) and is_point(least, one.shape.size) for one in features)
+    return any(isinstance(one.shape, Thin | Closed) and is_point(least, one.shape.size) for one in features)
 
 
 def _corner(scene: Scene) -> Point:

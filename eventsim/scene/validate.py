@@ -59,6 +59,7 @@ def find_problems(
         return [*problems, NO_DISKS]
     sound = np.ones(len(disks), dtype=np.bool_)
     problems += number_problems(disks, names, sound)
+    problems += _point_wall_problems(disks, walls, gravity, names)
     problems += [] if problems else list(scale_problems(disks, domain, walls, gravity))
     # In a domain that is none, among walls that are none, a place would mean nothing.
     if not shapes:
@@ -132,6 +133,20 @@ def wall_problems(walls: Sequence[Wall], domain: Domain) -> list[str]:
         broken = list(wall.problems()) or list(_period_problems(wall, domain))
         problems += [f"wall[{i}]{key}" for key in broken]
     return problems
+
+
+def _point_wall_problems(
+    disks: Disks, walls: Sequence[Wall], gravity: Point | None, names: DiskNames
+) -> Iterator[str]:
+    """Walls that only points can meet, along straight lines: what moves is a point, and nothing falls."""
+    for i, wall in enumerate(walls):
+        if not wall.for_points:
+            continue
+        if gravity is not None and any(gravity):
+            yield f"wall[{i}]: gravity = {list(gravity)}: points that fall cannot meet an {wall.kind}; leave gravity out"
+        moving = np.isfinite(disks.mass) | (disks.velocity != 0.0).any(axis=1)
+        for k in np.flatnonzero(moving & (disks.radius > 0.0))[:WRITTEN_OUT]:
+            yield f"wall[{i}]: {names.disk(int(k))} has radius {disks.radius[k]}: only points (radius 0) can meet an {wall.kind}"
 
 
 def _wall_name_problems(walls: Sequence[Wall]) -> Iterator[str]:

@@ -100,6 +100,18 @@ def arc_at(numbers, k):
 
 
 @inline
+def is_closed(kind):
+    """Whether a shape of this kind is a closed wall, hard on both sides."""
+    return False
+
+
+@part
+def side_of_closed(m, s, x, y, vx, vy):
+    """The side of a closed wall that a point is on; s: where its row begins."""
+    return 0
+
+
+@inline
 def beside(m, rules, i, k, sides):
     """What disk i, if it is a point close to the k-th shape, remembers of its side; None where no disk is a point."""
     if sides is None:

@@ -37,7 +37,9 @@ from eventsim.engines.fast.shapes import (
     WIDTH,
     arc_at,
     face_at,
+    is_closed,
     lies_on,
+    side_of_closed,
 )
 from eventsim.formulas.motion import velocity
 from eventsim.formulas.walls.arc import arc_distance, arc_rate, arc_side, arc_side_after
@@ -87,6 +89,10 @@ def _keep(m, rules, i, t, pull, x, y, u, w, wall, side):
                     found = 2 * found if abs(remembered) == 2 else found
                 else:
                     found = _next_to(m, rules, k, kind, found, wall, side, x, y, u, w, CORNER * close)
+        elif is_closed(kind):
+            found = word(m.sides, i * rules.features + k)
+            if found == 0:
+                found = side_of_closed(m, s, flight[0], flight[1], flight[2], flight[3])
         store(m.sides, i * rules.features + k, found)
 
 

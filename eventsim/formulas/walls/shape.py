@@ -141,6 +141,22 @@ class Thin(Shape, Protocol):
         """(x, y, ax, ay, side) of an end: from there, along the wall, and the side that is on the left of that."""
 
 
+@runtime_checkable
+class Closed(Shape, Protocol):
+    """A closed wall, hard on both sides: a point stays on the side where it was placed."""
+
+    @property
+    def size(self) -> float:
+        """Of its coordinates."""
+
+    @property
+    def semi_major(self) -> float:
+        """Half of its longest way across."""
+
+    def side(self, x: Real, y: Real, vx: Real, vy: Real) -> int:
+        """+1 outside, -1 inside; a centre exactly on the wall is on the side that it moves to."""
+
+
 Seen = tuple[Shape, Real, Real]
 """A shape, and a place as it is told from there."""
 

@@ -37,6 +37,7 @@ class Wall(ABC):
         kind: what a scene file calls it.
         made_of: the shapes that `pieces` gives.
         holds: whether disks live inside of it, so that it has no periodic images.
+        for_points: whether only points that fly straight can meet it.
         scatters: whether flights that meet it forget where they come from, as at an arc; False keeps a billiard integrable.
     """
 
@@ -45,6 +46,7 @@ class Wall(ABC):
     made_of: ClassVar[tuple[type[Shape], ...]]
     holds: ClassVar[bool] = False
     scatters: ClassVar[bool] = True
+    for_points: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Store points and lengths as floats.
