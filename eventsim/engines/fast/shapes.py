@@ -11,14 +11,15 @@ from eventsim.engines.fast.memory import real, word
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.walls.arc import Arc, arc_delay, arc_normal, arc_touching
 from eventsim.formulas.walls.container import Container, container_delay, container_touching
+from eventsim.formulas.walls.ellipse import Ellipse, ellipse_delay, ellipse_normal, ellipse_side, ellipse_touching
 from eventsim.formulas.walls.face import Face, face_delay, face_normal, face_touching, hangs_below, is_in_line
 from eventsim.formulas.walls.point import is_point
 from eventsim.formulas.walls.post import Post, post_delay, post_normal, post_touching
 
-KINDS = (Face, Post, Container, Arc)
+KINDS = (Face, Post, Container, Arc, Ellipse)
 """The shapes that the switches know, by the number that stands for them in the table."""
 
-FACE, POST, CONTAINER, ARC = 0.0, 1.0, 2.0, 3.0
+FACE, POST, CONTAINER, ARC, ELLIPSE = 0.0, 1.0, 2.0, 3.0, 4.0
 
 WIDTH, CENTER, CORNERS = 25, 19, 21
 """Numbers in a row: the kind, the number of the wall, then the shape's own; where the point (x, y) that it is told from is, which
@@ -100,15 +101,30 @@ def arc_at(numbers, k):
 
 
 @inline
+def ellipse_at(numbers, k):
+    """The ellipse whose numbers begin at number k of a table."""
+    return Ellipse(
+        real(numbers, k),
+        real(numbers, k + 1),
+        real(numbers, k + 2),
+        real(numbers, k + 3),
+        real(numbers, k + 4),
+        real(numbers, k + 5),
+        real(numbers, k + 6),
+        real(numbers, k + 7),
+    )
+
+
+@inline
 def is_closed(kind):
     """Whether a shape of this kind is a closed wall, hard on both sides."""
-    return False
+    return kind == ELLIPSE
 
 
 @part
 def side_of_closed(m, s, x, y, vx, vy):
     """The side of a closed wall that a point is on; s: where its row begins."""
-    return 0
+    return ellipse_side(ellipse_at(m.features, s + 2), x, y, vx, vy)
 
 
 @inline
@@ -123,9 +139,9 @@ def beside(m, rules, i, k, sides):
 def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
     touches = _touches(m, i, place, rules.still)
-    faces, posts, containers, arcs = rules.shapes
+    faces, posts, containers, arcs, ellipses = rules.shapes
     close = beside(m, rules, i, k, m.sides)
-    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches, close)
+    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, ellipses, touches, close)
 
 
 @inline
@@ -138,7 +154,7 @@ def _touches(m, i, place, still):
 
 
 @inline
-def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, touches, close):
+def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, ellipses, touches, close):
     met = side_met(m, i, place)
     row = m.features
     s = WIDTH * k
@@ -152,6 +168,8 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
         return container_delay(container_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     if arcs is not None and kind == ARC:
         return arc_delay(arc_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
+    if ellipses is not None and kind == ELLIPSE:
+        return ellipse_delay(ellipse_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     return NEVER, 0
 
 
@@ -178,6 +196,8 @@ def laid_on_shape(m, k, side, x, y, r):
         return container_touching(container_at(row, s + 2), side, x, y, r)
     if kind == ARC:
         return arc_touching(arc_at(row, s + 2), side, x, y, r)
+    if kind == ELLIPSE:
+        return ellipse_touching(ellipse_at(row, s + 2), side, x, y, r)
     return math.nan, math.nan
 
 
@@ -192,6 +212,8 @@ def shape_normal(m, i, k, side, x, y):
         return face_normal(face_at(row, s + 2), side, x, y)
     if kind == ARC:
         return arc_normal(arc_at(row, s + 2), side, x, y)
+    if kind == ELLIPSE:
+        return ellipse_normal(ellipse_at(row, s + 2), side, x, y)
     if kind in (POST, CONTAINER):  # these are alike
         return post_normal(Post(real(row, s + 2), real(row, s + 3), 0.0, 0.0, 0.0, 0.0, 0.0), side, x, y)
     return math.nan, math.nan

@@ -11,15 +11,16 @@ from numpy.typing import NDArray
 from eventsim.engines.stepped.compiled import part
 from eventsim.formulas.walls.arc import Arc, arc_nearest
 from eventsim.formulas.walls.container import Container, container_nearest
+from eventsim.formulas.walls.ellipse import Ellipse, ellipse_nearest
 from eventsim.formulas.walls.face import Face, face_nearest
 from eventsim.formulas.walls.post import Post, post_nearest
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
-KINDS = (Face, Post, Container, Arc)
+KINDS = (Face, Post, Container, Arc, Ellipse)
 """The shapes that `nearest` knows."""
 
-FACE, POST, CONTAINER, ARC, BOUNDARY = range(5)
+FACE, POST, CONTAINER, ARC, ELLIPSE, BOUNDARY = range(6)
 """Kinds of walls: the shapes by their places in KINDS, and a side of the domain."""
 
 WIDTH = 17
@@ -73,6 +74,8 @@ def nearest(kind: int, w: Any, x: float, y: float) -> tuple[float, float, float]
         return post_nearest(Post(w[0], w[1]), x, y)
     if kind == CONTAINER:
         return container_nearest(Container(w[0], w[1], w[2]), x, y)
+    if kind == ELLIPSE:
+        return ellipse_nearest(Ellipse(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7]), x, y)
     return arc_nearest(
         Arc(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8], w[9], w[10], w[11], 0.0, 0.0, 0.0, 0.0, 0.0), x, y
     )

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from eventsim.formulas.walls.shape import Shape
 from eventsim.scene.walls.arc import Arc
 from eventsim.scene.walls.circle import Circle
+from eventsim.scene.walls.ellipse import Ellipse
 from eventsim.scene.walls.segment import Polygon, Polyline, Segment
 from eventsim.scene.walls.wall import Part, Wall
 
@@ -18,6 +19,7 @@ __all__ = [
     "WALLS",
     "Arc",
     "Circle",
+    "Ellipse",
     "Part",
     "Polygon",
     "Polyline",
@@ -28,7 +30,7 @@ __all__ = [
     "wall_names",
 ]
 
-WALLS: dict[str, type[Wall]] = {kind.kind: kind for kind in (Segment, Polygon, Polyline, Arc, Circle)}
+WALLS: dict[str, type[Wall]] = {kind.kind: kind for kind in (Segment, Polygon, Polyline, Arc, Circle, Ellipse)}
 """The table of walls, by what a scene file calls them."""
 
 SHAPES: tuple[type[Shape], ...] = tuple(dict.fromkeys(shape for kind in WALLS.values() for shape in kind.made_of))
