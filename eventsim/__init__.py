@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from eventsim.scene.gallery import gallery as gallery
     from eventsim.scene.walls import Arc as Arc
     from eventsim.scene.walls import Circle as Circle
+    from eventsim.scene.walls import Ellipse as Ellipse
     from eventsim.scene.walls import Polygon as Polygon
     from eventsim.scene.walls import Polyline as Polyline
     from eventsim.scene.walls import Segment as Segment
@@ -73,6 +74,7 @@ _HOMES = {
     "Polyline": "scene.walls",
     "Arc": "scene.walls",
     "Circle": "scene.walls",
+    "Ellipse": "scene.walls",
     "Restitution": "scene",
     "load_scene": "scene.files",
     "gallery": "scene.gallery",

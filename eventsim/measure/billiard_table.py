@@ -20,7 +20,7 @@ import numpy as np
 from eventsim.record.events import Floats
 from eventsim.scene.domain import Box, Channel, Open
 from eventsim.scene.scene import Scene
-from eventsim.scene.walls import Arc, Circle, Part, Segment, parts_of
+from eventsim.scene.walls import Arc, Circle, Ellipse, Part, Segment, parts_of
 
 Point: TypeAlias = tuple[float, float]
 
@@ -132,8 +132,11 @@ _Piece: TypeAlias = _Line | _Bow
 def table_of(scene: Scene, radius: float, starts: Floats) -> Table | None:
     """The table that centres of a radius at places (K, 2) live in, in one or several parts.
 
-    None where a part of it is the open plane, and where there are too many pieces.
+    None where a part of it is the open plane, where there are too many pieces, and where an ellipse is not alone.
     """
+    curved = [wall for wall in parts_of(scene.walls) if not isinstance(wall, Circle | Arc | Segment)]
+    if curved:
+        return _oval_table(scene, curved, starts)
     pieces = list(dict.fromkeys(_pieces(scene, radius)))  # edges that meet have one end
     if len(pieces) > MOST_PIECES:
         return None
@@ -145,6 +148,17 @@ def table_of(scene: Scene, radius: float, starts: Floats) -> Table | None:
     area = sum(part.area for k, part in enumerate(parts) if k in lined or not part.hard)
     perimeter = sum(part.length for k, part in enumerate(parts) if k in lined and part.hard)
     return Table(area, perimeter) if area > 0.0 else None
+
+
+def _oval_table(scene: Scene, curved: list[Part], starts: Floats) -> Table | None:
+    """The table of points in an ellipse, where nothing else is."""
+    (wall, *others), alone = curved, len(scene.walls) == 1 and not np.isinf(scene.disks.mass).any()
+    if others or not alone or not isinstance(wall, Ellipse):
+        return None
+    x, y = (starts - wall.center).T
+    (a, b), (ex, ey) = wall.semi_axes, np.array(wall.direction) / math.hypot(*wall.direction)
+    inside = np.all(((ex * x + ey * y) / a) ** 2 + ((ex * y - ey * x) / b) ** 2 <= 1.0)
+    return Table(math.pi * a * b, wall.length()) if inside else None
 
 
 def _pieces(scene: Scene, r: float) -> Iterator[_Piece]:
@@ -185,9 +199,7 @@ def _around(wall: Part, r: float, shift: Floats) -> Iterator[_Piece]:
         if not shift.any():
             yield _Bow(wall.center[0], wall.center[1], wall.radius - r, -math.pi, 2.0 * math.pi)
         return
-    if not isinstance(wall, Arc | Segment):
-        for chord in _chords(wall):
-            yield from _around(chord, r, shift)
+    if not isinstance(wall, Arc | Segment):  # alone (`_oval_table`), or no table at all
         return
     ends = [(wall.start[0] + sx, wall.start[1] + sy), (wall.end[0] + sx, wall.end[1] + sy)]
     if isinstance(wall, Segment):
@@ -208,12 +220,6 @@ def _around(wall: Part, r: float, shift: Floats) -> Iterator[_Piece]:
             yield _Bow(x, y, r, math.pi, -2.0 * math.pi)
 
 
-def _chords(wall: Part) -> list[Segment]:
-    """A wall of another kind, as the line that is drawn of it: good to some 1e-4 of its area."""
-    points = [(float(x), float(y)) for x, y in wall.outline()]
-    return [Segment(p, q) for p, q in pairwise(points) if p != q]
-
-
 class _Reach:
     """How far places are from obstacles, beyond what the radius keeps away."""
 
@@ -222,9 +228,7 @@ class _Reach:
         posts = np.isinf(scene.disks.mass)
         self.posts, self.keep = scene.disks.position[posts], scene.disks.radius[posts] + r
         self.shifts = _shifts(scene)
-        self.walls: list[Circle | Arc | Segment] = []
-        for wall in parts_of(scene.walls):
-            self.walls += [wall] if isinstance(wall, Circle | Arc | Segment) else _chords(wall)
+        self.walls = [wall for wall in parts_of(scene.walls) if isinstance(wall, Circle | Arc | Segment)]
         size = scene.domain.size
         places = [p for wall in self.walls for p in _extent(wall)]
         if size is not None:

@@ -1,6 +1,7 @@
 """The gallery scenes do what their texts say; every expected value is a closed form."""
 
 import math
+from dataclasses import replace
 from decimal import Decimal, localcontext
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 import eventsim as es
 from eventsim.scene.gallery import gallery
+from eventsim.scene.stage import stage_of
 
 
 def log_of(scene: es.Scene, **stop: float) -> es.EventLog:
@@ -242,3 +244,21 @@ def test_energy_is_kept_under_gravity(name: str) -> None:
 def test_disks_fall_through_the_funnel() -> None:
     run = es.simulate(gallery("funnel"), engine="reference")
     assert np.sum(run.state.position[:, 1] < 5.0) > 5
+
+
+def test_points_in_an_ellipse_keep_the_product_of_their_angular_momenta_about_the_foci() -> None:
+    scene = replace(gallery("ellipse"), until=None, events=30_000)
+    log = es.simulate(scene, engine="reference", log=True).log
+    corner = stage_of(scene).corner[0]
+    for disk, product in ((0, 0.0), (1, -15.0 * 0.96**2), (2, 4.25 * 0.96**2)):
+        of = log.a == disk
+        x, y, vx, vy = log.xa[of] + corner, log.ya[of], log.vxa[of], log.vya[of]
+        found = ((x + 4.0) * vy - y * vx) * ((x - 4.0) * vy - y * vx)
+        assert len(found) > 6_000
+        assert np.abs(found - product).max() < 1e-9
+
+
+def test_a_point_that_starts_in_a_focus_of_an_ellipse_is_in_one_every_two_semi_axes() -> None:
+    run = es.simulate(gallery("ellipse"), log=True)
+    for k in range(1, 4):
+        assert np.allclose(run.state_at(10.0 * k).position[0], (4.0 * (-1) ** (k + 1), 0.0), atol=1e-12)

@@ -20,6 +20,7 @@ EXAMPLES = {
     "polyline": es.Polyline(((1.0, 1.0), (3.0, 1.0), (2.0, 3.0))),
     "arc": es.Arc((1.0, 1.0), (2.0, 2.5), (3.0, 1.0)),
     "circle": es.Circle((2.0, 2.0), 2.0),
+    "ellipse": es.Ellipse((2.0, 2.0), (2.0, 1.0), (3.0, 4.0)),
 }
 
 
@@ -30,7 +31,7 @@ def missing(shape: type) -> set[str]:
 
 
 def walls_within(position=(2.0, 1.6), kind="segment"):
-    disks = es.Disks([position], [(0.3, 0.1)], 0.05)
+    disks = es.Disks([position], [(0.3, 0.1)], 0.0 if WALLS[kind].for_points else 0.05)
     return es.Scene(disks, es.Box((4.0, 4.0)), [EXAMPLES[kind]], until=1.0)
 
 
@@ -116,8 +117,8 @@ def test_the_outline_of_a_wall_is_where_its_depth_and_its_shapes_begin(kind):
 def test_engines_meet_the_outline_of_a_wall(kind):
     """A point that flies onto the outline meets it where it is drawn, in the direction of the normal."""
     wall = EXAMPLES[kind]
-    x, y = parts_of([wall])[0].outline()[1].tolist() if wall.holds else (2.0, 2.5) if kind == "arc" else (2.0, 1.0)
-    x, y = (2.0, 1.5) if kind == "segment" else (x, y)
+    aims = {"segment": (2.0, 1.5), "arc": (2.0, 2.5), "polygon": (2.0, 1.0), "polyline": (2.0, 1.0)}
+    x, y = aims[kind] if kind in aims else parts_of([wall])[0].outline()[1].tolist()
     start = (2.0, 1.7)
     disks = es.Disks([start], [(x - start[0], y - start[1])], 0.0)
     run = es.simulate(es.Scene(disks, es.Open(), [wall]), events=1, engine="reference", log=True)
