@@ -124,13 +124,13 @@ def measured(
         from eventsim.measure.structure import structure_of
     if is_log(source):
         from eventsim.measure import measure, measure_file
-        from eventsim.replay.replay import Replay
+        from eventsim.replay.passage import Passage
 
         if not structure:
             demand_no_scene_options(source, settings, seed, until, events)
             return measure_file(source, discard, profile)[0], None
         log = log_of(source, settings, seed, until, events, quiet)
-        return measure(log, discard, profile), structure_of(log.scene, Replay(log).final())
+        return measure(log, discard, profile), structure_of(log.scene, Passage(log).final())
 
     scene = chosen_scene(source, settings, seed)
     run = run_of(scene, source, until, events, quiet, measure=True if discard is None else discard, profile=profile)

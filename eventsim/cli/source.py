@@ -14,7 +14,7 @@ from eventsim.cli.output import INTERRUPTED, say
 from eventsim.errors import SceneError, did_you_mean
 
 if TYPE_CHECKING:
-    from eventsim.replay.log import EventLog
+    from eventsim.replay.log import Told
     from eventsim.run import Run
     from eventsim.scene import Scene
 
@@ -51,16 +51,16 @@ def log_of(
     until: float | None,
     events: int | None,
     quiet: bool,
-) -> EventLog:
-    """Return the log that is meant: one read from a file, or that of a scene simulated now.
+) -> Told:
+    """Return the log that is meant: one in a file, which stays there if it is long, or that of a scene simulated now.
 
     Raises click.UsageError where options of a scene are given with a log, or nothing says when a scene stops.
     """
     if is_log(source):
         demand_no_scene_options(source, settings, seed, until, events)
-        from eventsim.replay.log import load_log
+        from eventsim.replay.filed import open_filed
 
-        return load_log(source)
+        return open_filed(source)
 
     log = run_of(chosen_scene(source, settings, seed), source, until, events, quiet, log=True).log
     assert log is not None

@@ -72,17 +72,19 @@ def command(
         raise click.UsageError("say at which times: either --at T [T ...] or --frames N")
 
     from eventsim.cli.words import as_json_text
-    from eventsim.replay.log import load_log
-    from eventsim.replay.replay import Replay
+    from eventsim.replay.filed import open_filed
+    from eventsim.replay.passage import Passage
     from eventsim.replay.states import state_columns, write_csv, write_states
     from eventsim.scene.names import plural
 
-    events = load_log(log)
-    replay = Replay(events)
+    events = open_filed(log)
+    passage = Passage(events)
     if frames is not None:
-        begin, end = replay.span
+        begin, end = passage.span
         times = tuple(begin + (end - begin) * (k / (frames - 1)) for k in range(frames))
-    states = [replay.state_at(time) for time in times]
+    ordered = sorted(set(times))
+    found = dict(zip(ordered, passage.states(ordered), strict=True))
+    states = [found[time] for time in times]
     if target is not None:
         write_states(target, events.scene, states)
     if as_json:

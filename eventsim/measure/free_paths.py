@@ -7,20 +7,35 @@ Source: S. Chapman, T. G. Cowling, The Mathematical Theory of Non-uniform Gases 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 
 from eventsim.record.events import Floats
 from eventsim.replay.flights import FlightTable
 
 
-def free_paths(table: FlightTable) -> Floats:
-    """Return the length of every way from one pair contact of a disk to its next."""
-    gone = np.cumsum(table.lengths()) - table.lengths()  # length flown before each flight, all disks in a row
-    at = np.flatnonzero(table.pair)
-    same = table.disk[at[1:]] == table.disk[at[:-1]]
-    paths = np.diff(gone[at])[same]
-    result: Floats = paths[paths > 0.0]  # contacts of one instant have no path between them
-    return result
+def free_paths(tables: Iterable[FlightTable], n: int) -> Iterator[Floats]:
+    """Yield the lengths of all ways from one pair contact of a disk to its next; tables: flights of n disks in order."""
+    since = np.full(n, np.nan)  # flown since its last pair contact
+    for table in tables:
+        if not len(table.disk):
+            continue
+        begins = np.flatnonzero(np.diff(table.disk, prepend=-1))
+        ends, disk = np.append(begins[1:], len(table.disk)), table.disk[begins]
+        gone = np.concatenate(
+            [[0.0], np.cumsum(table.lengths())]
+        )  # length flown before each flight, all disks in a row
+        at = np.flatnonzero(table.pair)
+        whole = np.diff(gone[at])[table.disk[at[1:]] == table.disk[at[:-1]]]
+        low, high = np.searchsorted(at, begins), np.searchsorted(at, ends)
+        met = low < high
+        first, last = at[low[met]], at[high[met] - 1]
+        carried = since[disk[met]] + gone[first] - gone[begins[met]]
+        since[disk] += gone[ends] - gone[begins]
+        since[disk[met]] = gone[ends[met]] - gone[last]
+        paths = np.concatenate([whole, carried])
+        yield paths[paths > 0.0]  # contacts of one instant have no path between them
 
 
 def path_density(x: Floats) -> Floats:

@@ -27,7 +27,7 @@ from eventsim.measure.speeds import FASTEST
 from eventsim.measure.walls import described_walls
 from eventsim.record.events import ROW, Floats, Kind, Rows
 from eventsim.record.provenance import Kick, Provenance
-from eventsim.replay.log import EventLog, stream_log
+from eventsim.replay.log import Told, stream_log
 from eventsim.scene.pace import later, pace_of_scene, slowed_scene
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
@@ -279,14 +279,12 @@ def _sums(scene: Scene, stage: Stage, ensemble: Ensemble, plan: sums.Plan, watch
     )
 
 
-def measure(log: EventLog, discard: float | None = None, profile: str | None = None) -> Measures:
-    """Measure the run that a log tells; a compact log is expanded first.
+def measure(log: Told, discard: float | None = None, profile: str | None = None) -> Measures:
+    """Measure the run that a log tells, block by block; a compact log is expanded first.
 
     discard, profile: as of Meter.  Raises EventsimError where there is nothing to measure, LogError for a log without an end.
     """
-    full = log.expand()
-    blocks = (full.rows[first : first + BLOCK] for first in range(0, len(full), BLOCK))
-    return _measured(full.provenance, blocks, discard, profile)
+    return _measured(log.provenance, log.blocks(), discard, profile)
 
 
 def measure_file(
@@ -300,9 +298,7 @@ def measure_file(
     return _measured(provenance, blocks, discard, profile), provenance
 
 
-def _measured(
-    provenance: Provenance, blocks: Iterable[Rows], discard: float | None, profile: str | None
-) -> Measures:
+def _measured(provenance: Provenance, blocks: Iterable[Rows], discard: float | None, profile: str | None) -> Measures:
     meter = Meter(provenance.scene, discard, provenance.kicks, profile)
     length, latest = provenance.epoch_length, 0.0
     for rows in blocks:

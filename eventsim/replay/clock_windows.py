@@ -18,6 +18,7 @@ from eventsim.formulas.clock import FIRST_WINDOW, end_of_epoch, next_window, rem
 from eventsim.record.events import Column, Kind, Rows
 from eventsim.record.provenance import Provenance
 from eventsim.replay.flight import Flights, follow, start_flights
+from eventsim.replay.runs import Runs
 from eventsim.scene.stage import Stage, stage_of
 
 MOST_WINDOWS = 1_000_000
@@ -51,28 +52,24 @@ class Windows:
     end: list[float]
     length: list[float]
 
-    def __init__(self, stage: Stage, rows: Rows, changes: Changes, velocity: Velocity) -> None:
-        """rows: of the log, full or compact."""
+    def __init__(self, stage: Stage, runs: Runs, changes: Changes, velocity: Velocity | None = None) -> None:
+        """runs: of a log, full or compact; then velocity says what kicks set."""
         self._stage = stage
-        self._columns = rows
+        self._runs = runs
         self._changes = changes
         self._velocity = velocity
         self._exponent = FIRST_WINDOW
         self.start, self.since, self.begin, self.end = [0], [0.0], [0.0], []
         self.length = [window_length(FIRST_WINDOW, stage.epoch_length)]
-        self.resolved = len(rows)  # rows whose flights are known
+        self.resolved = runs.count  # rows whose flights are known
         self._flights: Flights | None = None
         self._seen = 0  # rows that are in these flights
-        self._first = np.flatnonzero(np.diff(rows["epoch"], prepend=-1)).tolist()
-        self._first.append(len(rows))
         self._run = 0  # of rows of one epoch, the first that no window has had
 
     def _extend(self) -> bool:
         """Find the next window; False where the last one is open for ever."""
-        stage, start, epoch_length = self._stage, self.start[-1], self._stage.epoch_length
-        first = last = self._first[self._run]
-        if first < len(self._columns) and self._columns["epoch"][first] == start:
-            last = self._first[self._run + 1]
+        stage, runs, start, epoch_length = self._stage, self._runs, self.start[-1], self._stage.epoch_length
+        first, last = self._rows_of_window()
         count, following = last - first, self._run + (last > first)
         exponent = self._after_kicks(first, last)
         nominal = window_length(exponent, epoch_length)
@@ -81,13 +78,15 @@ class Windows:
         def look() -> Anchors:
             return self._anchors(window, nominal, False, last)
 
-        row = self._first[following]
-        jump = int(self._columns["epoch"][row]) - start if row < len(self._columns) else None
-        remainder = float(self._columns["remainder"][row]) if jump is not None else 0.0
+        row = runs.first[following]
+        jump = int(runs.epoch[following]) - start if following < len(runs) else None
+        remainder = float(runs.remainder[following]) if jump is not None else 0.0
         now = np.inf if jump is None else jump * epoch_length + remainder
-        kicked = jump is not None and jump > 0 and self._columns["kind"][row] == Kind.KICK
-        if count and self._columns["remainder"][first] >= nominal:  # the contact of an open window that the clock did not jump to
-            end = end_of_epoch(float(self._columns["remainder"][first]), epoch_length)
+        kicked = jump is not None and jump > 0 and runs.begun_by_kick[following]
+        if (
+            count and runs.remainder[self._run] >= nominal
+        ):  # the contact of an open window that the clock did not jump to
+            end = end_of_epoch(float(runs.remainder[self._run]), epoch_length)
         elif count or (kicked and now < nominal):
             end = nominal
         else:
@@ -103,12 +102,21 @@ class Windows:
         elif end < np.inf:
             before = self.start[-1] - self.start[-2] if len(self.start) > 1 else 0
             if not count and jump is not None and jump > MOST_WINDOWS * max(int(end / epoch_length), before):
-                raise LogError(f"the log does not fit its scene: more than {MOST_WINDOWS} turns of the clock without a row")
+                raise LogError(
+                    f"the log does not fit its scene: more than {MOST_WINDOWS} turns of the clock without a row"
+                )
             self._append(end, int(end / epoch_length), 0.0, 0.0, exponent_after(stage, exponent, count, look))
         else:
             return False
         self._run = following
         return True
+
+    def _rows_of_window(self) -> tuple[int, int]:
+        """The rows (from, to) of the last window."""
+        first = last = self._runs.first[self._run]
+        if self._run < len(self._runs) and self._runs.epoch[self._run] == self.start[-1]:
+            last = self._runs.first[self._run + 1]
+        return first, last
 
     def _append(self, end: float, epochs: int, begin: float, since: float, exponent: int) -> None:
         self.end.append(end)
@@ -123,13 +131,15 @@ class Windows:
         exponent, window = self._exponent, len(self.start) - 1
         if exponent > self._stage.clock.idle_cap:
             begun = first + (self.since[-1] > 0.0)  # its first row was that of the kick, or no kick
-            for row in (np.flatnonzero(self._columns["kind"][begun:last] == Kind.KICK) + begun).tolist():
-                look = partial(self._kicked, window, float(self._columns["remainder"][row]), row)
+            for kick in self._runs.kicks_in(begun, last):
+                look = partial(self._kicked, window, kick.remainder, kick.row)
                 exponent = exponent_kicked(self._stage, exponent, look)
         return exponent
 
     def _kicked(self, window: int, now: float, row: int) -> Anchors:
-        return self._anchors(window, now, True, row).kicked(int(self._columns["a"][row]), *self._velocity(row))
+        kick = self._runs.kick(row)
+        velocity = kick.velocity if self._velocity is None else self._velocity(row)
+        return self._anchors(window, now, True, row).kicked(kick.disk, *velocity)
 
     def _anchors(self, window: int, limit: float, inclusive: bool, rows: int) -> Anchors:
         """How disks fly after the first `rows` rows, and all wraps in a window before a time, or up to it."""
@@ -147,7 +157,9 @@ class Windows:
         """Return the window of each row, all of which have been found, from its epoch."""
         first = np.flatnonzero(np.diff(epochs, prepend=-1))
         counts = np.diff(first, append=len(epochs))
-        return np.repeat(np.array([bisect.bisect_left(self.start, epoch) for epoch in epochs[first].tolist()], np.int64), counts)
+        return np.repeat(
+            np.array([bisect.bisect_left(self.start, epoch) for epoch in epochs[first].tolist()], np.int64), counts
+        )
 
     def flights_from(self, changes: Changes) -> None:
         """Let somebody else tell how disks fly after rows."""
@@ -155,21 +167,20 @@ class Windows:
 
     def reach(self, row: int) -> int:
         """Find the windows of rows from `row` on that follow from the flights known so far; the first row behind them."""
-        runs = self._first
-        run = bisect.bisect_right(runs, row) - 1
+        runs = self._runs
+        run = bisect.bisect_right(runs.first, row) - 1
         try:
-            while runs[run] < len(self._columns):
-                self.window_at(int(self._columns["epoch"][runs[run]]))
+            while run < len(runs):
+                self.window_at(int(runs.epoch[run]))
                 run += 1
         except NotYetError:
             pass
-        return runs[run]
+        return runs.first[run]
 
-    def index_of(self, epochs: Column) -> Column:
-        """Return the window of each row from its epoch; LogError where none begins there."""
-        for epoch in epochs[np.flatnonzero(np.diff(epochs, prepend=-1))].tolist():
+    def find_all(self) -> None:
+        """Find the windows of all rows; LogError where none begins with the epoch of one."""
+        for epoch in self._runs.epoch.tolist():
             self.window_at(epoch)
-        return self.known(epochs)
 
     def window_at(self, epoch: int) -> int:
         """Return the window that begins at an epoch; LogError where none does."""
@@ -215,9 +226,7 @@ class DoublingWindows(Windows):
         super()._reach(epochs, beyond)
 
     def _extend(self) -> bool:
-        first = last = self._first[self._run]
-        if first < len(self._columns) and self._columns["epoch"][first] == self.start[-1]:
-            last = self._first[self._run + 1]
+        first, last = self._rows_of_window()
         clock, length = self._stage.clock, window_length(self._exponent, self._stage.epoch_length)
         after = next_window(self._exponent, last - first, self._stage.n, clock.window_cap)
         self._append(length, 1 << self._exponent, 0.0, 0.0, after)
@@ -232,13 +241,16 @@ def schedules_of(provenance: Provenance) -> list[type[Windows]]:
     return [Windows, DoublingWindows]
 
 
-def windows_of(provenance: Provenance, stage: Stage, rows: Rows, changes: Changes, velocity: Velocity) -> Windows:
-    """Return the windows of a full log; LogError where its rows fit no schedule."""
+def windows_of(provenance: Provenance, stage: Stage, runs: Runs, begin: Callable[[], Changes]) -> Windows:
+    """Return the windows of a full log; LogError where its rows fit no schedule.
+
+    begin: begins to read its rows, for each schedule anew.
+    """
     misfits = []
     for kind in schedules_of(provenance):
-        windows = kind(stage, rows, changes, velocity)
+        windows = kind(stage, runs, begin())
         try:
-            windows.index_of(rows["epoch"])
+            windows.find_all()
             if provenance.ending is not None:
                 windows.window_at(provenance.ending.epoch)
         except LogError as misfit:

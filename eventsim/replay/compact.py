@@ -31,6 +31,7 @@ from eventsim.replay.clock_windows import Windows, stage_of_log
 from eventsim.replay.contacts import Contact, Contacts
 from eventsim.replay.disk_flight import DiskFlight
 from eventsim.replay.flight import Flights, start_flights
+from eventsim.replay.runs import Runs
 from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
@@ -74,7 +75,7 @@ class Expansion:
         """schedule: of the clock."""
         stage = self.stage = stage_of_log(provenance)
         self._rows = rows
-        self.windows = schedule(stage, rows, self._changes, lambda row: self._set[int(rows["event"][row])])
+        self.windows = schedule(stage, Runs([rows]), self._changes, lambda row: self._set[int(rows["event"][row])])
         self.windows.resolved = 0
         masses = [stage.common_mass] * stage.n if stage.mass is None else stage.mass.tolist()
         self._mass: list[float] = masses

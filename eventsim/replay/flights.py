@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.record.events import Floats, Kind, Rows, State
-from eventsim.replay.replay import Replay
+from eventsim.replay.flight import start_flights
+from eventsim.replay.motion import Motion, pull_of
+from eventsim.scene.stage import Stage
 
 PARABOLA_PIECES = 16
 """Straight pieces in which a whole flight under gravity is drawn."""
@@ -66,50 +70,91 @@ class FlightTable:
         return lengths
 
 
-def flight_table(replay: Replay) -> FlightTable:
+def flight_table(motion: Motion) -> FlightTable:
     """Return all free flights of a log."""
-    disks = replay.log.scene.disks
-    start, end = replay.span
-    return flights_between(replay, State(start, disks.position, disks.velocity), replay.log.rows, end)
+    return together(list(flights(motion)))
 
 
-def flights_between(replay: Replay, start: State, rows: Rows, end: float) -> FlightTable:
-    """Return the free flights that lead from a state through the rows after it to a time."""
-    stage, n = replay.stage, replay.stage.n
+def flights(motion: Motion, until: float | None = None) -> Iterator[FlightTable]:
+    """Yield the free flights of a log as they end, those of a block of rows together, and last those that nothing ended.
+
+    until: a time behind which nothing is told; None: the end of the log.
+    """
+    end = motion.span[1] if until is None else until
+    flown = starting(motion)
+    with closing(motion.log.blocks()) as blocks:
+        for rows in blocks:
+            told = rows if until is None else rows[rows["time"] <= until]
+            table, last = _followed(motion.stage, flown, told, end)
+            flown = table.at(np.flatnonzero(last))
+            yield table.at(np.flatnonzero(~last))
+            if len(told) < len(rows):
+                break
+    yield flown
+
+
+def starting(motion: Motion) -> FlightTable:
+    """Return the flights that disks begin with."""
+    stage, disks = motion.stage, motion.log.scene.disks
+    pull = pull_of(start_flights(stage), stage.n)
+    return flights_from(State(stage.start_time, disks.position, disks.velocity), pull)
+
+
+def flights_from(start: State, pull: Floats) -> FlightTable:
+    """Return flights of all disks that begin in a state, and have not lasted yet; pull: (n, 2), what gravity does to them."""
+    n = len(pull)
+    never, every = np.zeros(n, np.bool_), np.ones(n, np.bool_)
+    time = np.full(n, start.time)
+    return FlightTable(np.arange(n), time, np.zeros(n), start.position, start.velocity, pull, never, every)
+
+
+def flights_between(stage: Stage, flown: FlightTable, rows: Rows, end: float) -> FlightTable:
+    """Return the free flights that lead from those of all disks through the rows after them to a time."""
+    return _followed(stage, flown, rows, end)[0]
+
+
+def _followed(stage: Stage, flown: FlightTable, rows: Rows, end: float) -> tuple[FlightTable, NDArray[np.bool_]]:
+    """The same, and which flight is the last of its disk."""
+    table = together([flown, _begun(stage, rows)])
+    last = np.diff(table.disk, append=-1) != 0
+    until = np.full(len(last), end)
+    until[:-1] = np.where(last[:-1], end, table.time[1:])
+    return replace(table, duration=np.maximum(until - table.time, 0.0)), last  # logged times may step back by an ulp
+
+
+def _begun(stage: Stage, rows: Rows) -> FlightTable:
+    """The flights that rows begin, disk by disk, and have not lasted yet."""
     pair = rows["b"] >= 0
     row = np.concatenate([np.arange(len(rows)), np.flatnonzero(pair)])
-    disk = np.concatenate([np.arange(n), rows["a"], rows["b"][pair]]).astype(np.int64)
-    order = np.lexsort((np.concatenate([np.full(n, -1), row]), disk))
-    disk = disk[order]
-    kind = np.concatenate([np.full(n, -1), rows["kind"][row]])[order]
-    wall = np.concatenate([np.full(n, -1), rows["wall"][row]])[order]
+    disk = np.concatenate([rows["a"], rows["b"][pair]]).astype(np.int64)
+    order = np.lexsort((row, disk))
+    row, disk = row[order], disk[order]
 
     def both(one: str, other: str) -> Floats:
         """Return a column of the rows for disk a of all, then for disk b of the pairs."""
-        values: Floats = np.concatenate([rows[one], rows[other][pair]])
+        values: Floats = np.concatenate([rows[one], rows[other][pair]])[order]
         return values
 
-    place = np.column_stack([both("xa", "xb"), both("ya", "yb")]) + stage.corner
-    velocity = np.column_stack([both("vxa", "vxb"), both("vya", "vyb")])
-    time = np.concatenate([np.full(n, start.time), rows["time"][row]])[order]
-    first = np.ones(len(disk), dtype=np.bool_)
-    first[1:] = disk[1:] != disk[:-1]
-    until = np.full(len(disk), end)
-    until[:-1] = np.where(first[1:], end, time[1:])
     pull = np.zeros((len(disk), 2))
     if stage.gravity is not None:
-        pull[np.isfinite(replay.log.scene.disks.mass)[disk]] = stage.gravity
+        pull[:] = pull_of(start_flights(stage), stage.n)[disk]
         if stage.supports is not None:
-            rests = (order >= n) & (kind == Kind.REST)
-            pull[rests] = stage.slopes[wall[rests]]
-            pull[order < n] = replay.acceleration_at(start.time)
+            rests = rows["kind"][row] == Kind.REST
+            pull[rests] = stage.slopes[rows["wall"][row[rests]]]
     return FlightTable(
         disk=disk,
-        time=time,
-        duration=np.maximum(until - time, 0.0),  # logged times may step back by an ulp
-        place=np.concatenate([start.position, place])[order],
-        velocity=np.concatenate([start.velocity, velocity])[order],
+        time=rows["time"][row],
+        duration=np.zeros(len(disk)),
+        place=np.column_stack([both("xa", "xb"), both("ya", "yb")]) + stage.corner,
+        velocity=np.column_stack([both("vxa", "vxb"), both("vya", "vyb")]),
         pull=pull,
-        pair=kind == Kind.PAIR,
-        first=first,
+        pair=rows["kind"][row] == Kind.PAIR,
+        first=np.zeros(len(disk), np.bool_),
     )
+
+
+def together(tables: Sequence[FlightTable]) -> FlightTable:
+    """Return the flights of tables, of which the later ones follow the earlier ones, as one table."""
+    order = np.argsort(np.concatenate([table.disk for table in tables]), kind="stable")
+    names = FlightTable.__slots__
+    return FlightTable(*(np.concatenate([getattr(table, name) for table in tables])[order] for name in names))

@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -20,6 +21,25 @@ from eventsim.record.provenance import Provenance
 from eventsim.scene import Scene
 
 SAVE_BLOCK = 1 << 16
+
+
+class Told(Protocol):
+    """A log whose rows can be gone through any number of times: in memory, or in a file.
+
+    path: the file, None where it comes from a run.
+    """
+
+    path: Path | None
+    provenance: Provenance
+
+    def __len__(self) -> int: ...
+
+    @property
+    def scene(self) -> Scene:
+        """The realised scene that the log tells about."""
+
+    def blocks(self) -> Generator[Rows]:
+        """Yield the full rows block by block."""
 
 
 class EventLog(Columns):
@@ -70,6 +90,15 @@ class EventLog(Columns):
         """The names of the walls as text, an array of str (rows,), empty where there is none."""
         texts: Column = np.array([*self.provenance.wall_names, ""])[self.wall]
         return texts
+
+    @cached_property
+    def _full(self) -> EventLog:
+        return self.expand()
+
+    def blocks(self) -> Generator[Rows]:
+        """Yield the full rows block by block."""
+        rows = self._full.rows
+        yield from (rows[first : first + SAVE_BLOCK] for first in range(0, len(rows), SAVE_BLOCK))
 
     def expand(self) -> EventLog:
         """Return the full log: of a compact one by replay, bit for bit what the engine would have logged."""
@@ -127,11 +156,11 @@ def load_log(path: str | PathLike[str]) -> EventLog:
     return log
 
 
-def stream_log(path: str | PathLike[str]) -> tuple[Provenance, Generator[Rows]]:
+def stream_log(path: str | PathLike[str], verify: bool = True) -> tuple[Provenance, Generator[Rows]]:
     """Open a log file of any format: its provenance, and its full rows block by block, in bounded memory.
 
     A compact log is expanded as a whole.  Warns (LogWarning) after the last block where rows were changed since the run wrote
-    them.
+    them; verify: False where that has been looked at.
 
     Raises:
         LogError: where it is no log; also while its blocks are read.
@@ -141,7 +170,7 @@ def stream_log(path: str | PathLike[str]) -> tuple[Provenance, Generator[Rows]]:
     if provenance.compact:
         full = EventLog(provenance, np.concatenate([blank_rows(0), *blocks])).expand()
         return full.provenance, (full.rows[first : first + SAVE_BLOCK] for first in range(0, len(full), SAVE_BLOCK))
-    return provenance, _verified(provenance, blocks, file)
+    return provenance, _verified(provenance, blocks, file) if verify else blocks
 
 
 def _verified(provenance: Provenance, blocks: Generator[Rows], file: Path) -> Generator[Rows]:

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
-from eventsim.replay.log import EventLog
-from eventsim.replay.replay import Replay
+from eventsim.replay.log import Told
+from eventsim.replay.passage import Passage
 from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4
@@ -60,7 +60,7 @@ class Film:
 
 
 def animate(
-    log: EventLog,
+    log: Told,
     path: str | PathLike[str],
     film: Film | None = None,
     look: Look | None = None,
@@ -78,29 +78,29 @@ def animate(
         with atomic_write(file) as part:
             write_page(part, text)
         return
-    replay = Replay(log)
-    timing = _timing(replay, suffix, film)
+    passage = Passage(log)
+    timing = _timing(passage.span, suffix, film)
     if suffix == ".mp4":
         ffmpeg()  # missing: say so before any work is done
     hidden = BANDS if suffix == ".png" and look.trails else 0
     trail_frames = BANDS if suffix == ".png" else round(TRAIL * timing.fps)
-    picture = Picture(replay, look, ROOM[suffix], timing.times, trail_frames)
+    picture = Picture(passage, look, ROOM[suffix], timing.times, trail_frames)
     with atomic_write(file) as part:
-        drawn = _drawn(picture, replay, timing, hidden, progress)
+        drawn = _drawn(picture, passage, timing, hidden, progress)
         if suffix == ".mp4":
             write_mp4(part, drawn, picture.layout.size, timing.fps)
         elif suffix == ".gif":
-            write_gif(part, drawn, palette_of(_samples(picture, replay, timing)), len(timing.times), timing.fps)
+            write_gif(part, drawn, palette_of(_samples(picture, passage, timing)), len(timing.times), timing.fps)
         else:
             write_strip(part, drawn, len(timing.times), picture.layout.size)
 
 
-def _page(log: EventLog, film: Film, look: Look) -> str:
+def _page(log: Told, film: Film, look: Look) -> str:
     """Return the page that plays a log; what only drawn frames have is refused."""
     for name, value in (("fps", film.fps), ("begin", film.begin), ("end", film.end), ("size", look.size)):
         if value is not None:
             raise EventsimError(f"{name} = {value}: a page plays the whole log, at any size and rate; leave it out")
-    span = Replay(log).span
+    span = Passage(log).span
     timing = frame_timing(span, FPS[".mp4"], DURATION[".mp4"], film.speed, film.duration)
     return page(
         log,
@@ -113,7 +113,7 @@ def _page(log: EventLog, film: Film, look: Look) -> str:
     )
 
 
-def animate_with(log: EventLog, path: str | PathLike[str], **options: Any) -> None:
+def animate_with(log: Told, path: str | PathLike[str], **options: Any) -> None:
     """Write an animation with the options of Film and Look, each by its name; see `animate`."""
     known = {field.name: part for part in (Film, Look) for field in fields(part)}
     unknown = sorted(set(options) - set(known))
@@ -123,10 +123,10 @@ def animate_with(log: EventLog, path: str | PathLike[str], **options: Any) -> No
     animate(log, path, Film(**film), Look(**look))
 
 
-def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
+def _timing(span: tuple[float, float], suffix: str, film: Film) -> Timing:
     if suffix != ".png":
         return frame_timing(
-            replay.span,
+            span,
             FPS[suffix] if film.fps is None else film.fps,
             DURATION[suffix],
             film.speed,
@@ -136,29 +136,38 @@ def _timing(replay: Replay, suffix: str, film: Film) -> Timing:
         )
     if film.moments < 1:
         raise EventsimError(f"moments = {film.moments}: must be at least 1")
-    times = moments(replay.span, film.moments, film.begin, film.end)
-    first, last = shown_span(replay.span, film.begin, film.end)
+    times = moments(span, film.moments, film.begin, film.end)
+    first, last = shown_span(span, film.begin, film.end)
     return Timing(times, FPS[".mp4"], (last - first) / DURATION[".mp4"])
 
 
 def _drawn(
-    picture: Picture, replay: Replay, timing: Timing, hidden: int, progress: Progress | None
+    picture: Picture, passage: Passage, timing: Timing, hidden: int, progress: Progress | None
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield the pixels of each frame.
 
     hidden: how many frames are drawn before each and not shown, for its trail: the moments of a strip are far apart.
     """
-    ahead = TRAIL * timing.speed * np.arange(hidden, -1, -1) / max(hidden, 1)
-    times = np.maximum(timing.times[:, None] - ahead, replay.span[0]).ravel()
-    for place, frame in enumerate(frames_at(replay, times, GLOW * timing.speed), start=1):
+    ahead = TRAIL * timing.speed * np.arange(hidden, 0, -1) / max(hidden, 1)
+    times: list[float] = []
+    shown = []
+    for time in timing.times.tolist():
+        least = times[-1] if times else np.nextafter(passage.span[0], -np.inf)
+        times += [
+            early for early in (time - ahead).tolist() if early > least
+        ]  # what is before the last moment was drawn for it
+        times.append(time)
+        shown.append(len(times))
+    for place, frame in enumerate(frames_at(passage, np.array(times), GLOW * timing.speed), start=1):
         pixels = picture.draw(frame)
-        if place % len(ahead) == 0:
+        if place == shown[0]:
+            del shown[0]
             yield pixels
         if progress is not None:
             progress(place / len(times), frame.events, frame.state.time)
 
 
-def _samples(picture: Picture, replay: Replay, timing: Timing) -> Iterator[NDArray[np.uint8]]:
+def _samples(picture: Picture, passage: Passage, timing: Timing) -> Iterator[NDArray[np.uint8]]:
     chosen = timing.times[np.unique(np.linspace(0, len(timing.times) - 1, PALETTE_FRAMES).astype(int))]
-    for frame in frames_at(replay, chosen, GLOW * timing.speed):
+    for frame in frames_at(passage, chosen, GLOW * timing.speed):
         yield picture.draw(frame).copy()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,18 +11,13 @@ from matplotlib.colors import Colormap, ListedColormap, to_rgba
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
-from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats
-from eventsim.replay.log import EventLog
-from eventsim.replay.replay import Replay
 from eventsim.scene.disks import Disks, species_among
 from eventsim.show.frames import Frame
+from eventsim.show.overview import Overview
 from eventsim.show.palette import AMOUNTS, AMOUNTS_FROM, AMOUNTS_TO, KINDS
 
 MODES = ("mass", "speed", "species", "contacts", "index")
-
-FASTEST_SHARE = 0.98
-"""The colour map of speeds ends where this share of all flights is slower: one fast disk must not darken the rest."""
 
 Paint = Callable[[Frame], Floats]
 """The colours (N, 4) of all disks in a frame."""
@@ -53,17 +48,16 @@ class Colouring:
     key: Scale | Kinds | None
 
 
-def colouring_of(mode: str | None, replay: Replay) -> Colouring:
+def colouring_of(mode: str | None, disks: Disks, overview: Overview) -> Colouring:
     """Return the colouring of a mode; None: by species where there are a few of them, else by speed.
 
     Raises EventsimError for a mode that does not exist or does not fit the scene.
     """
-    disks = replay.log.scene.disks
     mode = mode_named(mode) or default_mode(disks)
     if mode == "speed":
-        return _by_speed(replay)
+        return _by_speed(overview)
     if mode == "contacts":
-        return _by_contacts(replay)
+        return _by_contacts(overview)
     if mode == "mass":
         return _by_mass(disks)
     if mode == "species":
@@ -89,24 +83,6 @@ def amounts() -> Colormap:
     return ListedColormap(colormaps[AMOUNTS](np.linspace(AMOUNTS_FROM, AMOUNTS_TO, 256)))
 
 
-def fastest_flight(log: EventLog) -> float:
-    """Return the speed at the end of the scale: `FASTEST_SHARE` of the flights are slower; above 0."""
-    speeds = _speeds(log)
-    return float(np.quantile(speeds, FASTEST_SHARE)) or float(speeds.max()) or 1.0
-
-
-def _speeds(log: EventLog) -> Floats:
-    """Return the speeds at the beginning of all flights."""
-    pairs = log.b >= 0
-    flights: list[Sequence[Floats]] = [
-        (*log.scene.disks.velocity.T,),
-        (log.vxa, log.vya),
-        (log.vxb[pairs], log.vyb[pairs]),
-    ]
-    speeds: Floats = np.concatenate([np.hypot(*flight) for flight in flights])
-    return speeds
-
-
 def species_of(disks: Disks) -> tuple[NDArray[np.int64], Floats]:
     """Return the species of each disk (N,), and radius and mass of each species (S, 2), the largest first."""
     found = species_among(disks)
@@ -122,16 +98,14 @@ def _mapped(amount: Callable[[Frame], Floats], scale: Scale) -> Colouring:
     return Colouring(lambda frame: colours((amount(frame) - scale.low) / (scale.high - scale.low)), scale)
 
 
-def _by_speed(replay: Replay) -> Colouring:
-    high = fastest_flight(replay.log)
-    scale = Scale("speed", 0.0, high, beyond=bool((_speeds(replay.log) > high).any()))
+def _by_speed(overview: Overview) -> Colouring:
+    scale = Scale("speed", 0.0, overview.usual, beyond=overview.fastest > overview.usual)
     return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), scale)
 
 
-def _by_contacts(replay: Replay) -> Colouring:
-    met = contacts_of(replay.log.rows)
-    most = np.bincount(np.concatenate([met["a"], met["b"][met["b"] >= 0]]), minlength=1).max()
-    return _mapped(lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(max(most, 1))))
+def _by_contacts(overview: Overview) -> Colouring:
+    most = max(int(overview.contacts.max(initial=0)), 1)
+    return _mapped(lambda frame: frame.contacts.astype(np.float64), Scale("contacts", 0.0, float(most)))
 
 
 def _by_mass(disks: Disks) -> Colouring:

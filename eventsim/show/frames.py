@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.record.contacts import contacts_of
-from eventsim.record.events import Floats, Rows, State
-from eventsim.replay.log import EventLog
-from eventsim.replay.replay import Replay
+from eventsim.record.events import Floats, Rows, State, blank_rows
+from eventsim.replay.log import Told
+from eventsim.replay.passage import Moment, Passage
 from eventsim.scene.pace import pace_of_scene, slowed
 
 GLOW = 0.2
@@ -80,53 +80,79 @@ def shown_span(span: tuple[float, float], begin: float | None, end: float | None
     return first, last
 
 
+MOST_RECENT = 100_000
+"""Rows between two frames whose ways can be told apart by nobody; and they would have to be held."""
+
+
 @dataclass(frozen=True, slots=True)
 class Frame:
     """What is to be seen at one time.
 
-    state: all disks, exactly at that time. events: rows of the log so far. contacts: (N,) contacts of each disk so
-    far. glow: (N,) 1 at a contact, fading to 0. energy: as from `energy_of`. recent: the rows since the previous frame.
+    moment: all disks, exactly at that time, and what gravity does to them. events: rows of the log so far. contacts: (N,)
+    contacts of each disk so far. glow: (N,) 1 at a contact, fading to 0. energy: as from `energy_of`. recent: the rows since the
+    previous frame; None where they are more than `MOST_RECENT`.
     """
 
-    state: State
+    moment: Moment
     events: int
     contacts: NDArray[np.int64]
     glow: Floats
     energy: float
-    recent: Rows
+    recent: Rows | None
+
+    @property
+    def state(self) -> State:
+        """All disks, exactly at that time."""
+        return self.moment.state
 
 
-def frames_at(replay: Replay, times: Floats, glow_time: float) -> Iterator[Frame]:
+def frames_at(passage: Passage, times: Floats, glow_time: float) -> Iterator[Frame]:
     """Yield the frame at each of the ascending times; glow_time: how long a contact is seen, on the scene's clock."""
-    log = replay.log
-    clock = np.maximum.accumulate(log.time) if len(log) else log.time  # logged times may step back by an ulp
-    contacts = np.zeros(replay.stage.n, dtype=np.int64)
-    seen = 0
-    for time in times.tolist():
-        events = int(np.searchsorted(clock, time, side="right"))
-        recent = log.rows[seen:events]
-        met = contacts_of(recent)
-        np.add.at(contacts, met["a"], 1)
-        np.add.at(contacts, met["b"][met["b"] >= 0], 1)
-        state = replay.state_at(time)
-        glow = _glow(log, clock, events, time, glow_time, replay.stage.n)
-        yield Frame(state, events, contacts.copy(), glow, energy_of(log, state), recent)
-        seen = events
+    log, n = passage.log, passage.stage.n
+    news = News(log)
+    contacts, latest = np.zeros(n, dtype=np.int64), np.full(n, -np.inf)
+    for moment in passage.moments(times.tolist()):
+        time, recent, count = moment.state.time, [blank_rows(0)], 0
+        for rows, clock in news.until(time):
+            met, pairs = contacts_of(rows), rows["b"] >= 0
+            np.add.at(contacts, met["a"], 1)
+            np.add.at(contacts, met["b"][met["b"] >= 0], 1)
+            np.maximum.at(latest, rows["a"], clock)
+            np.maximum.at(latest, rows["b"][pairs], clock[pairs])
+            count += len(rows)
+            recent = [*recent, rows] if count <= MOST_RECENT else []
+        glow = np.maximum(1.0 - (time - latest) / glow_time, 0.0)
+        since = np.concatenate(recent) if recent else None
+        yield Frame(moment, news.count, contacts.copy(), glow, energy_of(log, moment.state), since)
 
 
-def _glow(log: EventLog, clock: Floats, events: int, time: float, glow_time: float, n: int) -> Floats:
-    """Return how brightly each disk shows its last contact."""
-    glow = np.zeros(n)
-    first = int(np.searchsorted(clock, time - glow_time, side="right"))
-    rows = log.rows[first:events]
-    light = 1.0 - (time - clock[first:events]) / glow_time
-    np.maximum.at(glow, rows["a"], light)
-    pairs = rows["b"] >= 0
-    np.maximum.at(glow, rows["b"][pairs], light[pairs])
-    return glow
+class News:
+    """The rows of a log in the order in which frames show them.  count: how many have been shown."""
+
+    def __init__(self, log: Told) -> None:
+        self.count = 0
+        self._blocks = log.blocks()
+        self._rows, self._clock, self._latest = blank_rows(0), np.empty(0), -np.inf
+
+    def until(self, time: float) -> Iterator[tuple[Rows, Floats]]:
+        """Yield the rows up to a time that have not been shown, with their times, in blocks."""
+        while True:
+            shown = int(np.searchsorted(self._clock, time, side="right"))
+            if shown:
+                self.count += shown
+                yield self._rows[:shown], self._clock[:shown]
+                self._rows, self._clock = self._rows[shown:], self._clock[shown:]
+            if len(self._rows):
+                return
+            rows = next(self._blocks, None)
+            if rows is None:
+                return
+            # logged times may step back by an ulp
+            self._rows, self._clock = rows, np.maximum(np.maximum.accumulate(rows["time"]), self._latest)
+            self._latest = self._clock[-1] if len(rows) else self._latest
 
 
-def energy_of(log: EventLog, state: State) -> float:
+def energy_of(log: Told, state: State) -> float:
     """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes.
 
     In units of 4**pace, that of `pace_of_log`: usually 1.
@@ -139,6 +165,6 @@ def energy_of(log: EventLog, state: State) -> float:
     return energy
 
 
-def pace_of_log(log: EventLog) -> int:
+def pace_of_log(log: Told) -> int:
     """Return the pace of the run that a log tells."""
     return pace_of_scene(log.scene, log.provenance.kicks)

@@ -7,7 +7,6 @@ from typing import TypeAlias
 import numpy as np
 
 from eventsim.record.events import Floats
-from eventsim.replay.log import EventLog
 from eventsim.scene import Scene
 from eventsim.scene.walls import parts_of
 
@@ -43,19 +42,14 @@ def boundary_lines(scene: Scene) -> tuple[list[Floats], list[Floats]]:
     return hard, open_
 
 
-def shown_rectangle(log: EventLog, corner: tuple[float, float], visited: Floats) -> Rectangle:
-    """Return what a picture shows: the domain; where it is open, walls, contacts and the visited places (K, 2).
-
-    corner: what the positions of the rows are relative to.
-    """
-    scene = log.scene
+def shown_rectangle(scene: Scene, contacts: Floats, visited: Floats) -> Rectangle:
+    """Return what a picture shows: the domain; where it is open, walls, contacts (C, 2) and the visited places (K, 2)."""
     if scene.domain.size is not None:
         (x0, y0), (width, height) = scene.domain.origin, scene.domain.size
         margin = MARGIN * max(width, height)
         free = [0.0 if periodic else margin for periodic in scene.domain.periodic]
         return x0 - free[0], y0 - free[1], x0 + width + free[0], y0 + height + free[1]
     reach = float(scene.disks.radius.max())
-    contacts = np.column_stack([log.xa, log.ya]) + corner
     points = [
         *wall_lines(scene),
         *(near + side * reach for near in (scene.disks.position, contacts) for side in (-1, 1)),

@@ -16,7 +16,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
-from eventsim.replay.replay import Replay
+from eventsim.replay.passage import Passage
 from eventsim.scene.names import plural
 from eventsim.scene.pace import in_words
 from eventsim.show import outlines
@@ -25,6 +25,7 @@ from eventsim.show.frames import Frame, pace_of_log
 from eventsim.show.images import disks_with_images, lines_with_images
 from eventsim.show.layout import DPI, Bars, layout
 from eventsim.show.output import as_written
+from eventsim.show.overview import overview_of
 from eventsim.show.palette import DARK, LIGHT
 from eventsim.show.strokes import Trails, arrows
 
@@ -65,14 +66,17 @@ class Picture:
     Disks are circles of their true radius, one collection; a disk across a periodic boundary is drawn on both sides.
     """
 
-    def __init__(self, replay: Replay, look: Look, room: tuple[int, int], times: Floats, trail_frames: int = 1) -> None:
+    def __init__(
+        self, passage: Passage, look: Look, room: tuple[int, int], times: Floats, trail_frames: int = 1
+    ) -> None:
         """room: pixels that a picture may take where the look gives no size. times: of the frames to come."""
-        self._replay, self._look = replay, look
+        log, self._look = passage.log, look
+        self._scene = log.scene
         self._palette = DARK if look.dark else LIGHT
-        self._radius = replay.log.scene.disks.radius
-        self._colouring = colouring_of(look.color, replay)
-        visited = np.concatenate([replay.state_at(time).position for time in (times[0], times[-1])])
-        shown = outlines.shown_rectangle(replay.log, replay.stage.corner, visited)
+        self._radius = log.scene.disks.radius
+        self._overview = overview_of(log, passage.stage.corner)
+        self._colouring = colouring_of(look.color, log.scene.disks, self._overview)
+        shown = outlines.shown_rectangle(log.scene, self._overview.corners, _visited(passage, times))
         self.layout = layout(shown, look.size, room)
         width, height = self.layout.size
         self._figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=self._palette.paper)
@@ -82,14 +86,17 @@ class Picture:
         self._axes.axis("off")
         self._draw_background(shown)
         self._disks = self._disk_artist()
-        self._trails = Trails(replay, trail_frames) if look.trails else None
+        self._trails = Trails(passage, trail_frames) if look.trails else None
         self._trail = self._path_artist(self._palette.trail)
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
-        self._bars = Bars(self._figure, self.layout, self._palette, as_written(replay.log.scene.name or ""))
+        self._bars = Bars(self._figure, self.layout, self._palette, as_written(log.scene.name or ""))
         self._bars.draw_key(self._colouring.key)
         self._clock_format = _clock_format(times)
-        pace = pace_of_log(replay.log)
-        self._energy_words = (2 * pace, 2 if pace else 4)  # its power of two, and digits: 2e+543 takes the room of 1.603e-09
+        pace = pace_of_log(log)
+        self._energy_words = (
+            2 * pace,
+            2 if pace else 4,
+        )  # its power of two, and digits: 2e+543 takes the room of 1.603e-09
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -117,7 +124,7 @@ class Picture:
         if self._look.flash:
             glow = frame.glow[:, None]
             colours = colours * (1.0 - glow) + np.array(to_rgba(self._palette.glow)) * glow
-        place, disk = disks_with_images(frame.state.position, self._radius, self._replay.log.scene)
+        place, disk = disks_with_images(frame.state.position, self._radius, self._scene)
         self._disks.set(offsets=place, facecolor=colours[disk])
         self._disks.set_sizes(self._areas[disk], DPI)
 
@@ -127,7 +134,7 @@ class Picture:
         width = 0.6 if float(np.median(radius)) > EDGED else 0.0
         disks = CircleCollection(
             self._areas,
-            offsets=self._replay.log.scene.disks.position,
+            offsets=self._scene.disks.position,
             offset_transform=self._axes.transData,
             edgecolors=self._palette.edge if width else "none",
             # Two equal widths: with one, Agg would draw a lone disk as a marker, snapped to whole pixels.
@@ -146,12 +153,10 @@ class Picture:
 
     def _time_of_arrows(self, shown: outlines.Rectangle) -> float:
         """Return the time of flight that an arrow shows."""
-        log = self._replay.log
-        speeds = np.concatenate([np.hypot(*log.scene.disks.velocity.T), np.hypot(log.vxa, log.vya)])
-        return LONGEST_ARROW * max(shown[2] - shown[0], shown[3] - shown[1]) / (float(speeds.max()) or 1.0)
+        return LONGEST_ARROW * max(shown[2] - shown[0], shown[3] - shown[1]) / (self._overview.fastest or 1.0)
 
     def _draw_background(self, shown: outlines.Rectangle) -> None:
-        scene = self._replay.log.scene
+        scene = self._scene
         corner, size = (shown[0], shown[1]), (shown[2] - shown[0], shown[3] - shown[1])
         if scene.domain.size is not None:
             corner, size = scene.domain.origin, scene.domain.size
@@ -171,6 +176,13 @@ class Picture:
         )
         artist.set_capstyle("round")
         self._axes.add_collection(artist, autolim=False)
+
+
+def _visited(passage: Passage, times: Floats) -> Floats:
+    """Where disks are at the first and the last of the times (K, 2), in a domain without an end; else nothing."""
+    if passage.log.scene.domain.size is not None:
+        return np.empty((0, 2))
+    return np.concatenate([state.position for state in passage.states([times[0], times[-1]])])
 
 
 MISPLACED = 0.02

@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 from matplotlib.path import Path
 
-from eventsim.record.events import Floats, State
-from eventsim.replay.flights import flights_between
-from eventsim.replay.replay import Replay
+from eventsim.record.events import Floats, Rows
+from eventsim.replay.flights import flights_between, flights_from
+from eventsim.replay.motion import Motion
+from eventsim.replay.passage import Moment
 from eventsim.show.frames import Frame
 from eventsim.show.images import wrapped_pieces
 
@@ -39,23 +40,23 @@ def arrows(tail: Floats, along: Floats) -> Path:
 class Trails:
     """Where the disks have been in the last frames: through the places of all contacts, so corners are sharp."""
 
-    def __init__(self, replay: Replay, frames: int) -> None:
+    def __init__(self, motion: Motion, frames: int) -> None:
         """frames: how many of them a trail reaches back."""
-        self._replay = replay
-        self._before: State | None = None
+        self._scene, self._stage = motion.log.scene, motion.stage
+        self._before: Moment | None = None
         self._longest = max(frames, 1)
         self._pieces: deque[Floats] = deque(maxlen=self._longest)
 
     def follow(self, frame: Frame) -> Iterator[tuple[Path, float]]:
         """Add the way since the previous frame; yield the paths to draw, from the faintest on, each with its alpha.
 
-        A frame before the previous one begins a new trail.
+        A frame with too many rows since the previous one begins a new trail.
         """
-        if self._before is not None and self._before.time > frame.state.time:
+        if frame.recent is None:
             self._pieces.clear()
         elif self._before is not None:
-            self._pieces.append(self._pieces_between(self._before, frame))
-        self._before = frame.state
+            self._pieces.append(self._pieces_between(self._before, frame.recent, frame.state.time))
+        self._before = frame.moment
         pieces = list(self._pieces)
         size = -(-self._longest // BANDS)
         for first in range(-(-len(pieces) % size), len(pieces), size):
@@ -64,9 +65,8 @@ class Trails:
             age = len(pieces) - first - size
             yield Path(points, codes), STRONGEST * (1.0 - age / self._longest)
 
-    def _pieces_between(self, before: State, frame: Frame) -> Floats:
+    def _pieces_between(self, before: Moment, rows: Rows, end: float) -> Floats:
         """Return the ways of all disks from one frame to the next as straight pieces (P, 2, 2), inside the domain."""
-        scene = self._replay.log.scene
-        table = flights_between(self._replay, before, frame.recent, frame.state.time)
+        table = flights_between(self._stage, flights_from(before.state, before.pull), rows, end)
         _, ends, disk = table.pieces(PARABOLA_PIECES)
-        return wrapped_pieces(ends, disk, scene.domain.period, scene.domain.origin)[0]
+        return wrapped_pieces(ends, disk, self._scene.domain.period, self._scene.domain.origin)[0]

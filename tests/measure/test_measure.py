@@ -73,9 +73,9 @@ def test_displacements_are_those_of_the_flights(gas_log):
     from tests.measure.ways import displacements
 
     correlations = measure(gas_log, discard=0.0).correlations
-    table = flight_table(Replay(gas_log))
     interval = correlations.lag[0]
     times = np.arange(0.0, gas_log.time[-1], interval)
+    table = flight_table(Replay(gas_log))
     way = np.stack([displacements(table, disk, times) for disk in range(36)], axis=1)
     for k in (1, 2, 8):
         place = int(np.argmin(abs(correlations.lag - k * interval)))
@@ -157,8 +157,15 @@ def test_posts_alone_are_nothing_to_measure():
 
 
 def test_the_quantity_that_is_furthest_off_is_named():
-    off = [("Z", 7.5, "a closed form"), ("force", -math.inf, "equipartition"), ("rate", None, None), ("speed", 4.9, "Maxwell")]
+    off = [
+        ("Z", 7.5, "a closed form"),
+        ("force", -math.inf, "equipartition"),
+        ("rate", None, None),
+        ("speed", 4.9, "Maxwell"),
+    ]
     assert strangers(off[2:]) == []
     (clause,) = strangers(off[:1])
     assert clause == "Z is 7.5 standard errors from equilibrium (a closed form): the disks do not mix, or have not yet"
-    assert strangers(off)[0].startswith("force is further than any error bar from equilibrium (equipartition), and 1 more")
+    assert strangers(off)[0].startswith(
+        "force is further than any error bar from equilibrium (equipartition), and 1 more"
+    )

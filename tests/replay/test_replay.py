@@ -20,6 +20,7 @@ from eventsim.replay.disk_flight import DiskFlight
 from eventsim.replay.flight import fly, start_flights
 from eventsim.replay.log import EventLog
 from eventsim.replay.replay import Replay
+from eventsim.replay.runs import Runs
 from eventsim.scene import Box, Disks, Domain, Open, Periodic, Scene
 from eventsim.scene.stage import Stage, stage_of
 from tests.record.logs import provenance
@@ -128,7 +129,7 @@ def windows_without_rows(stage: Stage) -> Windows:
     def nobody(*_: object) -> Never:
         raise AssertionError("there are no rows")
 
-    return Windows(stage, blank_rows(0), nobody, nobody)
+    return Windows(stage, Runs([]), nobody)
 
 
 numbers = st.floats(-8.0, 8.0)

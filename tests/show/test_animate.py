@@ -9,6 +9,7 @@ from PIL import Image, ImageSequence
 
 import eventsim as es
 from eventsim.errors import EventsimError
+from eventsim.replay.passage import Passage
 from eventsim.replay.replay import Replay
 from eventsim.show.animate import Film, animate
 from eventsim.show.colouring import Colouring
@@ -34,7 +35,7 @@ def test_a_disk_in_the_movie_is_where_the_state_says(broken, tmp_path):
     path, look = tmp_path / "break.mp4", Look(size=(1280, 720), color="speed")
     animate(broken, path, Film(fps=25, duration=1.0, end=0.19), look)  # before the first contact only disk 0 is fast
     times = np.linspace(0.0, 0.19, 25)
-    layout = Picture(Replay(broken), look, (1280, 720), times).layout
+    layout = Picture(Passage(broken), look, (1280, 720), times).layout
     frames = imageio_ffmpeg.read_frames(str(path))
     next(frames)
     for time, data in zip(times.tolist(), frames, strict=True):
@@ -44,7 +45,7 @@ def test_a_disk_in_the_movie_is_where_the_state_says(broken, tmp_path):
         rows, columns = np.nonzero(yellow)
         found = columns.mean() + 0.5 - layout.scene[0], 720 - (rows.mean() + 0.5) - layout.scene[1]
         state = Replay(broken).state_at(time)
-        expected = (state.position[0] - picture_corner(broken)) * layout.scale
+        expected = (state.position[0] - picture_corner(broken.scene)) * layout.scale
         assert np.abs(found - expected).max() < 0.5  # pixels
 
 
@@ -53,15 +54,15 @@ def test_disks_are_drawn_where_the_state_says(name, request):
     log = request.getfixturevalue(name)
     replay = Replay(log)
     times = np.linspace(*replay.span, 3)
-    picture = Picture(replay, Look(size=(1280, 720)), (1280, 720), times)
+    picture = Picture(Passage(replay.log), Look(size=(1280, 720)), (1280, 720), times)
     unlike = np.random.default_rng(1).random((len(log.scene.disks), 4))  # no two disks of nearly the same colour
     unlike[:, 3] = 1.0
     picture._colouring = Colouring(lambda frame: unlike, None)
     left, bottom, _, _ = picture.layout.scene
-    for frame in frames_at(replay, times, 1.0):
+    for frame in frames_at(Passage(replay.log), times, 1.0):
         pixels = picture.draw(frame).astype(int)
         centres = centres_in(picture, pixels, frame)
-        x0, y0 = picture_corner(log)
+        x0, y0 = picture_corner(log.scene)
         expected = (frame.state.position - (x0, y0)) * picture.layout.scale + (left, bottom)
         low = np.array(log.scene.domain.origin) + log.scene.disks.radius.max()
         high = low + log.scene.domain.size - 2 * log.scene.disks.radius.max()
@@ -71,8 +72,8 @@ def test_disks_are_drawn_where_the_state_says(name, request):
         assert np.abs(centres - expected)[whole].max() < 0.2  # pixels
 
 
-def picture_corner(log):
-    domain = log.scene.domain
+def picture_corner(scene):
+    domain = scene.domain
     margin = 0.0 if domain.periodic[0] else 0.02 * max(domain.size)
     return domain.origin[0] - margin, domain.origin[1] - margin
 
@@ -81,9 +82,9 @@ def centres_in(picture, pixels, frame):
     """Centres of mass (N, 2), from the lower-left, of the pixels of each disk's colour; NaN where others share them."""
     colours = (picture._colouring.paint(frame)[:, :3] * 255).round().astype(int)
     height = pixels.shape[0]
-    x0, y0 = picture_corner(picture._replay.log)
+    x0, y0 = picture_corner(picture._scene)
     left, bottom, _, _ = picture.layout.scene
-    radius = picture._replay.log.scene.disks.radius * picture.layout.scale
+    radius = picture._scene.disks.radius * picture.layout.scale
     centres = np.full((len(colours), 2), np.nan)
     for i, colour in enumerate(colours):
         x, y = (frame.state.position[i] - (x0, y0)) * picture.layout.scale + (left, bottom)
@@ -102,9 +103,9 @@ def test_a_movie_shows_the_same_frame_whatever_came_before_it(fluid):
     replay = Replay(fluid)
     times = np.linspace(*replay.span, 5)
     drawn = [
-        [picture.draw(frame).copy() for frame in frames_at(replay, shown, 0.01)]
+        [picture.draw(frame).copy() for frame in frames_at(Passage(replay.log), shown, 0.01)]
         for shown in (times, times[[0, 4]])
-        if (picture := Picture(replay, SMALL, (320, 200), times))
+        if (picture := Picture(Passage(replay.log), SMALL, (320, 200), times))
     ]
     assert np.array_equal(drawn[0][4], drawn[1][1])
 
@@ -244,9 +245,9 @@ def test_one_event_is_counted_as_one_event():
     scene = es.Scene(es.Disks([[0.0, 0.0], [10.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], 0.5), es.Open())
     replay = Replay(es.simulate(scene, until=20.0, log=True).log)
     times = np.array([0.0, 20.0])
-    picture = Picture(replay, SMALL, (320, 200), times)
+    picture = Picture(Passage(replay.log), SMALL, (320, 200), times)
     told = []
-    for frame in frames_at(replay, times, 1.0):
+    for frame in frames_at(Passage(replay.log), times, 1.0):
         picture.draw(frame)
         told.append(picture._bars.counter.get_text().split("   ")[0])
     assert told == ["0 events", "1 event"]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from eventsim.errors import EventsimError
+from eventsim.replay.passage import Passage
 from eventsim.replay.replay import Replay
 from eventsim.show.frames import energy_of, frame_timing, frames_at, moments
 
@@ -43,7 +44,7 @@ def test_options_that_do_not_fit_are_explained(options, expected):
 def test_frames_show_the_state_and_count_contacts(broken):
     replay = Replay(broken)
     times = np.linspace(*replay.span, 7)
-    for frame in frames_at(replay, times, 0.1):
+    for frame in frames_at(Passage(replay.log), times, 0.1):
         state = replay.state_at(frame.state.time)
         assert np.array_equal(frame.state.position, state.position)
         before = broken.time <= state.time

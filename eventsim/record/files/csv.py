@@ -55,15 +55,15 @@ def _quoted(label: str) -> str:
     return label
 
 
-def _parse(lines: list[str], provenance: Provenance) -> Rows:
+def _parse(lines: list[bytes], provenance: Provenance) -> Rows:
     names = columns_kept(provenance)
     if len(lines) >= MANY_LINES and find_spec("pyarrow") is not None:
         from eventsim.record.files.parquet import columns_of_csv
 
-        columns = columns_of_csv("".join(lines), names)
+        columns = columns_of_csv(b"".join(lines), names)
         if columns is not None and len(columns[names[0]]) == len(lines):
             return rows_from_columns(columns, provenance)
-    return rows_from_columns(_columns(lines, names), provenance)
+    return rows_from_columns(_columns([line.decode("utf-8") for line in lines], names), provenance)
 
 
 def _columns(lines: list[str], names: tuple[str, ...]) -> dict[str, Sequence[object]]:

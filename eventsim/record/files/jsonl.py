@@ -37,8 +37,8 @@ class JsonlSink(TextSink):
         return "\n".join(map(template.__mod__, zip(*columns, strict=True))) + "\n"
 
 
-def _parse(lines: list[str], provenance: Provenance) -> Rows:
-    records = json.loads("[" + ",".join(lines) + "]")
+def _parse(lines: list[bytes], provenance: Provenance) -> Rows:
+    records = json.loads(b"[%b]" % b",".join(lines))
     if len(records) != len(lines) or not all(isinstance(record, dict) for record in records):
         raise ValueError("one object was expected")
     try:

@@ -110,15 +110,15 @@ def _blocks(opened: ExitStack, file: Any, provenance: Provenance) -> Generator[R
             yield rows_from_columns({name: _column(group.column(name)) for name in names}, provenance)
 
 
-def columns_of_csv(text: str, names: tuple[str, ...]) -> dict[str, Column] | None:
+def columns_of_csv(text: bytes, names: tuple[str, ...]) -> dict[str, Column] | None:
     """The columns of lines of CSV without quotation marks, where empty is missing; None for what is not plainly such."""
-    if '"' in text:
+    if b'"' in text:
         return None
     kinds = {name: pa.string() if name in TEXTS else pa.from_numpy_dtype(ROW[name]) for name in names}
     read = csv.ReadOptions(column_names=list(names))
     options = csv.ConvertOptions(column_types=kinds, null_values=[""], strings_can_be_null=False)
     try:
-        table = csv.read_csv(pa.py_buffer(text.encode()), read, csv.ParseOptions(quote_char=False), options)
+        table = csv.read_csv(pa.py_buffer(text), read, csv.ParseOptions(quote_char=False), options)
     except pa.ArrowInvalid:
         return None
     if any(table.column(name).null_count for name in names if ROW[name].kind == "i" and name not in TEXTS):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 import shutil
 from abc import abstractmethod
@@ -29,10 +28,12 @@ TAIL = b', "kicks": '
 PAGE = 4096
 """Bytes that a file system writes as one: a tail within a page is either the old one or the new one, even after a kill."""
 
-BLOCK_LETTERS = 1 << 23
+BLOCK_BYTES = 1 << 23
 """Of lines that are read together: some 30,000 rows."""
 
 CHUNK = 1 << 20
+
+BYTE_ORDER_MARK = "\ufeff"
 
 
 class TextForm(NamedTuple):
@@ -44,7 +45,7 @@ class TextForm(NamedTuple):
 
     prefix: str
     header_of: Callable[[Provenance], str]
-    parse: Callable[[list[str], Provenance], Rows]
+    parse: Callable[[list[bytes], Provenance], Rows]
 
 
 class TextSink(FileSink):
@@ -170,32 +171,34 @@ def open_text(path: Path, form: TextForm) -> Opened:
     """The metadata of a text log and its rows in blocks; of a growing file an unfinished last line is left out."""
     with ExitStack() as opened:
         file = opened.enter_context(reading(path, LogError, "not an event log of this format"))
-        # Editors on some systems add a mark and other line ends.
-        lines = opened.enter_context(io.TextIOWrapper(file, encoding="utf-8-sig"))
-        head = "".join(_whole([lines.readline()], path)).rstrip("\n")
+        head = _line(file, path).removeprefix(BYTE_ORDER_MARK).rstrip("\n")  # some editors add the mark, and other line ends
         if not head.startswith(form.prefix):
             raise LogError(f"{path}: not an event log: the first line does not hold its scene")
         provenance = provenance_from_text(head.removeprefix(form.prefix), str(path))
         header = form.header_of(provenance)
-        if header and "".join(_whole([lines.readline()], path)) != header:
+        if header and _line(file, path) != header:
             raise LogError(f"{path}: the columns are not those of an event log: {header.strip()}")
-        return Opened(provenance, _blocks(opened.pop_all(), lines, form, provenance, path))
+        return Opened(provenance, _blocks(opened.pop_all(), file, form, provenance, path))
     raise AssertionError("either metadata or an error")
 
 
 def _blocks(
-    opened: ExitStack, lines: IO[str], form: TextForm, provenance: Provenance, path: Path
+    opened: ExitStack, file: IO[bytes], form: TextForm, provenance: Provenance, path: Path
 ) -> Generator[Rows]:
     number = 2 + form.header_of(provenance).count("\n")
     with opened:
-        while block := _whole(lines.readlines(BLOCK_LETTERS), path):
+        while block := _whole(file.readlines(BLOCK_BYTES), path):
             yield _parse_block(form.parse, block, provenance, f"{path}", number)
             number += len(block)
 
 
-def _whole(lines: list[str], path: Path) -> list[str]:
+def _line(file: IO[bytes], path: Path) -> str:
+    return b"".join(_whole([file.readline()], path)).decode("utf-8").replace("\r\n", "\n")
+
+
+def _whole(lines: list[bytes], path: Path) -> list[bytes]:
     """Those of some lines that end; only the last one of a file that grows may not."""
-    if not lines or lines[-1].endswith("\n") or lines == [""]:
+    if not lines or lines[-1].endswith(b"\n") or lines == [b""]:
         return lines
     if path.suffix == PART:
         return lines[:-1]
@@ -205,7 +208,7 @@ def _whole(lines: list[str], path: Path) -> list[str]:
 
 
 def _parse_block(
-    parse: Callable[[list[str], Provenance], Rows], block: list[str], provenance: Provenance, path: str, number: int
+    parse: Callable[[list[bytes], Provenance], Rows], block: list[bytes], provenance: Provenance, path: str, number: int
 ) -> Rows:
     """Parse a block; where that fails, parse line by line to name the first bad one."""
     try:

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from eventsim.errors import LogError
 from eventsim.record.events import Kind
-from eventsim.replay.log import EventLog
-from eventsim.replay.replay import Replay
+from eventsim.replay.log import Told
+from eventsim.replay.passage import Passage
 
 
-def replay_with_time(log: EventLog) -> Replay:
-    """Return the replay of a log; raise LogError where no time passes in it."""
-    replay = Replay(log)
-    start, end = replay.span
+def passage_with_time(log: Told) -> Passage:
+    """Return the passage through a log; raise LogError where no time passes in it."""
+    passage = Passage(log)
+    start, end = passage.span
     if start == end:
         raise LogError(f"there is nothing to draw: the log ends where it begins, at {start!r}")
-    return replay
+    return passage
 
 
-def with_events(log: EventLog, kind: Kind | None = None) -> None:
+def with_events(log: Told, kind: Kind | None = None) -> None:
     """Raise LogError where a log has no events (of a kind)."""
     if len(log) == 0:
         raise LogError("there is nothing to draw: the log has no events")
-    if kind is not None and not (log.kind == kind).any():
+    if kind is not None and not any((rows["kind"] == kind).any() for rows in log.blocks()):
         raise LogError(f"there is nothing to draw: the log has no {kind.label} contacts")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -10,10 +11,11 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.measure import measure
 from eventsim.measure.free_paths import free_paths, path_density
-from eventsim.record.events import Kind
-from eventsim.replay.flights import flight_table
-from eventsim.replay.log import EventLog
-from eventsim.show.figures.demands import replay_with_time, with_events
+from eventsim.record.events import Floats, Kind
+from eventsim.replay.flights import flights
+from eventsim.replay.log import Told
+from eventsim.replay.passage import Passage
+from eventsim.show.figures.demands import passage_with_time, with_events
 from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of
 
 BINS, LONGEST = 40, 6.0
@@ -23,22 +25,29 @@ FEWEST = 20
 """Free paths below which there is nothing to say about how they are distributed."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw the distribution of free paths between pair contacts, reflections at walls passed over."""
     with_events(log, Kind.PAIR)
-    paths = free_paths(flight_table(replay_with_time(log)))
-    if len(paths) < FEWEST:
-        raise LogError(f"free-paths: only {len(paths)} whole free paths in this log; at least {FEWEST} are needed")
-    mean, error = float(paths.mean()), float(paths.std(ddof=1) / np.sqrt(len(paths)))
+    passage = passage_with_time(log)
+    number, total = 0, 0.0
+    for paths in _paths(passage):
+        number, total = number + len(paths), total + float(paths.sum())
+    if number < FEWEST:
+        raise LogError(f"free-paths: only {number} whole free paths in this log; at least {FEWEST} are needed")
+    mean, squares = total / number, 0.0
     edges = np.linspace(0.0, LONGEST * mean, BINS + 1)
-    counts = np.histogram(paths, bins=edges)[0]
+    counts = np.zeros(BINS, np.int64)
+    for paths in _paths(passage):
+        squares += float(((paths - mean) ** 2).sum())
+        counts += np.histogram(paths, bins=edges)[0]
+    error = math.sqrt(squares / (number - 1) / number)
     width = edges[1] - edges[0]
     axes = figure.add_subplot()
     seen = counts > 0
     middle = 0.5 * (edges[1:] + edges[:-1])
     axes.errorbar(
-        middle[seen], counts[seen] / (len(paths) * width), np.sqrt(counts[seen]) / (len(paths) * width),
-        fmt="o", ms=3.5, lw=1, color=BLUE, label=f"{len(paths):,} free paths, counting errors",
+        middle[seen], counts[seen] / (number * width), np.sqrt(counts[seen]) / (number * width),
+        fmt="o", ms=3.5, lw=1, color=BLUE, label=f"{number:,} free paths, counting errors",
     )  # fmt: skip
     told = measure(log).by_name.get("mean_free_path")
     theory = None if told is None or math.isnan(told.value) else told.theory
@@ -58,3 +67,7 @@ def draw(figure: Figure, log: EventLog) -> None:
     )
     axes.set(yscale="log", xlim=(0.0, edges[-1]))
     axes.legend(frameon=False)
+
+
+def _paths(passage: Passage) -> Iterator[Floats]:
+    return free_paths(flights(passage), passage.stage.n)

@@ -13,18 +13,18 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.measure import Measures, measure
 from eventsim.measure.theory import enskog_diffusion
-from eventsim.replay.log import EventLog
+from eventsim.replay.log import Told
 from eventsim.scene.names import plural
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of
 
 SURE = 2.0
 """Standard errors above zero from which on a point says something on a logarithmic scale."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw the displacement about the common motion above, D from its slope between half the lag and the lag below."""
-    replay_with_time(log)
+    passage_with_time(log)
     if not np.isfinite(log.scene.disks.mass).any():
         raise LogError("msd: 0 finite masses in this scene; the figure is of disks that contacts deflect")
     measures = measure(log)
@@ -54,7 +54,7 @@ def _draw_displacement(axes: Axes, measures: Measures) -> None:
     axes.set(xscale="log", yscale="log", ylim=(low, high))
 
 
-def _draw_diffusion(axes: Axes, measures: Measures, log: EventLog) -> None:
+def _draw_diffusion(axes: Axes, measures: Measures, log: Told) -> None:
     found = measures.correlations
     slope, error = found.diffusion, found.diffusion_error
     with np.errstate(invalid="ignore"):

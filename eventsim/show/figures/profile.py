@@ -6,15 +6,15 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.measure import measure
-from eventsim.replay.log import EventLog
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.replay.log import Told
+from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, ORANGE, label, name_of
 from eventsim.show.palette import KINDS
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw the number density of each species above, its temperature below."""
-    replay_with_time(log)
+    passage_with_time(log)
     gravity = log.scene.gravity or (0.0, 0.0)
     profile = measure(log, profile="y" if abs(gravity[1]) > abs(gravity[0]) else "x").profile
     assert profile is not None

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Floats, Kind
-from eventsim.replay.log import EventLog
-from eventsim.replay.replay import Replay
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.replay.log import Told
+from eventsim.replay.motion import Motion
+from eventsim.show.figures.demands import passage_with_time
+from eventsim.show.figures.marks import Marks
 from eventsim.show.figures.style import BLUE, ORANGE, TIME, label, name_of
 from eventsim.show.frames import energy_of
 
@@ -17,18 +21,23 @@ MOST_VECTORS = 20_000
 """More dots than these are put into an svg or pdf as pixels."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw the relative change of energy above, the gap of each pair at its contact, in reaches, below."""
-    replay = replay_with_time(log)
-    times = np.linspace(*replay.span, SAMPLES)
-    energy = np.array([energy_of(log, replay.state_at(time)) for time in times.tolist()])
+    passage = passage_with_time(log)
+    times = np.linspace(*passage.span, SAMPLES)
+    energy = np.array([energy_of(log, state) for state in passage.states(times.tolist())])
     above, below = figure.subplots(2, 1, sharex=True)
     scale = energy[0] or 1.0
-    lossy = log.scene.restitution is not None or (log.kind == Kind.KICK).any()
+    lossy = log.scene.restitution is not None or any((rows["kind"] == Kind.KICK).any() for rows in log.blocks())
     change = energy / scale if lossy else energy / scale - 1.0
     above.plot(times, change, color=BLUE, lw=1.2)
-    time, gap = gaps_at_contact(replay)
-    below.plot(time, gap, ".", ms=2.5, color=ORANGE, rasterized=len(gap) > MOST_VECTORS)
+    least, most = math.inf, -math.inf
+    for _, gap in gaps_at_contact(passage):
+        least, most = float(gap.min(initial=least)), float(gap.max(initial=most))
+    dots = Marks(passage.span, (least, most))
+    for time, gap in gaps_at_contact(passage):
+        dots.add(time, gap)
+    below.plot(*dots.drawn(), ".", ms=2.5, color=ORANGE, rasterized=dots.count > MOST_VECTORS)
     if lossy:
         said = f"energy ends at {change[-1]:.3g} of itself"
         if change.min() > 0.0 and change[-1] < 0.1:
@@ -37,7 +46,7 @@ def draw(figure: Figure, log: EventLog) -> None:
             above.set_ylim(0.0, None)
     else:
         said = f"energy keeps to {np.abs(change).max():.1g}"
-    deepest = max(float(-gap.min()), 0.0) if len(gap) else 0.0
+    deepest = max(-least, 0.0) if dots.count else 0.0
     name = name_of(log)
     label(
         above,
@@ -47,18 +56,20 @@ def draw(figure: Figure, log: EventLog) -> None:
     )
     label(below, f"time [{TIME}]", "gap at contact\n[sum of radii]", "")
     below.axhline(0.0, color="#39424e", lw=0.8)
-    below.set_xlim(replay.span)
-    if not len(gap):
+    below.set_xlim(passage.span)
+    if not dots.count:
         below.text(0.5, 0.5, "no pair contacts", transform=below.transAxes, ha="center", va="center", color="#5b6570")
 
 
-def gaps_at_contact(replay: Replay) -> tuple[Floats, Floats]:
-    """Return the times (K,) of pair contacts and the gaps there, in reaches; what an exact contact has is 0."""
-    rows, radius = replay.log.rows[replay.log.kind == Kind.PAIR], replay.log.scene.disks.radius
-    apart = [rows["xa"] - rows["xb"], rows["ya"] - rows["yb"]]
-    for axis, length in enumerate(replay.stage.period):
-        if length is not None:
-            apart[axis] = apart[axis] - length * np.round(apart[axis] / length)
-    reach = radius[rows["a"]] + radius[rows["b"]]
-    wide = reach > 0.0  # two points have no reach to measure by
-    return rows["time"][wide], (np.hypot(*apart) - reach)[wide] / reach[wide]
+def gaps_at_contact(motion: Motion) -> Iterator[tuple[Floats, Floats]]:
+    """Yield the times (K,) of pair contacts and the gaps there, in reaches, block by block; what an exact contact has is 0."""
+    radius = motion.log.scene.disks.radius
+    for block in motion.log.blocks():
+        rows = block[block["kind"] == Kind.PAIR]
+        apart = [rows["xa"] - rows["xb"], rows["ya"] - rows["yb"]]
+        for axis, length in enumerate(motion.stage.period):
+            if length is not None:
+                apart[axis] = apart[axis] - length * np.round(apart[axis] / length)
+        reach = radius[rows["a"]] + radius[rows["b"]]
+        wide = reach > 0.0  # two points have no reach to measure by
+        yield rows["time"][wide], (np.hypot(*apart) - reach)[wide] / reach[wide]

@@ -13,17 +13,17 @@ from eventsim.errors import LogError
 from eventsim.measure import measure
 from eventsim.measure.theory import cooling_exponent
 from eventsim.record.events import Floats
-from eventsim.replay.log import EventLog
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.replay.log import Told
+from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import BLUE, ORANGE, TIME, label, name_of
 
 DECADE = 10.0
 """Times that a series falls by from which on it is drawn on a logarithmic scale."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw four panels: energy against time and temperature against contacts above, rate and pressure against time below."""
-    replay_with_time(log)
+    passage_with_time(log)
     measures = measure(log, discard=0.0)
     series = measures.series
     if not len(series.time):
@@ -51,7 +51,9 @@ def _line(axes: Axes, x: Floats, y: Floats, along: str, what: str) -> None:
     known = np.isfinite(y)
     label(axes, f"{along}", what, "")
     if not known.any():
-        axes.text(0.5, 0.5, "it has no meaning here", transform=axes.transAxes, ha="center", va="center", color="#5b6570")
+        axes.text(
+            0.5, 0.5, "it has no meaning here", transform=axes.transAxes, ha="center", va="center", color="#5b6570"
+        )
         return
     axes.plot(x[known], y[known], ".-", ms=3.5, lw=1.0, color=BLUE)
     if y[known].min() > 0.0 and y[known].max() > DECADE * y[known].min():

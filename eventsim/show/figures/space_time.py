@@ -7,10 +7,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Kind
-from eventsim.replay.flights import flight_table
-from eventsim.replay.log import EventLog
+from eventsim.replay.flights import flights, together
+from eventsim.replay.log import Told
 from eventsim.show import outlines
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label, name_of, shades_of
 from eventsim.show.images import wrapped_pieces
 
@@ -19,15 +19,20 @@ MOST_CONTACTS = 800
 """Of a longer run the beginning is drawn, up to this many contacts: more cannot be told apart."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw the coordinate along which the disks spread most; dots are contacts of two disks."""
-    replay = replay_with_time(log)
-    begin, end = replay.span
-    pairs = log.time[log.kind == Kind.PAIR]
-    if len(pairs) > MOST_CONTACTS:
-        end = float(pairs[MOST_CONTACTS])
-    scene, table = log.scene, flight_table(replay)
-    table = table.at(np.flatnonzero(table.time <= end))
+    passage = passage_with_time(log)
+    begin, end = passage.span
+    pairs, every, last = 0, 0, end
+    for rows in log.blocks():
+        hits, seen = np.flatnonzero(rows["kind"] == Kind.PAIR), int((rows["kind"] != Kind.KICK).sum())
+        if pairs <= MOST_CONTACTS < pairs + len(hits):
+            last = min(last, float(rows["time"][hits[MOST_CONTACTS - pairs]]))
+        if every <= MOST_VECTORS < every + seen:
+            last = min(last, float(rows["time"][MOST_VECTORS - every]))
+        pairs, every = pairs + len(hits), every + seen
+    until, end = (None, end) if last == end else (last, last)
+    scene, table = log.scene, together(list(flights(passage, until)))
     spread = np.ptp(table.place, axis=0)
     axis = int(spread[1] > spread[0])
     time, ends, disk = table.pieces()
@@ -37,20 +42,20 @@ def draw(figure: Figure, log: EventLog) -> None:
     axes = figure.add_subplot()
     axes.add_collection(
         LineCollection(
-            list(lines), colors=shades_of(replay.stage.n)[disk], linewidths=1.0, rasterized=len(lines) > MOST_VECTORS
+            list(lines), colors=shades_of(passage.stage.n)[disk], linewidths=1.0, rasterized=len(lines) > MOST_VECTORS
         ),
         autolim=False,
     )
     axes.plot(table.time[table.pair], table.place[table.pair, axis], ".", ms=2.5, color="#1b1f24")
-    shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
+    shown = outlines.shown_rectangle(scene, np.empty((0, 2)), ends.reshape(-1, 2))
     axes.set(xlim=(begin, end), ylim=(shown[axis], shown[axis + 2]))
     if scene.domain.size is not None:
         for edge in (scene.domain.origin[axis], scene.domain.origin[axis] + scene.domain.size[axis]):
             axes.axhline(edge, color="#39424e", lw=1.2, ls="--" if scene.domain.periodic[axis] else "-")
-    which = f"{len(pairs):,}" if len(pairs) <= MOST_CONTACTS else f"the first {MOST_CONTACTS:,} of {len(pairs):,}"
-    every = int((log.kind != Kind.KICK).sum())
+    drawn = int(table.pair.sum()) // 2
+    which = f"{pairs:,}" if drawn == pairs else f"the first {drawn:,} of {pairs:,}"
     label(
         axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
-        f"{name_of(log)}: {replay.stage.n:,} disks, {every:,} contacts, {which} of them between disks (dots)",
+        f"{name_of(log)}: {passage.stage.n:,} disks, {every:,} contacts, {which} of them between disks (dots)",
     )  # fmt: skip
     axes.grid(visible=False)

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
 from eventsim.measure import measure
-from eventsim.replay.log import EventLog
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.replay.log import Told
+from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import SPEED, label, name_of
 from eventsim.show.palette import KINDS
 
@@ -19,9 +19,9 @@ SEEN = 1e-3
 """Of the largest density: bins below it at the end of the histogram are not shown."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw a histogram for each species, as `measure` has it, error bars from blocks of time, and Maxwell's curve."""
-    replay_with_time(log)
+    passage_with_time(log)
     measures = measure(log)
     histograms = measures.speeds
     if not any(len(one.density) and one.density[1:].any() for one in histograms):

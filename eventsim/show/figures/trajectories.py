@@ -9,18 +9,23 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Rectangle as Box
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
-from eventsim.replay.flights import flight_table
-from eventsim.replay.log import EventLog
+from eventsim.replay.flights import flights, together
+from eventsim.replay.log import Told
 from eventsim.scene.names import plural
 from eventsim.show import outlines
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, SIZE, label, name_of, shades_of
 from eventsim.show.images import lines_with_images, wrapped_pieces
+from eventsim.show.overview import overview_of
 from eventsim.show.palette import LIGHT
 
 MOST_DISKS = 16
 """More ways than these cannot be told apart: of larger scenes some disks are drawn, evenly spread over the list."""
+
+MOST_EVENTS = 50_000
+"""Of a longer run the beginning is drawn: of more events nothing but ink would be seen."""
 
 TALLEST, NARROWEST, LABELS = 6.4, 4.6, 0.8
 """Inches: of the scene in a figure, of a figure, and what labels take."""
@@ -29,16 +34,17 @@ FLAT, SLIM = 0.6, 1.2
 """Inches of a side on which numbers above each other, or beside each other, would overlap."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw the ways of up to MOST_DISKS disks; dots are their events, circles the disks at the end."""
-    replay = replay_with_time(log)
-    scene, n = log.scene, replay.stage.n
+    passage = passage_with_time(log)
+    scene, n = log.scene, passage.stage.n
     disks = np.unique(np.linspace(0, n - 1, min(n, MOST_DISKS)).astype(np.int64))
-    table = flight_table(replay).of(disks)
+    until, events = _drawn_until(log, disks)
+    table = together([part.of(disks) for part in flights(passage, until)])
     shades = shades_of(n)
     _, ends, disk = table.pieces()
     ends, disk = wrapped_pieces(ends, disk, scene.domain.period, scene.domain.origin)
-    shown = outlines.shown_rectangle(log, replay.stage.corner, ends.reshape(-1, 2))
+    shown = outlines.shown_rectangle(scene, overview_of(log, passage.stage.corner).corners, ends.reshape(-1, 2))
     figure.set_size_inches(*inches_for(shown))
     axes = figure.add_subplot(aspect="equal")
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]))
@@ -57,8 +63,9 @@ def draw(figure: Figure, log: EventLog) -> None:
         linewidths=0.3,
         zorder=3,
     )
-    last = replay.final().position[disks]
-    circles = [Circle((x, y), r) for (x, y), r in zip(last.tolist(), scene.disks.radius[disks].tolist(), strict=True)]
+    last = passage.final() if until is None else next(passage.states([until]))
+    at_end = last.position[disks]
+    circles = [Circle((x, y), r) for (x, y), r in zip(at_end.tolist(), scene.disks.radius[disks].tolist(), strict=True)]
     axes.add_collection(
         PatchCollection(circles, facecolor=shades[disks], edgecolor=LIGHT.edge, linewidth=0.6, alpha=0.9, zorder=4)
     )
@@ -66,13 +73,13 @@ def draw(figure: Figure, log: EventLog) -> None:
     walls = [*lines_with_images(outlines.wall_lines(scene), scene), *hard]
     axes.add_collection(LineCollection(walls, colors=LIGHT.wall, linewidths=1.6), autolim=False)
     axes.add_collection(LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False)
-    events = int((np.isin(log.a, disks) | np.isin(log.b, disks)).sum())
+    told = plural(events, "event") if until is None else f"until t = {until:.6g}: the first {events:,} events"
     which = f"{len(disks)} of {n} disks" if len(disks) < n else "all disks" if n > 1 else "the disk"
     label(
         axes,
         f"x [{LENGTH}]",
         f"y [{LENGTH}]",
-        f"{name_of(log)}: the ways of {which}, {plural(events, 'event')} (a dot for each disk)",
+        f"{name_of(log)}: the ways of {which}, {told} (a dot for each disk)",
     )
     axes.grid(visible=False)
     width, height = sides_of(shown)
@@ -80,6 +87,17 @@ def draw(figure: Figure, log: EventLog) -> None:
         _keep_one_tick(axes.yaxis, shown[1], shown[3])
     if width < SLIM:
         _keep_one_tick(axes.xaxis, shown[0], shown[2])
+
+
+def _drawn_until(log: Told, disks: NDArray[np.int64]) -> tuple[float | None, int]:
+    """Return until when a figure shows the ways of some disks, None: to the end; and how many events they have by then."""
+    events = 0
+    for rows in log.blocks():
+        theirs = np.flatnonzero(np.isin(rows["a"], disks) | np.isin(rows["b"], disks))
+        if events + len(theirs) > MOST_EVENTS:
+            return float(rows["time"][theirs[MOST_EVENTS - events]]), MOST_EVENTS
+        events += len(theirs)
+    return None, events
 
 
 def inches_for(shown: outlines.Rectangle) -> tuple[float, float]:

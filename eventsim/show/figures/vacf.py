@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
 from eventsim.measure import measure
-from eventsim.replay.log import EventLog
-from eventsim.show.figures.demands import replay_with_time
+from eventsim.replay.log import Told
+from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, name_of
 
 TAIL_FROM = 10.0
@@ -21,9 +21,9 @@ SURE = 2.0
 """Standard errors above zero from which on a point says something on a logarithmic scale."""
 
 
-def draw(figure: Figure, log: EventLog) -> None:
+def draw(figure: Figure, log: Told) -> None:
     """Draw <v(0) v(t)> / <v^2> against the lag, Enskog's exponential, and a line 1 / t through the first points of the tail."""
-    replay_with_time(log)
+    passage_with_time(log)
     measures = measure(log)
     lag, vacf, error = measures.correlations.lag, measures.correlations.vacf, measures.correlations.vacf_error
     if not len(lag) or not vacf[0] > 0.0:
@@ -31,7 +31,9 @@ def draw(figure: Figure, log: EventLog) -> None:
     start = float(vacf[0])
     axes = figure.add_subplot()
     sure = vacf > SURE * error
-    axes.errorbar(lag[sure], vacf[sure] / start, error[sure] / start, fmt="o", ms=3.5, lw=1, color=BLUE, label="measured")
+    axes.errorbar(
+        lag[sure], vacf[sure] / start, error[sure] / start, fmt="o", ms=3.5, lw=1, color=BLUE, label="measured"
+    )
     free_time = measures.by_name.get("mean_free_time")
     if free_time is not None and free_time.value > 0.0 and measures.disks > 1:
         early = lag[lag < 5.0 * free_time.value]

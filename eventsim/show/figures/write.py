@@ -14,13 +14,13 @@ from matplotlib.figure import Figure
 from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
-from eventsim.replay.log import EventLog
+from eventsim.replay.log import Told
 from eventsim.show.figures import TITLES
 from eventsim.show.figures.style import new_figure
 from eventsim.show.output import suffix_of
 
 
-def write_figure(log: EventLog, kind: str, path: str | PathLike[str]) -> None:
+def write_figure(log: Told, kind: str, path: str | PathLike[str]) -> None:
     """Draw a kind of figure (see `TITLES`) of a log to `path`: .png, .svg or .pdf.
 
     Raises EventsimError where there is no such kind, the log does not hold what the figure shows, the suffix is unknown
@@ -29,7 +29,7 @@ def write_figure(log: EventLog, kind: str, path: str | PathLike[str]) -> None:
     if kind not in TITLES:
         raise EventsimError(f"there is no figure {kind!r}; there are {', '.join(TITLES)}")
     module = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}")
-    save_figure(lambda figure: module.draw(figure, log.expand()), Path(path))
+    save_figure(lambda figure: module.draw(figure, log), Path(path))
 
 
 def save_figure(draw: Callable[[Figure], None], file: Path) -> None:

@@ -14,25 +14,30 @@ from typing import Any, TypeAlias
 import numpy as np
 from matplotlib.colors import to_hex
 
-from eventsim.record.events import Column, Rows
-from eventsim.replay.log import EventLog
+from eventsim.errors import EventsimError
+from eventsim.record.events import Column, Rows, blank_rows
+from eventsim.replay.log import EventLog, Told
+from eventsim.replay.motion import Motion
 from eventsim.replay.replay import Replay
 from eventsim.scene.stage import Stage
 from eventsim.show import outlines
 from eventsim.show.colouring import (
     amounts,
     default_mode,
-    fastest_flight,
     mode_named,
     species_labels,
     species_of,
 )
 from eventsim.show.frames import shown_span
 from eventsim.show.images import lines_with_images
+from eventsim.show.overview import overview_of
 from eventsim.show.palette import DARK, KINDS, LIGHT
 
 SECONDS = 10.0
 """How long a log plays at the speed that the player begins with."""
+
+MOST_PLAYED = 2_000_000
+"""Events on a page (150 MB): browsers hold no more."""
 
 SHADES = 64
 """Colours on the scale of amounts: more cannot be told apart, and fewer are drawn faster."""
@@ -46,15 +51,19 @@ PackedColumn: TypeAlias = tuple[str, str, Column]
 """Name, type and numbers of a column."""
 
 
-def packed(log: EventLog, color: str | None = None, seconds: float | None = None) -> tuple[dict[str, Any], str]:
+def packed(log: Told, color: str | None = None, seconds: float | None = None) -> tuple[dict[str, Any], str]:
     """Return the description of a log for the player, and its numbers in base64.
 
     seconds: how long it plays at the speed that it begins with. Raises EventsimError where the log has no time to
-    play or the colouring does not exist.
+    play, or more events than a page can hold, or the colouring does not exist.
     """
-    replay = Replay(log)
+    if len(log) > MOST_PLAYED:
+        raise EventsimError(
+            f"a page plays at most {MOST_PLAYED:,} events and this log has {len(log):,}: write an .mp4 or .gif"
+        )
+    replay = Replay(EventLog(log.provenance, np.concatenate([blank_rows(0), *log.blocks()])))
     first, last = shown_span(replay.span, None, None)
-    columns = [*start_columns(replay), *row_columns(replay.log.rows)]
+    columns = [*start_columns(replay), *row_columns(replay.full.rows)]
     description = {
         "startTime": first,
         "duration": last - first,
@@ -67,9 +76,9 @@ def packed(log: EventLog, color: str | None = None, seconds: float | None = None
     return description, base64.b64encode(column_bytes(columns)).decode("ascii")
 
 
-def start_columns(replay: Replay) -> list[PackedColumn]:
+def start_columns(motion: Motion) -> list[PackedColumn]:
     """Return the disks at the start."""
-    stage, disks = replay.stage, replay.log.scene.disks
+    stage, disks = motion.stage, motion.log.scene.disks
     start = {
         "x": stage.x,
         "y": stage.y,
@@ -111,19 +120,20 @@ def scene_description(stage: Stage) -> dict[str, Any]:
 
 def stage_description(replay: Replay, last: float) -> dict[str, Any]:
     """Return what the player's drawing needs to know besides the disks; last: a time that the log covers."""
-    log, scene, stage = replay.log, replay.log.scene, replay.stage
+    scene, stage = replay.log.scene, replay.stage
+    overview = overview_of(replay.log, stage.corner)
     masses = scene.disks.mass[np.isfinite(scene.disks.mass)]
     hard, open_ = outlines.boundary_lines(scene)
     lines = {"walls": lines_with_images(outlines.wall_lines(scene), scene), "hard": hard, "open": open_}
     shades = amounts()(np.linspace(0.0, 1.0, SHADES))
     return {
-        "shown": outlines.shown_rectangle(log, stage.corner, replay.state_at(last).position),
+        "shown": outlines.shown_rectangle(scene, overview.corners, replay.state_at(last).position),
         "corner": stage.corner,
         "size": scene.domain.size,
         "period": stage.period,
         **{name: [line.tolist() for line in of_kind] for name, of_kind in lines.items()},
         "usualRadius": float(np.median(scene.disks.radius)),
-        "fastest": fastest_flight(log),
+        "fastest": overview.usual,
         "speciesNames": [name for name, _ in species_labels(scene.disks)],
         "masses": [float(masses.min()), float(masses.max())] if len(masses) else [1.0, 1.0],
         "kinds": KINDS,

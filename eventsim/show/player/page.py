@@ -8,8 +8,8 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from eventsim.replay.log import EventLog
-from eventsim.replay.replay import Replay
+from eventsim.replay.log import Told
+from eventsim.replay.passage import Passage
 from eventsim.show.player.pack import packed
 
 SCRIPTS = ("world.js", "drawing.js", "player.js", "load.js")
@@ -21,7 +21,7 @@ MOST_EVENTS = 50_000
 
 
 def page(
-    log: EventLog,
+    log: Told,
     *,
     color: str | None = None,
     dark: bool = False,
@@ -46,10 +46,12 @@ def page(
     )
 
 
-def notebook_frame(log: EventLog) -> str | None:
+def notebook_frame(log: Told) -> str | None:
     """Return the player as an html element of its own; None for a log too long for a notebook, or without time."""
-    start, end = Replay(log).span
-    if len(log) > MOST_EVENTS or start == end:
+    if len(log) > MOST_EVENTS:
+        return None
+    start, end = Passage(log).span
+    if start == end:
         return None
     source = html.escape(page(log), quote=True)
     return f'<iframe srcdoc="{source}" style="width: 100%; height: {FRAME_HEIGHT}px; border: 0"></iframe>'
