@@ -314,7 +314,8 @@ class Search:
             if not is_on:
                 for turn in turns:
                     margin = float(abs(turn.value) / one.norm)
-                    if turn.is_minimum and margin < self.near:
+                    from_there = turn.value > 0 or c > 0  # else it is behind that side, and only comes nearer again
+                    if turn.is_minimum and from_there and margin < self.near:
                         n = float(one.norm)
                         calls.append(Call(now + turn.time, margin, (side * float(nx) / n, side * float(ny) / n)))
             for crossing in crossings:
