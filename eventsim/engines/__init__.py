@@ -11,7 +11,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from eventsim.compiler import SWITCH, is_switched_off
+from eventsim.compiler import INTERPRET, SWITCH, is_interpreted, is_switched_off
 from eventsim.engines.certified import CertifiedOptions
 from eventsim.engines.fast import FastOptions
 from eventsim.engines.options import Options, names_of, wrong_value
@@ -52,10 +52,15 @@ class Engine:
         if self.needs is None:
             return None
         module, called, extra = self.needs
+        if module == "numba" and is_interpreted():
+            return None
         if find_spec(module) is not None:
             if module != "numba" or not is_switched_off():
                 return None
-            return f"the engine {self.name} is compiled, and {SWITCH} is set: unset it, or take the engine reference"
+            return (
+                f"the engine {self.name} is compiled, and {SWITCH} is set: unset it, take the engine reference, or set "
+                f"{INTERPRET} to run kernels as plain Python"
+            )
         return f"the engine {self.name} needs {called}, which is not installed: pip install 'eventsim-disks[{extra}]'"
 
     def options_from(self, given: Mapping[str, Any], others: tuple[str, ...] = ()) -> Options:

@@ -11,7 +11,7 @@ from time import perf_counter, thread_time
 
 import numpy as np
 
-from eventsim.compiler import SWITCH, has_compiler, is_switched_off
+from eventsim.compiler import INTERPRET, SWITCH, has_compiler, is_interpreted, is_switched_off
 from eventsim.engines.base import BrokenOffError, Motion, Session, Snapshot, Stop
 from eventsim.engines.reference import AutoOptions, ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
@@ -141,7 +141,8 @@ class AutoSession(Session):
         """Hand over if the reference engine would take longer than it takes to begin with the fast one."""
         if not has_compiler():
             self._may_change = False
-            why = f"{SWITCH} tells not to compile" if is_switched_off() else "is not installed"
+            switches = [name for name, is_set in ((SWITCH, is_switched_off()), (INTERPRET, is_interpreted())) if is_set]
+            why = f"{switches[0]} tells not to compile" if switches else "is not installed"
             note = f"the engine fast needs numba, which {why}: this run goes on with the reference engine"
             print(f"note: {note}", file=sys.stderr)
             return

@@ -20,9 +20,9 @@ def end_of_clock(stage: Stage, epoch: int, end: float, due: float, ahead: bool) 
         return "quiet", None
     last = clock_time(epoch, end, stage.epoch_length, stage.start_time)
     contact = clock_time(epoch, due, stage.epoch_length, stage.start_time)
-    when = "" if np.isinf(due) else f", due then or later (t = {contact:g})"
+    what = "may still be ahead" if np.isinf(due) else f"is still ahead, due then or later (t = {contact:g})"
     return "digits", (
-        f"the clock of this scene ends at t = {last:g}, and a contact may still be ahead{when}; "
+        f"the clock of this scene ends at t = {last:g}, and a contact {what}; "
         "a scene that begins from the state of this end counts its time anew"
     )
 

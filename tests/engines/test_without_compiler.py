@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -11,8 +12,22 @@ import pytest
 pytest.importorskip("numba")
 
 
+def interpreted(*words: str) -> dict[str, object]:
+    environment = os.environ | {"EVENTSIM_INTERPRET": "1"}
+    command = [sys.executable, "-m", "eventsim", "run", *words, "--json", "--digest"]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
+    return dict(json.loads(done.stdout))
+
+
+@pytest.mark.parametrize("words", [("bounce", "--until", "2"), ("gas", "--set", "n=30", "--events", "60")])
+def test_kernels_run_as_plain_python_with_the_same_bits(words):
+    kernels, reference = (interpreted(*words, "--engine", engine) for engine in ("fast", "reference"))
+    assert (kernels["engine"], kernels["compile_s"]) == ("fast", 0.0)
+    assert kernels["digest"] == reference["digest"]
+
+
 def without_compiler(*words: str) -> subprocess.CompletedProcess[str]:
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "EVENTSIM_INTERPRET": ""}
     command = [sys.executable, "-m", "eventsim", *words]
     return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
 
@@ -21,7 +36,8 @@ def test_the_fast_engine_says_that_it_may_not_compile():
     done = without_compiler("run", "two-disks", "--events", "5", "--engine", "fast")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
-        "Error: the engine fast is compiled, and NUMBA_DISABLE_JIT is set: unset it, or take the engine reference\n"
+        "Error: the engine fast is compiled, and NUMBA_DISABLE_JIT is set: unset it, take the engine reference, "
+        "or set EVENTSIM_INTERPRET to run kernels as plain Python\n"
     )
 
 

@@ -13,9 +13,8 @@ import math
 from eventsim.engines.fast.advance import pulls
 from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline, part
-from eventsim.engines.fast.lanes import gather_disks
 from eventsim.engines.fast.layout import COLUMN, FIRST_LEVEL, FLAGS, RADIUS, REALS, ROW, WORDS, Grid
-from eventsim.engines.fast.memory import real, store, word
+from eventsim.engines.fast.memory import gather_disks, real, store, word
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER, sqrt
 

@@ -12,9 +12,9 @@ from eventsim.engines.base import Motion
 from eventsim.engines.fast import layout
 from eventsim.engines.fast.buffers import ROOM, Buffers
 from eventsim.engines.fast.grids import Grids
-from eventsim.engines.fast.lanes import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
+from eventsim.engines.fast.memory import lanes_work
 from eventsim.engines.fast.memory_order import along_a_curve
 from eventsim.engines.fast.plan import ORDERED_DISKS, Sizes, day_length, shortest_day
 from eventsim.engines.fast.rules import features_of, images_of, rules_of, supports_of

@@ -5,7 +5,6 @@ from __future__ import annotations
 from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.event_order import earlier
-from eventsim.engines.fast.lanes import contact_of_eight, gather_disks
 from eventsim.engines.fast.last_contact import partner_just_met
 from eventsim.engines.fast.layout import (
     COLUMN,
@@ -26,7 +25,7 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.levels import gather_near
-from eventsim.engines.fast.memory import either, real, store, word
+from eventsim.engines.fast.memory import contact_of_eight, either, gather_disks, real, store, word
 from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.formulas.doubt import may_tie
 from eventsim.formulas.real import NEVER

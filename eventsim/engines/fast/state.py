@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines.base import Snapshot
+from eventsim.engines.exact_state import ExactState, Met
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     CONTACT_TIME,
@@ -38,15 +40,22 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.plan import days_of
-from eventsim.engines.reference.state import EngineState, Met
 from eventsim.engines.turnover import Anchors
 from eventsim.errors import EventsimError
+from eventsim.formulas.clock import FIRST_WINDOW
 from eventsim.formulas.rest import SUPPORTED, held_by
 from eventsim.record.events import Floats
 from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
 LINE, PAGE = 64, 4096
+
+COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
+"""What a snapshot has one number of for every disk."""
+
+LOW_COLUMNS, LOW_PLACES = ("low_vx", "low_vy"), ("low_x", "low_y")
+"""The same, where velocities or places have low parts."""
+
 Integers = NDArray[np.int32]
 
 
@@ -171,7 +180,7 @@ class MetColumn:
         return (int(self._state.place_of[other]) if other >= 0 else other - 1), kx, ky
 
 
-class FastState(EngineState):
+class FastState(ExactState):
     """The flights of n disks in records, with the reference engine's names for what is in them.
 
     memory: the records, and the calendar's buckets behind them.
@@ -233,6 +242,11 @@ class FastState(EngineState):
         self.low_places = stage.low_places
         self.low_of_places: Floats = np.zeros((n if stage.low_places else 0, 2))
         self.low_x, self.low_y = (Column(self.low_of_places[:, axis], self.place_of) for axis in (0, 1))
+        self._columns = (
+            *COLUMNS,
+            *(LOW_COLUMNS if stage.low_parts else ()),
+            *(LOW_PLACES if stage.low_places else ()),
+        )
         self.supports = stage.supports
         self._radius = stage.radius.tolist()
         self.sides = self.sides_in_memory = None
@@ -257,6 +271,11 @@ class FastState(EngineState):
     def window_rows(self, rows: int) -> None:
         self._counts[WINDOW_ROWS] = rows
 
+    @property
+    def last_begun(self) -> float:
+        """When the last of all flights began."""
+        return float(self.t.every().max())
+
     def anchors(self) -> Anchors:
         """Where all flights begin."""
         columns = (self.t, self.x, self.y, self.vx, self.vy, self.gravity_x, self.gravity_y)
@@ -265,6 +284,41 @@ class FastState(EngineState):
     def meet(self, i: int, met: Met) -> None:
         """Let disk i remember whom it met; its record says as well whether it rests."""
         self.met[i] = met
+
+    def snapshot(self) -> Snapshot:
+        """A copy of all that the future depends on."""
+        return Snapshot(
+            epoch=self.epoch,
+            window=self.window,
+            window_rows=self.window_rows,
+            now=self.now,
+            met=tuple(self.met[i] for i in range(self.n)),
+            sides=self.sides_of_all(),
+            **{name: tuple(getattr(self, name).every().tolist()) for name in self._columns},
+        )
+
+    def restore(self, saved: Snapshot) -> None:
+        """Fly on, and count the rows of the window, as a snapshot says."""
+        self.window_rows = saved.window_rows
+        self.begin_window(saved.window)
+        for name in self._columns:
+            getattr(self, name).set_all(getattr(saved, name))
+        self.forget_all()
+        for i, met in enumerate(saved.met):
+            if met:
+                self.met[i] = met
+        self.set_sides(saved.sides)
+        self.close()
+
+    def begin(self, stage: Stage) -> None:
+        """Fly as at the beginning, where all but the flights is zero."""
+        self.window_rows = 0
+        self.begin_window(FIRST_WINDOW)
+        for name in ("x", "y", "vx", "vy"):
+            getattr(self, name).set_all(getattr(stage, name))
+        self.contact_time.set_all(-np.inf)
+        self.forget_all()
+        self.set_sides(())
 
     def forget_all(self) -> None:
         """Let all disks forget whom they met."""

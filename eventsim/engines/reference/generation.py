@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from eventsim.engines.exact_state import ExactState
 from eventsim.engines.exact_times import ExactTimes, Flight, exact_place
 from eventsim.engines.reference.calendar import Event
-from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER, Acceleration
 from eventsim.formulas.roots import order_of
@@ -17,7 +17,7 @@ class Ties:
     Contacts that only share a float time are no cluster; those whose exact times are equal are one.
     """
 
-    def __init__(self, stage: Stage, state: EngineState) -> None:
+    def __init__(self, stage: Stage, state: ExactState) -> None:
         self._stage = stage
         self._state = state
         self._moments = ExactTimes(stage, self._exact_flight)

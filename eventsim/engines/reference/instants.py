@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from eventsim.engines.reference.state import EngineState
+from eventsim.engines.exact_state import ExactState
 from eventsim.formulas.real import Real
 from eventsim.formulas.rest import AT_ONCE, is_still, kept_up_instant, kept_up_way
 from eventsim.scene.stage import Stage
@@ -53,7 +53,7 @@ class Instants:
     share: of the clock, within which contacts are at one instant; None: what suits the scene.  limit: so many are too many.
     """
 
-    def __init__(self, stage: Stage, state: EngineState, share: float | None) -> None:
+    def __init__(self, stage: Stage, state: ExactState, share: float | None) -> None:
         self._state = state
         usual, self.limit = instant_of(stage)
         self._share = usual if share is None else share

@@ -6,8 +6,8 @@ import math
 from typing import Any, TypeAlias
 
 from eventsim.engines.base import Counters
+from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.masses import Masses
-from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.impulse import wall_impulse
 from eventsim.formulas.real import Real
 from eventsim.record.events import Kind
@@ -20,7 +20,7 @@ MISSING = math.nan
 class Ledger:
     """Books into `counters`, and keeps rows if asked to."""
 
-    def __init__(self, stage: Stage, state: EngineState, masses: Masses, counters: Counters, keep_rows: bool) -> None:
+    def __init__(self, stage: Stage, state: ExactState, masses: Masses, counters: Counters, keep_rows: bool) -> None:
         self._stage = stage
         self._state = state
         self._masses = masses

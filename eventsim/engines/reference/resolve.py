@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from eventsim.engines.base import Counters
+from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
 from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
-from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import flat_update, pair_update, wall_update
 from eventsim.formulas.low_place import Low, apart
@@ -30,7 +30,7 @@ class Resolver:
     """Share of the clock within which contacts are at one instant; None: what suits the scene."""
     ledger: type[Ledger] = Ledger
 
-    def __init__(self, stage: Stage, state: EngineState, counters: Counters, keep_rows: bool) -> None:
+    def __init__(self, stage: Stage, state: ExactState, counters: Counters, keep_rows: bool) -> None:
         self._stage = stage
         self._state = state
         self._counters = counters

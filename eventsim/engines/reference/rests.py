@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from eventsim.engines.base import Counters
+from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger
-from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.real import Real
 from eventsim.formulas.rest import LEFT, SUPPORTED, held_by
 from eventsim.formulas.walls.face import slope
@@ -34,7 +34,7 @@ class Rests:
     def __init__(
         self,
         stage: Stage,
-        state: EngineState,
+        state: ExactState,
         radius: list[Real],
         instants: Instants,
         ledger: Ledger,

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 from eventsim.engines.collapse import named
+from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
-from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.doubt import is_sunk
 from eventsim.scene.stage import Stage
 
@@ -19,7 +19,7 @@ from eventsim.scene.stage import Stage
 class Sunk:
     """Knows which contacts of one run close a gap that is below the digits."""
 
-    def __init__(self, stage: Stage, state: EngineState) -> None:
+    def __init__(self, stage: Stage, state: ExactState) -> None:
         self._stage = stage
         self._state = state
         self._looks = can_sink(stage)

@@ -23,7 +23,7 @@ else:
     import numba
     from numba import njit
 
-    from eventsim.engines.fast import compiled  # makes the formulas callable from kernels
+    from eventsim.engines.fast import numba_compiler as compiled  # makes the formulas callable from kernels
 
     COMPILED = True
     config: Any = numba.config  # its settings are made when it is imported

@@ -4,7 +4,7 @@ import pytest
 
 pytest.importorskip("numba")
 
-from eventsim.engines.fast import compiled
+from eventsim.engines.fast import numba_compiler as compiled
 
 
 def half(x):

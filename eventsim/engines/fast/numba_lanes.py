@@ -13,7 +13,7 @@ from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
 from eventsim.engines.fast.layout import REALS
-from eventsim.engines.fast.memory import F64, I8, I32, I64, V8, call, f64, i64, place
+from eventsim.engines.fast.numba_memory import F64, I8, I32, I64, V8, call, f64, i64, place
 from eventsim.formulas.contact import DIGITS_LOST, NEAR, SMALLEST
 from eventsim.formulas.doubt import CLOCK_BITS
 

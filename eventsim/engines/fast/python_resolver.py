@@ -14,15 +14,15 @@ from eventsim.engines.fast.instant import contacts_between, due_at
 from eventsim.engines.fast.machine import Machine
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.generation import Ties, components, disks_of, row_order
-from eventsim.engines.reference.loop import endless, refused
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.sunk import Sunk
+from eventsim.engines.reference.unresolvable import endless, refused
 from eventsim.formulas.doubt import latest_tie
 from eventsim.formulas.simultaneous import SqueezedError
 
 
-class Rulings:
+class PythonResolver:
     """Resolves by rules, in the memory of a machine, and predicts anew what that changes.
 
     reason: a sentence on why a run stops here, None where it goes on.  refused: whether the rules have no answer.

@@ -1,0 +1,233 @@
+"""How Python becomes machine code here: the two decorators, where compiled kernels are kept, the formulas made callable."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache, partial
+from pathlib import Path
+from time import perf_counter
+from types import ModuleType
+from typing import Any
+from uuid import uuid4
+
+from llvmlite import binding
+from numba import cfunc, config, njit, types
+from numba.core import event
+from numba.extending import overload, register_jitable
+
+from eventsim.formulas import (
+    careful_impulse,
+    contact,
+    crossing,
+    digits,
+    doubt,
+    expansion,
+    impulse,
+    low_place,
+    motion,
+    parabola,
+    real,
+    rest,
+)
+from eventsim.formulas.walls import point
+from eventsim.record import events
+from eventsim.scene.walls import SHAPES
+
+SOURCES = Path(__file__).parent, Path(motion.__file__).parent, Path(events.__file__)
+"""The folders and the file that a compiled kernel is made from: numba itself would not notice an edit in another file."""
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels are kept: in the user's cache, by a hash of the sources."""
+    if "EVENTSIM_CACHE_DIR" in os.environ:
+        base = Path(os.environ["EVENTSIM_CACHE_DIR"])
+    elif sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA", Path.home())) / "eventsim"
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches" / "eventsim"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "eventsim"
+    return base / f"fast-{_hash_of_sources()}"
+
+
+def _hash_of_sources() -> str:
+    digest = hashlib.sha256()
+    for source in SOURCES:
+        for path in sorted(source.rglob("*.py")) or [source]:
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def is_warm(kind: str) -> bool:
+    """Whether the kernels for scenes of this kind are on disk."""
+    return (_FOLDER / f"{kind}.ready").exists()
+
+
+def mark_warm(kind: str) -> None:
+    """Note that the kernels for scenes of this kind are on disk."""
+    try:
+        _FOLDER.mkdir(parents=True, exist_ok=True)
+        (_FOLDER / f"{kind}.ready").touch()
+    except OSError:  # no folder to write to: they will be compiled again
+        return
+
+
+@contextmanager
+def timed_compiling(note: Callable[[float], None]) -> Iterator[None]:
+    """Report the seconds spent on compiling inside; say so first where somebody watches."""
+    with event.install_listener("numba:compile", _Watcher(note)):
+        yield
+
+
+def is_compiling() -> bool:
+    """Whether a kernel is being compiled: it has not begun to work, so an interrupt may break in."""
+    return _Watcher.at_work > 0
+
+
+class _Watcher(event.Listener):
+    """Sums up the outermost of nested compilations."""
+
+    told = False
+    at_work = 0
+
+    def __init__(self, note: Callable[[float], None]) -> None:
+        self._note = note
+        self._depth = 0
+        self._began = 0.0
+
+    def on_start(self, event: Any) -> None:
+        if self._depth == 0:
+            self._began = perf_counter()
+            if not _Watcher.told and sys.stderr.isatty():
+                print("compiling the fast engine (once) ...", file=sys.stderr)
+            _Watcher.told = True
+            _Watcher.at_work += 1
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        self._depth -= 1
+        if self._depth == 0:
+            _Watcher.at_work -= 1
+            self._note(perf_counter() - self._began)
+
+
+def _once(compiler: Callable[..., Any], function: Callable[..., Any]) -> Any:
+    """A compiled part, one for all whole numbers: numba would compile it anew for each constant that is handed over."""
+    part = compiler(function)
+    template = part.get_call_template
+
+    def get_call_template(arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+        return template(tuple(map(_widened, arguments)), {name: _widened(kind) for name, kind in keywords.items()})
+
+    part.get_call_template = get_call_template
+    return part
+
+
+def _widened(kind: Any) -> Any:
+    """The type of a constant without its value."""
+    if isinstance(kind, types.Tuple):
+        return types.Tuple([_widened(item) for item in kind])
+    return types.unliteral(kind)
+
+
+inline = partial(_once, njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True))
+"""A part of a kernel; without force a small helper stays a real call, which costs a fifth of the rate."""
+
+
+part = partial(_once, njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True))
+"""A part that is rarely reached, and stays a call of its own."""
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """A compiled function that Python calls; kept on disk where that is possible.  Other threads go on meanwhile."""
+    return _kept(partial(njit, nogil=True), function)
+
+
+def _kept(compiler: Callable[..., Any], function: Callable[..., Any], *signature: Any) -> Any:
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(_FOLDER)  # read when the function is decorated; the caller's own setting is left alone
+    try:
+        kept = compiler(*signature, error_model="numpy", cache=True)(function)
+    except RuntimeError:  # no folder to write to
+        return compiler(*signature, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = before
+    name_apart(kept)
+    return kept
+
+
+def name_apart(kept: Any) -> None:
+    """Let no two processes give one name to two kernels.
+
+    numba numbers the files of a function's versions by the index that it has read; two processes that compile at one time would
+    write different machine code under one number, and one of them would later be run with the other's arguments.
+    """
+    files = getattr(
+        kept._cache, "_cache_file", None
+    )  # numba's own affair: where it is not there, names stay as they are
+    if files is not None:
+        files._data_name_pattern = files._data_name_pattern.replace("{number:d}", "{number:d}." + _THIS_PROCESS)
+
+
+_FOLDER = cache_folder()
+_THIS_PROCESS = uuid4().hex[:8]
+
+_CAREFUL = types.float64(*[types.float64] * 15)
+_careful = types.ExternalFunction("eventsim_careful_pair_delay", _CAREFUL)
+_HAND = types.float64(*[types.float64] * 8)
+_hand = types.ExternalFunction("eventsim_exact_hand", _HAND)
+LINKED = digits.careful_pair_delay, point.exact_hand
+"""Formulas that kernels call by their names."""
+
+
+@cache
+def link() -> Any:
+    """Give kernels what they call by its name: compiled once, and not once more in every kernel; the owner of its memory."""
+    careful = _kept(cfunc, digits.careful_pair_delay, _CAREFUL)
+    hand = _kept(cfunc, point.exact_hand, _HAND)
+    binding.add_symbol(_careful.symbol, careful.address)
+    binding.add_symbol(_hand.symbol, hand.address)
+    return careful, hand
+
+
+@overload(digits.careful_pair_delay)
+def _careful_pair_delay(xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side=1.0):
+    return lambda xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side=1.0: _careful(
+        xi, yi, ui, wi, ti, ri, xj, yj, uj, wj, tj, rj, shift_x, shift_y, side
+    )
+
+
+@overload(point.exact_hand)
+def _exact_hand(x, y, vx, vy, gx, gy, px, py):
+    return lambda x, y, vx, vy, gx, gy, px, py: _hand(x, y, vx, vy, gx, gy, px, py)
+
+
+@overload(real.is_float, jit_options={"forceinline": True})
+def _is_float(x):
+    return lambda x: True
+
+
+@overload(real.sqrt, jit_options={"forceinline": True})
+def _sqrt(x):  # without annotations: numba compares them with those of the lambda
+    if isinstance(x, types.Float):
+        return lambda x: math.sqrt(x)
+    return None
+
+
+def _register(module: ModuleType, **options: Any) -> None:
+    for function in vars(module).values():
+        own = getattr(function, "__module__", None) == module.__name__
+        if own and callable(function) and not isinstance(function, type) and function not in LINKED:
+            register_jitable(**options)(function)
+
+
+for _module in (motion, contact, doubt, impulse):
+    _register(_module, forceinline=True, error_model="numpy")
+_shapes = [sys.modules[shape.__module__] for shape in SHAPES]
+for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, point, rest, *_shapes):
+    _register(_module, error_model="numpy")

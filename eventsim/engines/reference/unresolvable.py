@@ -1,0 +1,50 @@
+"""Why contacts of an instant cannot be resolved, in words: they do not end, or nothing moves what they press on."""
+
+from __future__ import annotations
+
+from eventsim.engines.collapse import LIES_STILL, named
+from eventsim.engines.exact_state import ExactState
+from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.rests import TwoSupportsError
+from eventsim.formulas.simultaneous import SqueezedError
+from eventsim.scene.stage import Stage
+
+
+def endless(state: ExactState, stage: Stage, i: int) -> tuple[str, str]:
+    """An instant that does not end: why a run stops there, and a sentence on disk i, those around it and what is known."""
+    inelastic = stage.law.loses_energy()
+    what = "collapse" if inelastic or stage.gravity is not None else "digits"
+    pile = _pile(state, i)
+    if what == "digits":
+        cause = "at this instant do not end"
+    elif all(state.vx[j] == state.vy[j] == 0.0 for j in pile):
+        cause = f"have no bounce: {LIES_STILL}"
+    else:
+        cause = (
+            "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
+            f"on a round one); {stage.law.remedy()}"
+        )
+    x, y = (float(at) for at in state.place(i, state.now))
+    x, y = x + stage.corner[0], y + stage.corner[1]
+    return what, f"the contacts of {named(pile)} at ({x:g}, {y:g}) {cause}"
+
+
+def _pile(state: ExactState, i: int) -> list[int]:
+    """Disk i, and those that it is piled up with: one of two met the other one last, just now and over and over."""
+    again = [j for j in range(state.n) if state.at_once[j] > 1 and state.contact_time[j] == state.contact_time[i]]
+    pile, added = {i}, {i}
+    while added:
+        near = {j for j in again for one in added if any(met[0] == one for met in state.met[j])}
+        near |= {met[0] for one in added for met in state.met[one] if met[0] in again}
+        added = near - pile
+        pile |= added
+    return sorted(pile)
+
+
+def refused(error: SqueezedError | TwoSupportsError, component: list[Event]) -> tuple[str, str]:
+    """A cluster that no impulses part, or a disk on two walls: why a run stops there, and a sentence on the disks."""
+    if isinstance(error, TwoSupportsError):
+        return "collapse", str(error)
+    disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
+    names = ", ".join(map(str, disks))
+    return "collapse", f"of disks {names} one is squeezed between others, or walls, that it cannot deflect"
