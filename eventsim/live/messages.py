@@ -15,8 +15,11 @@ from eventsim.live.source import MOST_DISKS, BuiltIn, Source, Text
 FARTHEST = 1e15
 """Bound on every number a page sends: farther or faster is a mistake, and squares stay finite."""
 
-RATES = (1.0, 1000.0)
-"""Frames per second of the per-frame engine in a comparison."""
+RATES = (1.0, 10_000.0)
+"""Steps per second of the other engine in a comparison."""
+
+OPPONENTS = ("frames", "stepped", "penalty", "pymunk")
+"""The engines to compare with; the first where a page names none."""
 
 
 class MessageError(EventsimError):
@@ -25,11 +28,12 @@ class MessageError(EventsimError):
 
 @dataclass(frozen=True, slots=True)
 class Open:
-    """Begin with a scene; source None: the one the server was started with. rate: frames per second of the per-frame
-    engine beside it, None without."""
+    """Begin with a scene; source None: the one the server was started with. rate: steps per second of the engine beside it,
+    None without; opponent: which."""
 
     source: Source | None
     rate: float | None
+    opponent: str = OPPONENTS[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +190,8 @@ def _open(fields: Fields) -> Open:
         source = Text(fields.text("text", 1_000_000))
     rate = None if fields.data.get("rate", 0) is None else fields.number("rate", *RATES)
     fields.data.pop("rate", None)
-    return Open(source, rate)
+    opponent = fields.choice("opponent", *OPPONENTS) if "opponent" in fields.data else OPPONENTS[0]
+    return Open(source, rate, opponent)
 
 
 def _menu(fields: Fields) -> Menu:

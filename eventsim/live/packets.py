@@ -21,7 +21,10 @@ def packet(kind: str, columns: Sequence[PackedColumn] = (), **header: Any) -> by
 def rows_packet(track: int, rows: Rows, horizon: float, ended: str | None) -> bytes:
     """Return rows of a track, and the time until which they are all.
 
-    track: 0 the event-driven engine, 1 the per-frame engine. ended: why there are no more, None while there are.
+    track: 0 the event-driven engine, whose rows the page flies disks between; 1 another one, which tells their places, too:
+    its disks do not fly free. ended: why there are no more, None while there are.
     """
     columns = [*row_columns(rows), ("impulse", "f8", rows["impulse"])]
+    if track:
+        columns += [(name, "f8", rows[name]) for name in ("xa", "ya", "xb", "yb")]
     return packet("rows", columns, track=track, horizon=horizon, ended=ended)

@@ -13,12 +13,11 @@ import numpy as np
 
 from eventsim.compiler import has_compiler
 from eventsim.errors import EventsimError
-from eventsim.live.messages import Move, Open, Resize, Throw
+from eventsim.live.described import gas_of, settings_of
+from eventsim.live.messages import OPPONENTS, Move, Open, Resize, Throw
 from eventsim.live.packets import packet
 from eventsim.live.source import demand_few
 from eventsim.live.track import Track
-from eventsim.measure.ensemble import ensemble_of
-from eventsim.measure.records import FEW
 from eventsim.record.events import State
 from eventsim.replay.replay import Replay
 from eventsim.scene import Box, Disks, Scene
@@ -46,7 +45,7 @@ CROSSING_SECONDS = 5.0
 """Where there is no such span: how long a disk of usual speed takes to cross the picture."""
 
 MOST_PER_FRAME = 1000
-"""Disks in a comparison: the per-frame engine, and the page that looks for overlaps, go through all pairs in each frame."""
+"""Disks in a comparison: some engines, and the page that looks for overlaps, go through all pairs in each frame."""
 
 MANY = 500
 """Disks from which on the fast engine is worth its start: with fewer, the reference engine is ahead of any viewer."""
@@ -68,6 +67,7 @@ class World:
         self.scene: Scene | None = None
         self.speed = 1.0
         self._rate: float | None = None
+        self._opponent = OPPONENTS[0]
         self._given = given
         self._room = room
         self._abandoned = abandoned
@@ -103,6 +103,7 @@ class World:
             scene = self._given if source is None else await asyncio.to_thread(source.scene)
             assert scene is not None
             pace = None if source is None else source.pace
+            self._opponent = message.opponent
             await self._begin(scene, message.rate, "open", pace)
 
     async def throw(self, message: Throw) -> None:
@@ -112,7 +113,7 @@ class World:
             if len(self.tracks) == 1:
                 self.tracks[0].kick(message.disk, message.velocity)
                 return
-            # The per-frame engine cannot go back: both begin anew, with the same start.
+            # Engines that go step by step cannot go back: both begin anew, with the same start.
             state.velocity[message.disk] = message.velocity
             await self._begin(self._scene_from(state), self._rate, "throw", self.speed)
 
@@ -152,13 +153,14 @@ class World:
         tracks = [track]
         if rate is not None:
             try:
-                tracks.append(await asyncio.to_thread(_per_frame, scene, speed / rate))
+                tracks.append(await asyncio.to_thread(_beside, scene, self._opponent, speed / rate))
             except EventsimError as error:
                 notice = f"nothing to compare with: {error}"
         self.scene, self.tracks = scene, tracks
         self.edition += 1
         self._rate, self.speed = rate, speed
-        about = {"edition": self.edition, "world": self.id, "why": why, "rate": rate, "notice": notice}
+        about = {"edition": self.edition, "world": self.id, "why": why, "notice": notice}
+        about |= {"rate": rate, "opponent": self._opponent}
         self.opened = packet("opened", columns, **header, **about, tracks=len(tracks))
         for viewer in self.viewers:
             viewer.begin(speed)
@@ -262,16 +264,17 @@ def _scouted(scene: Scene, pace: float | None) -> tuple[Track, float, dict[str, 
         "borders": len(replay.stage.boundaries),
         "scene": scene_description(replay.stage),
         "stage": stage,
-        "gas": _gas(scene),
+        "gas": gas_of(scene),
+        "settings": settings_of(scene),
     }
     return track, speed, header, start_columns(replay)
 
 
-def _per_frame(scene: Scene, frame: float) -> Track:
-    """Return the track of the per-frame engine; raise EventsimError for scenes that are not for it."""
+def _beside(scene: Scene, engine: str, frame: float) -> Track:
+    """Return the track of another engine; raise EventsimError for scenes that are not for it."""
     if len(scene.disks) > MOST_PER_FRAME:
         raise EventsimError(f"a comparison is for at most {MOST_PER_FRAME} disks, and there are {len(scene.disks)}")
-    return Track(scene, "frames", returns=False, dt=frame)
+    return Track(scene, engine, returns=False, dt=frame)
 
 
 def _resizable(scene: Scene) -> bool:
@@ -283,19 +286,3 @@ def _usual_speed(scene: Scene) -> float:
     if scene.until is None or not scene.until > scene.start_time:
         return 0.0
     return (scene.until - scene.start_time) / SECONDS
-
-
-def _gas(scene: Scene) -> dict[str, Any]:
-    """What read-outs need to know of the scene as a gas; null where `measure` has a dash, with the reason."""
-    ensemble = ensemble_of(scene)
-    disks, kept = scene.disks, ensemble.kept_momenta
-    return {
-        "freedoms": ensemble.freedoms,
-        "kept": [axis < kept for axis in range(2)],
-        "mass": float(disks.mass[ensemble.counted].sum()),
-        "middle": ensemble.middle,
-        "area": ensemble.area,
-        "noTemperature": ensemble.no_temperature,
-        "noPressure": ensemble.no_pressure,
-        "maxwell": ensemble.simple and ensemble.n >= FEW,
-    }

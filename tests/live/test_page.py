@@ -3,11 +3,13 @@
 import time
 from urllib.parse import urlsplit
 
+import numpy as np
 import pytest
 
 import eventsim as es
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
+from eventsim.validation.judge.matching import assigned
 from tests.live.driven import CLOSE, Page
 from tests.live.running import live_server
 from tests.show.browser import browser
@@ -202,8 +204,39 @@ def test_side_by_side_with_the_per_frame_engine(page):
     assert f"{astray} of 40 astray" in told
     assert f"{overlapping} pairs overlap" in told
     assert astray > 0
+    counts = page.js(
+        "const m = live.player.comparison.matching, t = live.player.view.time;"
+        "return [0.2, 0.5, 0.8, 1.0].map((share) => m.counts(share * t))"
+    )
+    for name in ("found", "missed", "surplus", "astray"):  # what was missed stays missed
+        assert [count[name] for count in counts] == sorted(count[name] for count in counts)
+    assert counts[-1]["found"] > 0
+    assert counts[-1]["missed"] > 0
     page.fill(compare=False)
     assert page.js("return live.player.comparison === null && live.part('beside').hidden")
+
+
+@pytest.mark.parametrize("opponent", ["stepped", "pymunk"])
+def test_another_opponent_knows_restitution_and_gravity(page, opponent):
+    if opponent == "pymunk":
+        pytest.importorskip("pymunk")
+    page.open(f"count=12&speed=200&gravity=300&restitution=0.9&seed=2&rate=240&opponent={opponent}")
+    page.wait("live.player.comparison && live.player.duration > 0.5")
+    page.js("live.player.seek(0.4)")
+    assert {"stepped": "fixed steps", "pymunk": "Chipmunk"}[opponent] in page.js("return live.part('differences').textContent")
+    assert "contact_duration 0.02" in page.js("return live.part('settings').textContent")
+    assert "contact_duration" in page.js("return live.part('exact').textContent")
+    assert page.js("return live.menu.field('opponent').value") == opponent
+
+
+def test_the_page_matches_contacts_as_the_judgement_does(page):
+    page.open("count=2")
+    numbers = np.random.default_rng(5)
+    for _ in range(20):
+        exact, told = (sorted(numbers.integers(0, 30, numbers.integers(0, 5)).tolist()) for _ in range(2))
+        assert [tuple(pair) for pair in page.js("return assigned(arguments[0], arguments[1], 4)", exact, told)] == assigned(
+            exact, told, 4
+        )
 
 
 def test_two_windows_on_one_world(page):

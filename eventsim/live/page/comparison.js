@@ -1,16 +1,21 @@
 "use strict";
-/* The comparison: the same start in the per-frame engine, and what it does differently lit up. */
+/* The comparison: the same start in an engine that goes step by step, and what it does differently lit up. */
 
 const STUCK_FRAMES = 10, MISSED = "#d55e00", ASTRAY = "#e69f00";
 
 class Comparison {
-  /* exact, other: the two worlds; frame: the time of a frame. */
-  constructor(canvas, exact, other, stage, frame) {
+  /* exact, other: the two worlds; frame: the time of a step; name: of the other engine; given: what the scene has, in words. */
+  constructor(canvas, exact, other, stage, frame, name, given) {
+    this.name = name;
+    this.given = given;
     this.exact = exact;
     this.other = other;
     this.frame = frame;
     this.drawing = new Drawing(canvas, other, stage);
     this.begun = sums(other, other.state(0)).energy;
+    const start = other.state(0), square = start.vx.reduce((sum, vx, i) => sum + vx * vx + start.vy[i] * start.vy[i], 0);
+    const flown = square > 0 ? (0.2 * stage.usualRadius) / Math.sqrt(square / other.count) : 0;
+    this.matching = new Matching(exact, other, 2 * frame + flown);
   }
 
   /* Draw the other world, disks that overlap ringed in red, disks astray in yellow. The exact state is in exact.now. */
@@ -26,15 +31,19 @@ class Comparison {
     this._ring(state, new Set([...overlapping.values()].flat()), MISSED);
   }
 
+  /* Both worlds are known until a time: match what came before it. */
+  known(time) { this.matching.advance(time); }
+
   /* What to say below the two pictures. */
   told(time) {
-    const exact = this.exact.eventsUntil(time), other = this.other.eventsUntil(time), drift = this.begun ? 100 * (this.energy / this.begun - 1) : 0;
-    const difference = exact >= other ? `<b>${exact - other}</b> missed` : `<b>${other - exact}</b> too many`;
+    const count = (world) => world.eventsUntil(time).toLocaleString("en"), drift = this.begun ? 100 * (this.energy / this.begun - 1) : 0;
+    const { found, missed, surplus, astray } = this.matching.counts(time), number = (value) => value.toLocaleString("en");
+    const energy = Math.abs(drift) < 0.005 ? "unchanged" : `<b>${drift < 0 ? "−" : "+"}${Math.abs(drift).toFixed(2)} %</b>`;
     return {
-      exact: `<strong>event-driven</strong><br>${exact.toLocaleString("en")} contacts, each at its time`,
-      other: `<strong>per frame</strong><br>${other.toLocaleString("en")} contacts: ${difference}<br>` +
-        `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b class="astray">${this.astray.size}</b> of ${this.other.count} astray; ` +
-        `energy <b>${drift < 0 ? "−" : "+"}${Math.abs(drift).toFixed(2)} %</b>`,
+      exact: `<strong>event-driven</strong><br>${count(this.exact)} events, each at its time${this.given ? `<br>${this.given}` : ""}`,
+      other: `<strong>${this.name}</strong><br>of disks in place: ${number(found)} contacts found, <b>${number(missed)}</b> missed, <b>${number(surplus)}</b> too many` +
+        `<span class="faint" title="matched pair by pair within this time"> (± ${Number(this.matching.tolerance.toPrecision(2))})</span>; ${number(astray)} of disks astray<br>` +
+        `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b class="astray">${this.astray.size}</b> of ${this.other.count} astray; energy ${energy}`,
     };
   }
 

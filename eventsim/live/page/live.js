@@ -22,7 +22,7 @@ class LivePlayer extends Player {
     this.comparison = null;
     if (description.tracks > 1) {
       this.horizons.push(0);
-      this.comparison = new Comparison(this.part("frames"), world, description.begin(), this.stage, this.usualSpeed / description.rate);
+      this.comparison = new Comparison(this.part("frames"), world, description.begin(), this.stage, this.usualSpeed / description.rate, OPPONENTS[description.opponent], description.settings);
     }
   }
 
@@ -37,6 +37,7 @@ class LivePlayer extends Player {
     }
     // What an engine has given up does not hold back the other.
     this.horizons[track] = ended !== null && track > 0 ? Infinity : horizon;
+    if (this.comparison) this.comparison.known(Math.min(...this.horizons));
     this._extend();
   }
 

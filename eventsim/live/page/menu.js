@@ -3,6 +3,13 @@
 
 const NUMBERS = ["count", "packing", "speed", "gravity", "restitution", "seed"], WORDS = ["masses", "radii"];
 const OWN = "", GIVEN = "?";
+const OPPONENTS = { frames: "per frame", stepped: "fixed steps", penalty: "springs", pymunk: "Chipmunk (pymunk)" };
+const OPPONENT_WORDS = {
+  frames: "As in the course project: it knows boxes and elastic contacts; no restitution, no round walls.",
+  stepped: "Disks that overlap and approach are resolved after each step. It knows restitution, gravity, all walls.",
+  penalty: "Overlapping disks push each other apart like springs, for some 20 steps: give it many steps a second.",
+  pymunk: "A game engine that others wrote. It knows restitution and gravity; no round walls, no periodic boundaries.",
+};
 
 class Menu {
   /* form: the element; part: finds elements by name; size(): the size of the picture in pixels. */
@@ -12,7 +19,8 @@ class Menu {
     this.size = size;
     this.text = null;
     this.field("scene").addEventListener("change", () => { this.text = null; this._choose(); });
-    this.field("compare").addEventListener("change", () => this._choose());
+    this.field("opponent").append(...Object.entries(OPPONENTS).map(([name, words]) => new Option(words, name)));
+    for (const name of ["compare", "opponent"]) this.field(name).addEventListener("change", () => this._choose());
     part("dice").addEventListener("click", () => {
       this.field("seed").value = String(Math.floor(Math.random() * 1e6));
       form.requestSubmit();
@@ -38,13 +46,14 @@ class Menu {
   /* What to ask the server for. size: of the box of an own scene, pixels. */
   message(size = this.size()) {
     const rate = this.field("compare").checked ? Number(this.field("rate").value) : null, scene = this.field("scene").value;
-    if (this.text !== null) return { type: "open", scene: "text", text: this.text, rate };
-    if (scene === GIVEN) return { type: "open", scene: "given", rate };
-    if (scene !== OWN) return { type: "open", scene: "gallery", name: scene, parameters: this._parameters(), rate };
+    const beside = rate === null ? { rate } : { rate, opponent: this.field("opponent").value };
+    if (this.text !== null) return { type: "open", scene: "text", text: this.text, ...beside };
+    if (scene === GIVEN) return { type: "open", scene: "given", ...beside };
+    if (scene !== OWN) return { type: "open", scene: "gallery", name: scene, parameters: this._parameters(), ...beside };
     const menu = { width: size[0], height: size[1] };
     for (const name of NUMBERS) menu[name] = Number(this.field(name).value);
     for (const name of WORDS) menu[name] = this.field(name).value;
-    return { type: "open", scene: "menu", menu, rate };
+    return { type: "open", scene: "menu", menu, ...beside };
   }
 
   /* The address of a message, after the #; null where it has none. */
@@ -56,7 +65,7 @@ class Menu {
     } else if (message.scene === "menu") {
       for (const [key, value] of Object.entries(message.menu)) found.set(key, String(value));
     } else return null;
-    if (message.rate !== null) found.set("rate", String(message.rate));
+    if (message.rate !== null) { found.set("rate", String(message.rate)); found.set("opponent", message.opponent); }
     return found.toString();
   }
 
@@ -64,11 +73,12 @@ class Menu {
   read(address) {
     const found = new URLSearchParams(address), scene = found.get("gallery");
     if (found.has("rate")) { this.field("compare").checked = true; this.field("rate").value = found.get("rate"); }
+    if (found.get("opponent") in OPPONENTS) this.field("opponent").value = found.get("opponent");
     if (scene !== null && this.gallery.has(scene)) this.field("scene").value = scene;
     else if (found.has("count")) this.field("scene").value = OWN;
     this._choose();
     for (const [key, value] of found) {
-      const field = key === "gallery" || key === "rate" ? null : this.field(scene === null ? key : `parameter.${key}`);
+      const field = ["gallery", "rate", "opponent"].includes(key) ? null : this.field(scene === null ? key : `parameter.${key}`);
       if (field) field.value = value;
     }
     const size = [Number(found.get("width")), Number(found.get("height"))];
@@ -86,7 +96,8 @@ class Menu {
     const entry = this.gallery ? this.gallery.get(this.field("scene").value) : undefined;
     this.part("own").hidden = !this.own;
     this.part("own").disabled = !this.own;
-    this.part("rate-of-frames").hidden = !this.field("compare").checked;
+    for (const name of ["rate-of-frames", "opponent", "opponent-words"]) this.part(name).hidden = !this.field("compare").checked;
+    this.part("opponent-words").textContent = OPPONENT_WORDS[this.field("opponent").value];
     this.part("about").hidden = !entry && this.text === null;
     this.part("about").textContent = this.text !== null ? "A scene file that you opened." : entry ? `${entry.title}. ${entry.about}`.replaceAll("`", "") : "";
     const fields = this.part("parameters"), named = entry ? Object.entries(entry.parameters) : [];

@@ -155,6 +155,8 @@ class LiveView {
     this.player._label();
     this.player.show();
     this._notice(header.notice);
+    this.part("settings").hidden = header.settings === null;
+    this.part("settings").textContent = header.settings || "";
     this.part("title").textContent = header.title;
     document.title = `${header.title} – eventsim live`;
     this.part("scene-file").href = `worlds/${header.world}/scene.toml`;

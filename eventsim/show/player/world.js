@@ -47,14 +47,15 @@ class World {
                  vx: new Float64Array(this.count), vy: new Float64Array(this.count) };
   }
 
-  /* Take up rows of the log, given as columns: epoch, remainder, a, b (-1: none), kind, wall, vxa, vya, vxb, vyb. */
+  /* Take up rows of the log, given as columns: epoch, remainder, a, b (-1: none), kind, wall, vxa, vya, vxb, vyb; of an engine whose
+     disks do not fly free also their places, xa, ya, xb, yb. */
   append(rows) {
     for (let k = 0; k < rows.a.length; k++) {
       const epoch = rows.epoch[k], remainder = rows.remainder[k];
       const rests = rows.kind[k] === REST, pull = rests ? this.slopes[rows.wall[k]] : this._pull(rows.a[k]);
       const met = rows.kind[k] <= WALL ? 1 : 0;
-      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull, met);
-      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]), met);
+      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull, met, rows.xa && [rows.xa[k], rows.ya[k]]);
+      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]), met, rows.xa && [rows.xb[k], rows.yb[k]]);
       const last = this.event.time.length ? this.event.time.values[this.event.time.length - 1] : 0;
       this.event.time.push(Math.max(epoch * this.epochLength + remainder, last));
       for (const name of ["a", "b", "kind", "wall"]) this.event[name].push(rows[name][k]);
@@ -86,6 +87,12 @@ class World {
       vy[i] = this._velocity("y", k, lag);
     }
     return this.now;
+  }
+
+  /* Where one disk is at a time, [x, y]. */
+  placeOf(i, time) {
+    const k = this.anchorsOf[i][this.anchorBefore(i, time)], lag = this._lag(k, time);
+    return [wrapped(this._place("x", k, lag), this.period[0]), wrapped(this._place("y", k, lag), this.period[1])];
   }
 
   /* How many contacts, with disks or walls, a disk has had at a time: kicks and the beginning of rest are none. */
@@ -142,11 +149,11 @@ class World {
     }
   }
 
-  _turn(i, epoch, remainder, vx, vy, pull, met) {
+  _turn(i, epoch, remainder, vx, vy, pull, met, place) {
     const k = this.anchorsOf[i][this.anchorsOf[i].length - 1];
     const lag = (epoch - this.anchor.epoch.values[k]) * this.epochLength + (remainder - this.anchor.remainder.values[k]);
-    const x = wrapped(this._place("x", k, lag), this.period[0]);
-    const y = wrapped(this._place("y", k, lag), this.period[1]);
+    const x = wrapped(place ? place[0] : this._place("x", k, lag), this.period[0]);
+    const y = wrapped(place ? place[1] : this._place("y", k, lag), this.period[1]);
     this._anchor(i, epoch, remainder, x, y, vx, vy, pull, this.anchor.contacts.values[k] + met);
   }
 

@@ -1,0 +1,35 @@
+"""What a page is told of a scene besides its picture: its contacts in words, and what read-outs need of it as a gas."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from eventsim.measure.ensemble import ensemble_of
+from eventsim.measure.records import FEW
+from eventsim.scene import Scene
+
+
+def settings_of(scene: Scene) -> str | None:
+    """What a scene has besides its disks and walls that changes its contacts, in words; None where it has nothing."""
+    if scene.restitution is None:
+        return None
+    words = f"restitution {scene.restitution.pair:g} between disks, {scene.restitution.wall:g} at walls"
+    if scene.contact_duration is not None:
+        words += f"; contact_duration {scene.contact_duration:g}: contacts of a disk that follow each other faster are elastic"
+    return words
+
+
+def gas_of(scene: Scene) -> dict[str, Any]:
+    """What read-outs need to know of the scene as a gas; null where `measure` has a dash, with the reason."""
+    ensemble = ensemble_of(scene)
+    disks, kept = scene.disks, ensemble.kept_momenta
+    return {
+        "freedoms": ensemble.freedoms,
+        "kept": [axis < kept for axis in range(2)],
+        "mass": float(disks.mass[ensemble.counted].sum()),
+        "middle": ensemble.middle,
+        "area": ensemble.area,
+        "noTemperature": ensemble.no_temperature,
+        "noPressure": ensemble.no_pressure,
+        "maxwell": ensemble.simple and ensemble.n >= FEW,
+    }
