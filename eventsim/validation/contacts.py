@@ -25,6 +25,9 @@ RESTARTS = 12
 STRETCH = 0.5
 """Mean free times that it is followed for."""
 
+IN_A_ROW = 1.5
+"""Steps: two impulses of the same disks that are nearer are of one contact, where an engine spreads them."""
+
 FEW_STEPS = 3
 """Steps that a stretch has at least."""
 
@@ -73,10 +76,21 @@ def census(truth: Truth, engine: Engine, options: StepOptions, dt: float) -> Cen
         state = truth.run.position[place], truth.run.velocity[place]
         session = engine.open(restarted(truth.stage, *state, time), options=options)
         rows = contacts_of(follow(session, [end, end + late]).rows)
+        rows = first_of_each(rows, IN_A_ROW * dt) if options.spread else rows
         ahead = exact[(exact["time"] > time) & (exact["time"] <= end)]
         behind = exact[(exact["time"] > end) & (exact["time"] <= end + late)]
         _count(total, ahead, rows[rows["time"] <= end], behind, rows[rows["time"] > end])
     return total
+
+
+def first_of_each(rows: Rows, within: float) -> Rows:
+    """Rows without those that follow one of the same two within a time: an impulse that goes over several steps is one contact."""
+    last: dict[Key, float] = {}
+    kept = np.zeros(len(rows), dtype=bool)
+    for place, (key, time) in enumerate(zip(keys_of(rows), rows["time"].tolist(), strict=True)):
+        kept[place] = time > last.get(key, -np.inf) + within
+        last[key] = time
+    return rows[kept]
 
 
 def _spread(count: int, most: int) -> Sequence[int]:

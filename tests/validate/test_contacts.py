@@ -5,7 +5,7 @@ import pytest
 
 from eventsim.record.events import Kind, blank_rows
 from eventsim.validation.compare import fitted_order
-from eventsim.validation.contacts import Census, _count, longest_stuck
+from eventsim.validation.contacts import Census, _count, first_of_each, longest_stuck
 
 
 def rows_of(*contacts):
@@ -61,3 +61,9 @@ def test_an_order_is_fitted_between_rounding_and_saturation():
     assert fitted_order(steps, 0.5 * steps**2) == pytest.approx(2.0, abs=0.01)
     assert np.isnan(fitted_order(steps, np.full(4, 2.0)))
     assert np.isnan(fitted_order(steps, np.full(4, 1e-15)))
+
+
+def test_an_impulse_over_several_steps_is_one_contact():
+    rows = rows_of((1.0, 0, 1), (1.1, 0, 1), (1.2, 0, 1), (1.2, 2, "wall"), (1.6, 0, 1))
+    assert first_of_each(rows, 0.15)["time"].tolist() == [1.0, 1.2, 1.6]
+    assert len(first_of_each(rows, 0.05)) == 5

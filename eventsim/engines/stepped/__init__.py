@@ -21,10 +21,11 @@ class StepOptions(Options):
     """What all stepped engines can be told.
 
     dt: the step, time; left out, a twentieth of the time in which a typical disk flies its radius.
-    late: steps by which rows may come after the contact.
+    late: steps by which rows may come after the contact.  spread: whether the impulse of one contact may go over steps in a row.
     """
 
     late: ClassVar[float] = 2.0
+    spread: ClassVar[bool] = False
 
     dt: float | None = option(None, "a time")
 
@@ -66,8 +67,11 @@ class PenaltyOptions(StepOptions):
 class ChipmunkOptions(StepOptions):
     """What `pymunk` can be told.
 
+    spread: of one contact, each with a row.
     iterations: of its solver in each step.  slop: an overlap that it leaves, length; left out: a part of the least radius.
     """
+
+    spread: ClassVar[bool] = True
 
     iterations: int = option(10, "a whole number")
     slop: float | None = option(None, "a length")

@@ -15,7 +15,8 @@ class Comparison {
     this.begun = sums(other, other.state(0)).energy;
     const start = other.state(0), square = start.vx.reduce((sum, vx, i) => sum + vx * vx + start.vy[i] * start.vy[i], 0);
     const flown = square > 0 ? (0.2 * stage.usualRadius) / Math.sqrt(square / other.count) : 0;
-    this.matching = new Matching(exact, other, 2 * frame + flown);
+    this.matching = new Matching(exact, other, 2 * frame + flown, name === OPPONENTS.pymunk ? 1.5 * frame : 0);
+    this.begunExact = sums(exact, exact.state(0)).energy;
   }
 
   /* Draw the other world, disks that overlap ringed in red, disks astray in yellow. The exact state is in exact.now. */
@@ -38,12 +39,14 @@ class Comparison {
   told(time) {
     const count = (world) => world.eventsUntil(time).toLocaleString("en"), drift = this.begun ? 100 * (this.energy / this.begun - 1) : 0;
     const { found, missed, surplus, astray } = this.matching.counts(time), number = (value) => value.toLocaleString("en");
+    const should = this.begunExact ? 100 * (sums(this.exact, this.exact.now).energy / this.begunExact - 1) : 0;
+    const lost = Math.abs(should) < 0.005 ? "" : ` (event-driven ${should < 0 ? "−" : "+"}${Math.abs(should).toFixed(2)} %)`;
     const energy = Math.abs(drift) < 0.005 ? "unchanged" : `<b>${drift < 0 ? "−" : "+"}${Math.abs(drift).toFixed(2)} %</b>`;
     return {
       exact: `<strong>event-driven</strong><br>${count(this.exact)} events, each at its time${this.given ? `<br>${this.given}` : ""}`,
       other: `<strong>${this.name}</strong><br>of disks in place: ${number(found)} contacts found, <b>${number(missed)}</b> missed, <b>${number(surplus)}</b> too many` +
         `<span class="faint" title="matched pair by pair within this time"> (± ${Number(this.matching.tolerance.toPrecision(2))})</span>; ${number(astray)} of disks astray<br>` +
-        `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b class="astray">${this.astray.size}</b> of ${this.other.count} astray; energy ${energy}`,
+        `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b class="astray">${this.astray.size}</b> of ${this.other.count} astray; energy ${energy}${lost}`,
     };
   }
 

@@ -7,8 +7,10 @@
 const IN_PLACE = 0.2;  // radii
 
 class Matching {
-  /* exact, other: worlds; tolerance: of times. */
-  constructor(exact, other, tolerance) {
+  /* exact, other: worlds; tolerance: of times; spread: rows of the other that follow one of the same disks within this time are of
+     the same contact, whose impulse goes over several steps. */
+  constructor(exact, other, tolerance, spread) {
+    this.spread = spread;
     this.exact = exact;
     this.other = other;
     this.tolerance = tolerance;
@@ -26,8 +28,10 @@ class Matching {
       for (; k < time.length && time.values[k] <= limit; k++) {
         if (kind.values[k] > WALL) continue;
         const key = kind.values[k] === WALL ? `${a.values[k]}|${wall.values[k]}` : `${a.values[k]},${b.values[k]}`;
-        if (!this.open.has(key)) this.open.set(key, { disks: kind.values[k] === WALL ? [a.values[k]] : [a.values[k], b.values[k]], lists: [[], []] });
-        this.open.get(key).lists[which].push(time.values[k]);
+        if (!this.open.has(key)) this.open.set(key, { disks: kind.values[k] === WALL ? [a.values[k]] : [a.values[k], b.values[k]], lists: [[], []], last: -Infinity });
+        const group = this.open.get(key), goesOn = which === 1 && time.values[k] <= group.last + this.spread;
+        if (which === 1) group.last = time.values[k];
+        if (!goesOn) group.lists[which].push(time.values[k]);
       }
       this.taken[which] = k;
     }
