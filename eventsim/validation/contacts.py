@@ -84,7 +84,7 @@ def census(truth: Truth, engine: Engine, options: StepOptions, dt: float) -> Cen
 
 
 def first_of_each(rows: Rows, within: float) -> Rows:
-    """Rows without those that follow one of the same two within a time: an impulse that goes over several steps is one contact."""
+    """Rows without those that follow one of the same two within a time: an impulse over several steps is one contact."""
     last: dict[Key, float] = {}
     kept = np.zeros(len(rows), dtype=bool)
     for place, (key, time) in enumerate(zip(keys_of(rows), rows["time"].tolist(), strict=True)):
