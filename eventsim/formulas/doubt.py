@@ -5,7 +5,7 @@ a contact time is known to about (last bits of the places) / (closing speed), an
 """
 
 from eventsim.formulas.clock import FIRST_WINDOW, window_length
-from eventsim.formulas.real import Real
+from eventsim.formulas.real import NEVER, Real
 
 UNIT = 2.0**-53
 """The relative error of one rounding to nearest."""
@@ -27,11 +27,56 @@ CLOCK_BITS = 1.0 + 2.0**-50
 """What the clock rounds: 4 to 8 units in the last place of a contact time; each is right to about two."""
 
 
+GAP_ROUNDINGS = 4.0
+"""Roundings in a gap: a place x + v lag has one of the lag, one of the product, one of the sum; the difference is one more."""
+
+CLOCK_ROUNDINGS = 2.0
+"""Roundings in the time of a contact: the delay's last bit, and the sum."""
+
+FAR = 64.0
+"""Distances in reaches from which on a contact time of round things is careful (`contact.DIGITS_LOST`)."""
+
 BELOW = 2.0**-50
 """A gap that is a smaller part of the places it is the difference of is below the digits: four to eight of their last bits.
 
 Each of two places is rounded where its flight begins and where the gap is looked at, and the contact before was off by as much.
 """
+
+
+def contact_doubt(size: Real, approach: Real, bend: Real, time: Real) -> Real:
+    """How far a computed contact time may be from the exact one of the two flights; NEVER where even the contact is in doubt.
+
+    The gap is known to E = GAP_ROUNDINGS * UNIT * size.  A time s before the contact it is at least approach * s - bend s^2 / 2.
+    So it is E, or -E, within s <= (E / approach) (1 + z) with z = 2 bend E / approach^2 < 1, as 1 - sqrt(1 - z) <= z (1 + z) / 2.
+
+    Args:
+        size: the sum of all numbers that the gap is made of, length: coordinates, ways, reach, shifts (`round_size` for round
+            things); 0 where careful arithmetic took the flights as they are.
+        approach: the speed at which the gap closes at the contact.
+        bend: a bound of the second derivative of the gap: of round things speed^2 / reach, of a fall its acceleration.
+        time: the clock's remainder at the contact.
+    """
+    gap = GAP_ROUNDINGS * UNIT * size
+    square, bent = approach * approach, 2.0 * bend * gap
+    if not bent < square:
+        return NEVER
+    return (gap / approach) * (1.0 + bent / square) + CLOCK_ROUNDINGS * UNIT * time
+
+
+def round_size(places: Real, distance: Real, reach: Real, way: Real) -> Real:
+    """The `size` of a contact of round things.
+
+    The discriminant a reach^2 - (d x v)^2 is rounded to last bits of a d^2.  So the gap is known to last bits of d^2 / reach,
+    until the careful formula takes over.
+
+    Args:
+        places: the sum of all coordinates, shifts and ways flown until the prediction, of both.
+        distance: of the centres, at the prediction.
+        reach: of the contact, above 0.
+        way: relative speed times delay.
+    """
+    far = distance / reach
+    return places + 2.0 * distance + reach + way + distance * (far if far < FAR else FAR)
 
 
 def is_sunk(approach: Real, lag: Real, size: Real) -> Real:

@@ -14,11 +14,9 @@ from eventsim.engines.base import Stop
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.formulas.clock import clock_time
+from eventsim.formulas.doubt import contact_doubt
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
-
-LAST_BITS = 4.0
-"""Contacts are close that are apart by no more than so many last bits of a coordinate and of the clock, taken as a time."""
 
 MOST_DISKS = 1000
 """In larger scenes nobody looks: the run would take longer than the rest of a check, and what is placed by chance has no ties."""
@@ -73,15 +71,15 @@ class WatchfulSession(ReferenceSession):
         return super()._resolve_instant()
 
     def _slack(self, event: Event) -> float:
-        """The time that the last bits of a contact are worth."""
+        """What two contact times like this one may be off by, together."""
         state, radius, t = self.state, self.stage.radius, event.time
         disks = sorted(_disks(event))
         places = [state.place(i, t) for i in disks]
         speeds = [state.speed(i, t) for i in disks]
-        size = max(max(abs(x), abs(y)) + float(radius[i]) for i, (x, y) in zip(disks, places, strict=True))
+        size = sum(abs(x) + abs(y) + float(radius[i]) for i, (x, y) in zip(disks, places, strict=True))
         (u, w), (u2, w2) = speeds[0], speeds[1] if len(speeds) > 1 else (0.0, 0.0)
         speed = math.hypot(u - u2, w - w2)
-        return LAST_BITS * (math.ulp(t) + (math.ulp(size) / speed if speed > 0.0 else 0.0))
+        return 2.0 * contact_doubt(size if speed > 0.0 else 0.0, speed or 1.0, 0.0, t)
 
     def _is_border(self, event: Event) -> bool:
         """Whether a contact is one with an end of the domain: two of these, at right angles, may come in any order."""
