@@ -79,7 +79,7 @@ class WatchfulSession(ReferenceSession):
         size = sum(abs(x) + abs(y) + float(radius[i]) for i, (x, y) in zip(disks, places, strict=True))
         (u, w), (u2, w2) = speeds[0], speeds[1] if len(speeds) > 1 else (0.0, 0.0)
         speed = math.hypot(u - u2, w - w2)
-        return 2.0 * contact_doubt(size if speed > 0.0 else 0.0, speed or 1.0, 0.0, t)
+        return float(2.0 * contact_doubt(size if speed > 0.0 else 0.0, speed or 1.0, 0.0, t))
 
     def _is_border(self, event: Event) -> bool:
         """Whether a contact is one with an end of the domain: two of these, at right angles, may come in any order."""

@@ -155,9 +155,8 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     chosen = parser.parse_args()
     for kind, (wide, broken) in tried(int(chosen.cases), chosen.seed).items():
-        print(
-            f"{kind:15} {len(wide):8} contacts, {len(broken)} beyond the bound, in the median {statistics.median(wide):.3g} times too wide"
-        )
+        counts = f"{len(wide):8} contacts, {len(broken)} beyond the bound"
+        print(f"{kind:15} {counts}, in the median {statistics.median(wide):.3g} times too wide")
         for example in broken[:3]:
             print("   ", example)
 
