@@ -328,7 +328,9 @@ class Simulation:
         if stopped in ("collapse", "digits"):
             stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
             raise CollapseError(f"stopped by {stopped}: {reason}")
-        self._time = stop.until if stopped in ("until", "quiet") else None
+        self._time = None
+        if stop.until is not None and stopped in ("until", "quiet"):
+            self._time = float(stop.until)
         if self.time < begun:  # a quiet end is that of the last flight, which has been passed already
             while self._session.advance(Stop(until=begun), STEP_BUDGET) is None:
                 pass

@@ -38,7 +38,7 @@ EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
     help="Stop after this many events; contacts at one instant are not cut apart.",
 )
 @click.option("--log", metavar="FILE", help=f"Keep every event in FILE, one of {', '.join(suffixes.LOGS)}.")
-@click.option("--compact", is_flag=True, help="Log only what replay cannot compute.")
+@click.option("--compact", is_flag=True, help="Log only what tells the events: to read it the run is done again.")
 @click.option("--state", metavar="FILE", help="Write the final state to FILE (.csv or .npz).")
 @click.option("--engine", metavar="NAME", help=f"{ENGINE_HELP}  [default: auto]")
 @click.option("--dt", type=float, metavar="DT", help=DT_HELP)

@@ -73,11 +73,14 @@ def command(
 
     from eventsim.cli.words import as_json_text
     from eventsim.replay.filed import open_filed
+    from eventsim.replay.log import EventLog
     from eventsim.replay.passage import Passage
     from eventsim.replay.states import state_columns, write_csv, write_states
     from eventsim.scene.names import plural
 
     events = open_filed(log)
+    if times and isinstance(events, EventLog):
+        events = events.expand(max(times))
     passage = Passage(events)
     if frames is not None:
         begin, end = passage.span

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields, replace
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,9 +18,12 @@ from eventsim.scene.stage import Stage
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """When to stop: at a time on the scene's clock, after a number of events, whichever comes first; None: not by this."""
+    """When to stop: at a time on the scene's clock, after a number of events, whichever comes first; None: not by this.
 
-    until: float | None = None
+    until: a Fraction is a time between two floats.
+    """
+
+    until: float | Fraction | None = None
     events: int | None = None
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
+from fractions import Fraction
 
 from eventsim.engines.base import Session, Snapshot, Stop
 from eventsim.engines.ends import end_of_clock, sunk_speeds
@@ -183,7 +184,7 @@ class ExactSession(Session):
         self._turn_over(epochs * state.epoch_length, epochs, strayed=True)
         return True
 
-    def _jump_back(self, until: Real, stop: float | None) -> bool:
+    def _jump_back(self, until: Real, stop: float | Fraction | None) -> bool:
         """Be in the open window again where the contact does not come, or not until the stop; whether that is reached."""
         assert self._before is not None
         before, self._before = self._before, None
@@ -246,7 +247,7 @@ class ExactSession(Session):
         if self.state.now < until < NEVER:
             self._set_now(until)
 
-    def _remainder(self, until: float | None) -> float:
+    def _remainder(self, until: float | Fraction | None) -> float:
         """A time of the scene's clock as a remainder; inf where there is none."""
         if until is None:
             return NEVER

@@ -58,9 +58,9 @@ def window_length(exponent: int, epoch_length: float) -> float:
     return math.ldexp(epoch_length, exponent)
 
 
-def remainder_since(epoch: int, epoch_length: float, time: float, start_time: float = 0.0) -> float:
+def remainder_since(epoch: int, epoch_length: float, time: float | Fraction, start_time: float = 0.0) -> float:
     """The scene's clock time `time` as a remainder in the given epoch, rounded once; inf stays inf."""
-    if math.isinf(time):
+    if isinstance(time, float) and math.isinf(time):
         return time
     exact = Fraction(time) - Fraction(start_time) - epoch * Fraction(epoch_length)
     return _rounded(exact)

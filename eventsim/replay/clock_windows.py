@@ -27,13 +27,6 @@ MOST_WINDOWS = 1_000_000
 Changes: TypeAlias = Callable[["Windows", int, int], tuple[Column, Flights]]
 """Tells which disks are in some rows (from, to), whose windows are known, and how they fly after the last of these."""
 
-Velocity: TypeAlias = Callable[[int], tuple[float, float]]
-"""The velocity that a row sets which is a kick."""
-
-
-class NotYetError(Exception):
-    """The next window follows from flights that nobody has computed yet."""
-
 
 class Windows:
     """The schedule of turnovers.
@@ -52,16 +45,14 @@ class Windows:
     end: list[float]
     length: list[float]
 
-    def __init__(self, stage: Stage, runs: Runs, changes: Changes, velocity: Velocity | None = None) -> None:
-        """runs: of a log, full or compact; then velocity says what kicks set."""
+    def __init__(self, stage: Stage, runs: Runs, changes: Changes) -> None:
+        """runs: of a full log."""
         self._stage = stage
         self._runs = runs
         self._changes = changes
-        self._velocity = velocity
         self._exponent = FIRST_WINDOW
         self.start, self.since, self.begin, self.end = [0], [0.0], [0.0], []
         self.length = [window_length(FIRST_WINDOW, stage.epoch_length)]
-        self.resolved = runs.count  # rows whose flights are known
         self._flights: Flights | None = None
         self._seen = 0  # rows that are in these flights
         self._run = 0  # of rows of one epoch, the first that no window has had
@@ -138,13 +129,10 @@ class Windows:
 
     def _kicked(self, window: int, now: float, row: int) -> Anchors:
         kick = self._runs.kick(row)
-        velocity = kick.velocity if self._velocity is None else self._velocity(row)
-        return self._anchors(window, now, True, row).kicked(kick.disk, *velocity)
+        return self._anchors(window, now, True, row).kicked(kick.disk, *kick.velocity)
 
     def _anchors(self, window: int, limit: float, inclusive: bool, rows: int) -> Anchors:
         """How disks fly after the first `rows` rows, and all wraps in a window before a time, or up to it."""
-        if rows > self.resolved:
-            raise NotYetError
         if self._flights is None:
             self._flights = start_flights(self._stage)
         if rows > self._seen:
@@ -160,22 +148,6 @@ class Windows:
         return np.repeat(
             np.array([bisect.bisect_left(self.start, epoch) for epoch in epochs[first].tolist()], np.int64), counts
         )
-
-    def flights_from(self, changes: Changes) -> None:
-        """Let somebody else tell how disks fly after rows."""
-        self._changes = changes
-
-    def reach(self, row: int) -> int:
-        """Find the windows of rows from `row` on that follow from the flights known so far; the first row behind them."""
-        runs = self._runs
-        run = bisect.bisect_right(runs.first, row) - 1
-        try:
-            while run < len(runs):
-                self.window_at(int(runs.epoch[run]))
-                run += 1
-        except NotYetError:
-            pass
-        return runs.first[run]
 
     def find_all(self) -> None:
         """Find the windows of all rows; LogError where none begins with the epoch of one."""

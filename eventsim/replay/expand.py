@@ -1,132 +1,198 @@
-"""From a compact log to the full one, row by row or, where there are many, with compiled kernels."""
+"""From a compact log to the full one: an engine runs the scene again, and each of its rows is compared with the log."""
 
 from __future__ import annotations
 
-from itertools import islice
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Generator, Iterable
+from dataclasses import replace
+from fractions import Fraction
+from itertools import chain
 
 import numpy as np
 
-from eventsim.compiler import has_compiler
+from eventsim import __version__
+from eventsim.engines import TABLE, engine_named
+from eventsim.engines.auto import first_engine
+from eventsim.engines.base import Session, Stop
 from eventsim.errors import LogError
-from eventsim.record.events import ROW, Column, Rows
-from eventsim.record.provenance import Provenance
+from eventsim.record.events import COMPACT_COLUMNS, ROW, Kind, Rows, blank_rows
+from eventsim.record.provenance import Ending, Provenance
 from eventsim.record.times import clock_times
-from eventsim.replay.clock_windows import Windows, schedules_of
-from eventsim.replay.compact import BLOCK, Expansion, Numbers
-from eventsim.replay.disk_flight import DiskFlight
-from eventsim.replay.flight import Flights, start_flights
-from eventsim.scene.stage import Stage
+from eventsim.replay.clock_windows import MOST_WINDOWS, stage_of_log
+from eventsim.runner.recording import Writer
 
-if TYPE_CHECKING:
-    from eventsim.engines.fast.state import FastState
+FIRST_BUDGET, LARGEST_BUDGET = 64, 1 << 16
+"""Steps of the engine's first stint, and of any: after each its rows are compared, and Ctrl-C is heard."""
 
-COMPUTED = ("xa", "ya", "vxa", "vya", "xb", "yb", "vxb", "vyb", "impulse")
-MANY_ROWS = 50_000
-"""From so many on, loading compiled kernels takes less time than they save."""
+PIECE = 1 << 10
+"""Rows that are compared at a time: these, and those of the log, stay in a core's own cache."""
 
 
 def expand_rows(provenance: Provenance, compact: Rows) -> Rows:
-    """Return the full rows of a compact log, in O(rows) time.
+    """Return the full rows of a compact log.  It takes about as long as the run did.
 
-    Raises LogError where the rows do not follow from the scene.
+    Raises LogError where a row is not what an engine finds next in the scene.
     """
-    misfits = []
-    for schedule in schedules_of(provenance):
+    return Expansion(provenance, len(compact)).follow(compact)
+
+
+def expand_blocks(provenance: Provenance, blocks: Iterable[Rows]) -> Generator[Rows]:
+    """Yield the full rows of a compact log, block by block; LogError as `expand_rows`."""
+    coming = iter(blocks)
+    first = next(coming, blank_rows(0))
+    expansion = Expansion(provenance, max(provenance.rows or 0, len(first)))
+    for block in chain([first], coming):
+        yield expansion.follow(block)
+
+
+def expand_until(provenance: Provenance, compact: Rows, until: float) -> tuple[Provenance, Rows]:
+    """Return a compact log as a full one that ends at a time on the scene's clock, or where it ends itself if that is earlier."""
+    if not math.isfinite(until):
+        return replace(provenance, compact=False), expand_rows(provenance, compact)
+    times = clock_times(compact["epoch"], compact["remainder"], provenance.epoch_length, provenance.scene.start_time)
+    early = np.flatnonzero(times <= until)
+    count = int(early[-1]) + 1 if len(early) else 0
+    expansion = Expansion(provenance, count)
+    rows = expansion.follow(compact[:count])
+    if count == len(compact):
+        return replace(provenance, compact=False), rows
+    kicks = tuple(kick for kick in provenance.kicks if kick[0] < count)
+    ending = Ending(*expansion.pass_to(Fraction(until)), "until")
+    return replace(provenance, compact=False, kicks=kicks, ending=ending, rows=count), rows
+
+
+def demand_expandable(provenance: Provenance) -> None:
+    """Raise LogError for a log of an engine whose rows do not follow from the scene."""
+    engine = TABLE.get(provenance.engine)
+    if engine is not None and not engine.replays:
+        raise LogError(
+            "a compact log leaves out what the reference and the fast engine compute: "
+            f"the log of the engine {engine.name} has to be a full one"
+        )
+
+
+class Expansion:
+    """An engine on its way through a compact log."""
+
+    def __init__(self, provenance: Provenance, count: int) -> None:
+        """count: how many rows are expected, by which the engine is chosen; all engines give the same ones.
+
+        Raises LogError where the log is that of an engine whose rows do not follow from the scene.
+        """
+        demand_expandable(provenance)
+        self._provenance = provenance
+        self._stage = stage_of_log(provenance)
+        if provenance.wall_names != self._stage.wall_names:
+            raise LogError(
+                f"the log does not fit its scene: it names the walls {', '.join(provenance.wall_names)}, "
+                f"and the scene has {', '.join(self._stage.wall_names)}"
+            )
+        chosen = engine_named(first_engine(self._stage, Stop(events=count)))
+        self._session: Session = chosen.open(self._stage)
+        self._set = {event: (vx, vy) for event, vx, vy in provenance.kicks}
+        self._ahead = blank_rows(0)  # rows of a generation that the log has cut, or has not come to
+        self._followed, self._epoch, self._budget = 0, 0, FIRST_BUDGET
+        self._compact, self._full, self._done = blank_rows(0), blank_rows(0), 0
+
+    def follow(self, compact: Rows) -> Rows:
+        """Return the next rows of the log as full ones; LogError where the engine finds others."""
+        self._demand_reachable(compact)
+        self._compact, self._full, self._done = compact, np.empty(len(compact), ROW), 0
+        writer = Writer([self._take])
+        ahead, self._ahead = self._ahead, blank_rows(0)
         try:
-            return _expanded(Expansion(provenance, compact, schedule), compact)
-        except LogError as misfit:
-            misfits.append(misfit)
-    raise misfits[0]
+            writer.write(ahead)
+            for end in [*np.flatnonzero(compact["kind"] == Kind.KICK).tolist(), len(compact)]:
+                self._run_to(end, writer)
+                if end < len(compact):
+                    self._kick(compact[end])
+            writer.write(self._session.take_rows())
+            writer.finish()
+        except BaseException:
+            writer.abandon()
+            raise
+        self._followed += len(compact)
+        return self._full
 
+    def pass_to(self, until: Fraction) -> tuple[int, float]:
+        """Let time pass to the scene's clock `until`, behind the rows so far: (epoch, remainder)."""
+        while self._session.advance(Stop(until), self._budget) is None:
+            pass
+        return self._session.clock
 
-def _expanded(expansion: Expansion, compact: Rows) -> Rows:
-    plain = expansion.stage.supports is None and not expansion.stage.points
-    if plain and len(compact) >= MANY_ROWS and has_compiler():
-        return _expanded_by_kernels(expansion, compact)
-    rows = compact.copy()
-    numbers = expansion.numbers()
-    for first in range(0, len(rows), BLOCK):
-        block = rows[first : first + BLOCK]
-        _fill(block, list(islice(numbers, len(block))), expansion.stage)
-    return rows
+    def _run_to(self, end: int, writer: Writer) -> None:
+        """Run until row `end` of those that are followed is the next one, be it a kick at a later time."""
+        counters, target = self._session.counters, self._followed + end
+        behind = self._compact[max(counters.events - self._followed, 0) : end + 1]
+        until = self._latest(behind) if len(behind) else None
+        while counters.events < target:
+            stopped = self._session.advance(Stop(until, target), self._budget)
+            self._budget = min(2 * self._budget, LARGEST_BUDGET)
+            writer.write(self._session.take_rows())
+            if stopped is not None and counters.events < target:
+                writer.finish()
+                raise self._unfit(self._compact[self._done], f"and the engine finds none until then (it stops: {stopped})")
 
+    def _take(self, found: Rows) -> None:
+        """Compare the engine's next rows with those of the log; with many this is done beside the engine."""
+        left = len(self._compact) - self._done
+        if len(found) > left:
+            self._ahead = np.concatenate([self._ahead, found[left:]])
+        for first in range(0, min(len(found), left), PIECE):
+            here = found[first : min(first + PIECE, left)]
+            rows, same = self._compact[self._done : self._done + len(here)], len(here)
+            for name in COMPACT_COLUMNS:
+                others = rows[name] != here[name]
+                if others.any():
+                    same = min(same, int(np.argmax(others)))
+            if same < len(here):
+                raise self._unfit(rows[same], f"where the engine finds {self._words(here[same])}")
+            # As bytes: NumPy copies rows column by column, which takes four times as long.
+            self._full[self._done : self._done + len(here)].view(np.uint8)[:] = here.view(np.uint8)
+            self._done += len(here)
 
-def _fill(rows: Rows, numbers: list[Numbers], stage: Stage) -> None:
-    """Enter into compact rows what they left out."""
-    for name, values in zip(COMPUTED, zip(*numbers, strict=True), strict=True):
-        rows[name] = values
-    rows["time"] = clock_times(rows["epoch"], rows["remainder"], stage.epoch_length, stage.start_time)
+    def _kick(self, row: np.void) -> None:
+        """Set the velocity of a disk at the exact time of a row."""
+        event, due = int(row["event"]), self._exact(int(row["epoch"]), float(row["remainder"]))
+        if event not in self._set:
+            raise self._unfit(row, "and its velocity is not in the metadata (the log was not closed)")
+        if self._exact(*self._session.clock) < due:
+            self.pass_to(due)
+        self._session.kick(int(row["a"]), *self._set[event])
 
+    def _exact(self, epoch: int, remainder: float) -> Fraction:
+        """Return a time on the scene's clock."""
+        return Fraction(self._stage.start_time) + epoch * Fraction(self._stage.epoch_length) + Fraction(remainder)
 
-def _expanded_by_kernels(expansion: Expansion, compact: Rows) -> Rows:
-    """The same with the kernels of the fast engine; what they leave out is done here, row by row."""
-    from eventsim.engines.fast.retrace import Entries, Retracer  # who has many rows pays for the compiler
+    def _latest(self, rows: Rows) -> Fraction:
+        """Return the time of the last of some rows; those of one instant may step back."""
+        epoch = int(rows["epoch"][-1])
+        return self._exact(epoch, float(rows["remainder"][rows["epoch"] == epoch].max()))
 
-    rows = np.empty(len(compact), ROW)
-    windows = expansion.windows
-    columns = [np.ascontiguousarray(compact[name]) for name in Entries._fields]
-    joint, a, b = compact["joint"], compact["a"], compact["b"]
-    retracer = Retracer(expansion.stage, Entries(*columns), rows)
-    row = window = known = 0
+    def _demand_reachable(self, compact: Rows) -> None:
+        """Raise LogError for rows behind so many wraps that an engine would not come there."""
+        if not self._stage.periodic or not len(compact):
+            return
+        epochs = np.diff(compact["epoch"], prepend=self._epoch)
+        self._epoch = int(compact["epoch"][-1])
+        if int(epochs.max()) > MOST_WINDOWS << self._stage.clock.idle_cap:
+            row = compact[int(np.argmax(epochs))]
+            raise self._unfit(row, f"more than {MOST_WINDOWS} turns of the clock after the row before")
 
-    def changes(_: Windows, first: int, last: int) -> tuple[Column, Flights]:
-        return np.arange(expansion.stage.n), _flights(retracer.state, expansion.stage, window)
+    def _unfit(self, row: np.void, why: str) -> LogError:
+        made_by = self._provenance.version
+        advice = "the rows or the scene were changed after they were written"
+        if made_by != __version__:
+            advice = f"it was made by version {made_by} under other rules, or changed since: read it with that version"
+        return LogError(
+            f"the log does not fit its scene at event {row['event']}: it has {self._words(row)}, {why}; {advice}, "
+            "or run the scene again"
+        )
 
-    windows.flights_from(changes)
-    while row < len(rows):
-        windows.resolved = row
-        known = windows.reach(row)
-        row, window = retracer.follow(row, known, window, windows)
-        if row < known:
-            end = row + _cluster_size(joint, row)
-            disks = sorted({int(i) for i in (*a[row:end], *b[row:end]) if i >= 0})
-            for i in disks:
-                _lend(retracer.state, i, expansion.disks[i], window)
-            rows[row:end] = compact[row:end]
-            _fill(rows[row:end], list(expansion.numbers(row, end)), expansion.stage)
-            for i in disks:
-                _take_back(retracer.state, i, expansion.disks[i])
-            row = end
-    return rows
-
-
-def _flights(s: FastState, stage: Stage, window: int) -> Flights:
-    """The flights of the kernels' disks, whose clock is in a window."""
-    flights = start_flights(stage)
-    flights.window[:] = window
-    flights.t, flights.x, flights.y, flights.vx, flights.vy = (each.every() for each in (s.t, s.x, s.y, s.vx, s.vy))
-    return flights
-
-
-def _lend(s: FastState, i: int, flight: DiskFlight, window: int) -> None:
-    """Let a flight be that of disk i of the kernels."""
-    flight.window, flight.t = window, s.t[i]
-    flight.anchor(s.t[i], (s.x[i], s.y[i]), (s.vx[i], s.vy[i]))
-    flight.wraps = [s.wraps_x[i], s.wraps_y[i]]
-    flight.met, flight.contact_time = s.met[i], s.contact_time[i]
-    if s.low_parts:
-        flight.low = s.low_vx[i], s.low_vy[i]
-    if s.low_places:
-        flight.low_place = s.low_x[i], s.low_y[i]
-
-
-def _take_back(s: FastState, i: int, flight: DiskFlight) -> None:
-    """Let disk i of the kernels fly on as a flight does."""
-    s.t[i], s.x[i], s.y[i], s.vx[i], s.vy[i] = flight.t, flight.x, flight.y, flight.vx, flight.vy
-    s.wraps_x[i], s.wraps_y[i] = flight.wraps
-    s.met[i], s.contact_time[i] = flight.met, flight.contact_time
-    if s.low_parts:
-        s.low_vx[i], s.low_vy[i] = flight.low
-    if s.low_places:
-        s.low_x[i], s.low_y[i] = flight.low_place or (0.0, 0.0)
-
-
-def _cluster_size(joint: Column, row: int) -> int:
-    """How many rows from `row` on belong to one cluster."""
-    if joint[row] < 0:
-        return 1
-    count = 1
-    while row + count < len(joint) and joint[row + count] == joint[row]:
-        count += 1
-    return count
+    def _words(self, row: np.void) -> str:
+        """Return what a row says, in words."""
+        disks = f"disk {row['a']}" if row["b"] < 0 else f"disks {row['a']} and {row['b']}"
+        wall = f", wall {self._stage.wall_names[row['wall']]}" if row["wall"] >= 0 else ""
+        joint = "" if row["joint"] < 0 else f", joint with event {row['joint']}"
+        at = f"epoch {row['epoch']}, remainder {float(row['remainder'])!r}"
+        return f"{Kind(row['kind']).label} of {disks}{wall}{joint} at {at}"

@@ -15,7 +15,7 @@ import numpy as np
 
 from eventsim.errors import LogWarning
 from eventsim.record.digest import Digester, digest_of
-from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, blank_rows, unchangeable
+from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, unchangeable
 from eventsim.record.files import open_log, open_sink, read_log
 from eventsim.record.provenance import Provenance
 from eventsim.scene import Scene
@@ -49,7 +49,7 @@ class EventLog(Columns):
     (`log.kinds` the text), `log.wall` indices into `log.provenance.wall_names` (`log.wall_name` the text).
     path: the file that it was read from, None where it comes from a run.
 
-    In a compact log the columns that replay computes are missing (NaN); `expand()` gives the full log.
+    In a compact log the columns that an engine computes again are missing (NaN); `expand()` gives the full log.
     """
 
     def __init__(self, provenance: Provenance, rows: Rows) -> None:
@@ -100,21 +100,28 @@ class EventLog(Columns):
         rows = self._full.rows
         yield from (rows[first : first + SAVE_BLOCK] for first in range(0, len(rows), SAVE_BLOCK))
 
-    def expand(self) -> EventLog:
-        """Return the full log: of a compact one by replay, bit for bit what the engine would have logged."""
+    def expand(self, until: float | None = None) -> EventLog:
+        """Return the full log: an engine runs the scene of a compact one again, and each row is compared.
+
+        until: a time on the scene's clock; a compact log is made full up to there, and ends there.
+        Raises LogError where a row is not what the engine finds.
+        """
         if not self.compact:
             return self
-        from eventsim.replay.expand import expand_rows  # only who has a compact log pays for it
+        from eventsim.replay.expand import expand_rows, expand_until  # only who has a compact log pays for it
 
-        full = EventLog(replace(self.provenance, compact=False), expand_rows(self.provenance, self.rows))
+        if until is None:
+            full = EventLog(replace(self.provenance, compact=False), expand_rows(self.provenance, self.rows))
+        else:
+            full = EventLog(*expand_until(self.provenance, self.rows, until))
         full.path = self.path
         return full
 
     def verify(self, name: str) -> None:
         """Warn (LogWarning) where full rows are not those that the run closed the log with; `name` is how to call it.
 
-        Nothing is known of a log without the digest of its run.  A compact one needs none: a contact that is not due at its
-        time does not replay.
+        Nothing is known of a log without the digest of its run.  A compact one needs none: each of its rows is compared with
+        what an engine finds.
         """
         ending = self.provenance.ending
         if ending is not None and ending.digest is not None and not self.compact and ending.digest != self.digest():
@@ -127,8 +134,12 @@ class EventLog(Columns):
     def save(self, path: str | PathLike[str], compact: bool = False) -> None:
         """Write the log to `path`, in the format of its suffix: .csv, .jsonl, .npz or .parquet.
 
-        compact: leave out what replay computes. Raises LogError where the file cannot be written.
+        compact: leave out what an engine computes again. Raises LogError where no engine would, or the file cannot be written.
         """
+        if compact:
+            from eventsim.replay.expand import demand_expandable  # only who wants a compact log pays for it
+
+            demand_expandable(self.provenance)
         log = self if compact else self.expand()
         ending = log.provenance.ending
         if ending is not None and ending.digest is None and not log.compact:
@@ -159,7 +170,7 @@ def load_log(path: str | PathLike[str]) -> EventLog:
 def stream_log(path: str | PathLike[str], verify: bool = True) -> tuple[Provenance, Generator[Rows]]:
     """Open a log file of any format: its provenance, and its full rows block by block, in bounded memory.
 
-    A compact log is expanded as a whole.  Warns (LogWarning) after the last block where rows were changed since the run wrote
+    A compact log is made full in passing.  Warns (LogWarning) after the last block where rows were changed since the run wrote
     them; verify: False where that has been looked at.
 
     Raises:
@@ -168,8 +179,9 @@ def stream_log(path: str | PathLike[str], verify: bool = True) -> tuple[Provenan
     file = Path(path)
     provenance, blocks = open_log(file)
     if provenance.compact:
-        full = EventLog(provenance, np.concatenate([blank_rows(0), *blocks])).expand()
-        return full.provenance, (full.rows[first : first + SAVE_BLOCK] for first in range(0, len(full), SAVE_BLOCK))
+        from eventsim.replay.expand import expand_blocks  # only who has a compact log pays for it
+
+        return replace(provenance, compact=False), expand_blocks(provenance, blocks)
     return provenance, _verified(provenance, blocks, file) if verify else blocks
 
 

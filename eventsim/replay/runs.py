@@ -12,7 +12,7 @@ from eventsim.record.events import Kind, Rows, blank_rows
 
 
 class Kicked(NamedTuple):
-    """A row that is a kick: its number, the disk, when, and the velocity that it sets; NaN in a compact log."""
+    """A row that is a kick: its number, the disk, when, and the velocity that it sets."""
 
     row: int
     disk: int
@@ -32,7 +32,7 @@ class Runs:
     """
 
     def __init__(self, blocks: Iterable[Rows]) -> None:
-        """blocks: the rows of a log in order, full or compact ones."""
+        """blocks: the full rows of a log in order."""
         self.count, self.latest, last = 0, 0.0, -1
         leaders, kicks, places, kicked = [blank_rows(0)[["epoch", "remainder", "kind"]]], [blank_rows(0)], [], []
         for rows in blocks:

@@ -105,7 +105,7 @@ def _demand_possible(engine: Engine, stop: Stop, stage: Stage, wanted: RunOption
         raise EventsimError("compact is a form of log files: give the log a path, or leave compact out")
     if wanted.compact and not engine.replays:
         raise EventsimError(
-            "a compact log leaves out what replay computes, and replay computes as the reference and the fast engine do: "
+            "a compact log leaves out what the reference and the fast engine compute: "
             f"the log of the engine {engine.name} has to be a full one"
         )
     if stage.goes_on_as_fast and stop.until is not None and stop.until - stage.start_time > MOST_EPOCHS * stage.epoch_length:

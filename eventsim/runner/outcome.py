@@ -88,7 +88,7 @@ def state_of(session: Session, stop: Stop | None = None, stopped: str | None = N
     epoch, remainder = session.clock
     time = clock_time(epoch, remainder, stage.epoch_length, stage.start_time)
     if stop is not None and stop.until is not None and stopped in ("until", "quiet"):
-        time = max(stop.until, stage.start_time)
+        time = max(float(stop.until), stage.start_time)
     position = np.column_stack(
         [
             on_scene_axes(motion.x, stage.corner[0], stage.period[0]),

@@ -8,6 +8,7 @@ is twice as large is only as early as it takes to gain a bit, one of 53.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
@@ -76,7 +77,7 @@ def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
     return Horizon(None, None, done, time)
 
 
-def _advance(session: Session, until: float | None, events: int) -> str | None:
+def _advance(session: Session, until: float | Fraction | None, events: int) -> str | None:
     """Simulate to the number of events in all; the reason where the session stopped before."""
     stopped = None
     while stopped is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from os import PathLike
 
 import numpy as np
@@ -127,7 +128,7 @@ class Rounded:
 
 
 def rounded(
-    stage: Stage, size: tuple[float, float] | None, certified: Rows, until: float | None, ended: bool
+    stage: Stage, size: tuple[float, float] | None, certified: Rows, until: float | Fraction | None, ended: bool
 ) -> Rounded:
     """Simulate a scene in float64 and compare it with its certified rows.
 

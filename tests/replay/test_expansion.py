@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,10 @@ import pytest
 
 from eventsim.errors import LogError
 from eventsim.record import State
-from eventsim.replay.log import EventLog, load_log
+from eventsim.replay.expand import expand_blocks
+from eventsim.replay.log import EventLog, load_log, stream_log
 from eventsim.replay.replay import Replay
+from eventsim.run import Run
 from eventsim.scene import Arc, Box, Channel, Circle, Disks, Domain, Open, Periodic, Polygon, Polyline, Scene, Segment
 from eventsim.simulation import Simulation, simulate
 from eventsim.suffixes import LOGS
@@ -80,10 +83,17 @@ def assert_same(one: State, other: State) -> None:
     assert one.velocity.tobytes() == other.velocity.tobytes()
 
 
+@cache
+def run_of(name: str) -> Run:
+    """The run of a scene, with its log."""
+    scene, until = SCENES[name]
+    return simulate(scene, until=until, log=True)
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_the_state_at_any_time_is_the_engine_s_own(name: str) -> None:
     scene, until = SCENES[name]
-    run = simulate(scene, until=until, log=True)
+    run = run_of(name)
     assert run.log is not None
     replay = Replay(run.log)
     assert_same(replay.final(), run.state)
@@ -93,8 +103,7 @@ def test_the_state_at_any_time_is_the_engine_s_own(name: str) -> None:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_compact_log_expands_to_the_full_one(tmp_path: Path, name: str) -> None:
-    scene, until = SCENES[name]
-    log = simulate(scene, until=until, log=True).log
+    log = run_of(name).log
     assert log is not None
     log.save(tmp_path / "log.jsonl", compact=True)
     compact = load_log(tmp_path / "log.jsonl")
@@ -111,46 +120,44 @@ KERNELS = [
 @pytest.mark.parametrize("name", KERNELS)
 def test_kernels_expand_a_compact_log_to_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
-    scene, until = SCENES[name]
-    log = simulate(scene, until=until, log=True).log
+    log = run_of(name).log
     assert log is not None
-    monkeypatch.setattr("eventsim.replay.expand.MANY_ROWS", 0)
+    monkeypatch.setattr("eventsim.replay.expand.first_engine", lambda *_: "fast")
     compact = EventLog(replace(log.provenance, compact=True), log.rows)
     assert compact.expand().rows.tobytes() == log.rows.tobytes()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mass", [1.0, UNEVEN], ids=["equal", "uneven"])
-def test_kernels_expand_a_log_with_kicks(mass: object, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("uneven", [False, True], ids=["equal", "uneven"])
+def test_kernels_expand_a_log_with_kicks(uneven: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
-    log = kicked(mass).log
-    monkeypatch.setattr("eventsim.replay.expand.MANY_ROWS", 0)
+    log = kicked(uneven).log
+    monkeypatch.setattr("eventsim.replay.expand.first_engine", lambda *_: "fast")
     compact = EventLog(replace(log.provenance, compact=True), log.rows)
     assert compact.expand().rows.tobytes() == log.rows.tobytes()
 
 
 def test_kernels_refuse_rows_that_do_not_follow(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
-    scene, until = SCENES["periodic"]
-    log = simulate(scene, until=until, log=True).log
+    log = run_of("periodic").log
     assert log is not None
     rows = log.rows.copy()
     rows["remainder"][7] *= 1.0 + 1e-12
-    monkeypatch.setattr("eventsim.replay.expand.MANY_ROWS", 0)
+    monkeypatch.setattr("eventsim.replay.expand.first_engine", lambda *_: "fast")
     with pytest.raises(LogError, match="does not fit its scene at event 7"):
         EventLog(replace(log.provenance, compact=True), rows).expand()
 
 
 def test_the_racks_are_tests_of_clusters() -> None:
     for name in ("two onto one", "rack in a box", "rack on a torus", "a pair that meets twice at once"):
-        scene, until = SCENES[name]
-        log = simulate(scene, until=until, log=True).log
+        log = run_of(name).log
         assert log is not None
         assert (log.joint >= 0).any(), name
 
 
-def kicked(mass: object) -> Simulation:
-    simulation = Simulation(lattice(Periodic((4.0, 3.0)), mass))
+@cache
+def kicked(uneven: bool) -> Simulation:
+    simulation = Simulation(lattice(Periodic((4.0, 3.0)), UNEVEN if uneven else 1.0))
     for i, time in enumerate((0.7, 3.1, 3.1, 20.0)):
         simulation.advance_to(time)
         simulation.set_velocity(3 * i, (1.0 - i, 0.5))
@@ -158,11 +165,12 @@ def kicked(mass: object) -> Simulation:
     return simulation
 
 
-@pytest.mark.parametrize("suffix", LOGS)
-@pytest.mark.parametrize("compact", [False, True])
-@pytest.mark.parametrize("mass", [1.0, UNEVEN], ids=["equal", "uneven"])
-def test_a_file_with_kicks_replays_to_the_final_state(tmp_path: Path, suffix: str, compact: bool, mass: object) -> None:
-    simulation = kicked(mass)
+@pytest.mark.parametrize(
+    ("suffix", "compact", "uneven"),
+    [*((suffix, compact, False) for suffix in LOGS for compact in (False, True)), (".npz", True, True)],
+)
+def test_a_file_with_kicks_replays_to_the_final_state(tmp_path: Path, suffix: str, compact: bool, uneven: bool) -> None:
+    simulation = kicked(uneven)
     path = tmp_path / f"log{suffix}"
     simulation.log.save(path, compact=compact)
     log = load_log(path)
@@ -173,7 +181,7 @@ def test_a_file_with_kicks_replays_to_the_final_state(tmp_path: Path, suffix: st
 
 def test_a_streamed_log_is_the_one_in_memory(tmp_path: Path) -> None:
     scene, until = SCENES["periodic"]
-    kept = simulate(scene, until=until, log=True).log
+    kept = run_of("periodic").log
     assert kept is not None
     for suffix in LOGS:
         run = simulate(scene, until=until, log=tmp_path / f"log{suffix}")
@@ -182,3 +190,51 @@ def test_a_streamed_log_is_the_one_in_memory(tmp_path: Path) -> None:
         assert streamed.rows.tobytes() == kept.rows.tobytes()
         assert streamed.provenance == kept.provenance
         assert run.digest == kept.digest()
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".npz"])
+def test_a_compact_log_is_made_full_up_to_a_time(tmp_path: Path, suffix: str) -> None:
+    simulation = kicked(False)
+    simulation.log.save(tmp_path / f"log{suffix}", compact=True)
+    compact, full = load_log(tmp_path / f"log{suffix}"), Replay(simulation.log)
+    for time in (0.0, 0.7, 2.5, 3.1, 19.9, 20.0, 25.0):
+        part = compact.expand(time)
+        assert part.rows.tobytes() == simulation.log.rows[: len(part)].tobytes()
+        assert (part.time <= time).all()
+        assert_same(Replay(part).state_at(time), full.state_at(time))
+    assert len(compact.expand(2.5)) < len(compact.expand(20.0)) < len(compact)
+
+
+def test_a_log_that_was_cut_inside_a_generation_ends_where_its_rows_end() -> None:
+    log = run_of("rack in a box").log
+    assert log is not None
+    cut = int(np.flatnonzero(log.joint >= 0)[1])
+    assert log.joint[cut] < cut
+    provenance = replace(log.provenance, compact=True, ending=None, rows=None)
+    assert EventLog(provenance, log.rows[:cut]).expand().rows.tobytes() == log.rows[:cut].tobytes()
+
+
+def test_a_log_is_streamed_as_full_rows(tmp_path: Path) -> None:
+    simulation = kicked(False)
+    simulation.log.save(tmp_path / "log.npz", compact=True)
+    whole = simulation.log.rows
+    provenance, blocks = stream_log(tmp_path / "log.npz")
+    assert not provenance.compact
+    assert np.concatenate(list(blocks)).tobytes() == whole.tobytes()
+    pieces = [whole[first : first + 7] for first in range(0, len(whole), 7)]
+    assert np.concatenate(list(expand_blocks(simulation.log.provenance, pieces))).tobytes() == whole.tobytes()
+
+
+def test_what_differs_is_told_with_what_to_do() -> None:
+    log = run_of("periodic").log
+    assert log is not None
+    heavier = replace(log.scene, disks=replace(log.scene.disks, mass=np.where(np.arange(16) == 3, 2.0, 1.0)))
+    here = replace(log.provenance, compact=True, scene=heavier)
+    with pytest.raises(LogError, match=r"at event \d+: it has pair of disks .*, where the engine finds pair of .* changed"):
+        EventLog(here, log.rows).expand()
+    with pytest.raises(LogError, match=r"made by version 0\.0\.9 under other rules, or changed since: read it with that"):
+        EventLog(replace(here, version="0.0.9"), log.rows).expand()
+    with pytest.raises(LogError, match="the log of the engine stepped has to be a full one"):
+        EventLog(replace(here, engine="stepped"), log.rows).expand()
+    with pytest.raises(LogError, match="the log of the engine certified has to be a full one"):
+        EventLog(replace(log.provenance, engine="certified"), log.rows).save("never.npz", compact=True)

@@ -76,7 +76,7 @@ class SteppedSession(Session):
             left = clock.steps_until(stop)
             if left is not None and left <= 0:
                 assert stop.until is not None
-                clock.pass_to(stop.until)
+                clock.pass_to(float(stop.until))
                 return "until"
             steps = min(budget, FOREVER if left is None else left)
             if self._sampled:
