@@ -1,5 +1,6 @@
 """A track: pieces, and going back, change no bit."""
 
+import math
 import sys
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import eventsim as es
 from eventsim.live.track import Track
+from eventsim.record.events import Kind
 from eventsim.replay.replay import Replay
 
 
@@ -70,3 +72,29 @@ def test_a_collapse_ends_a_track_and_keeps_what_happened():
     assert track.count > 0
     assert track.horizon == pytest.approx(track.time_of(track.count - 1))
     assert len(track.log()) == track.count
+
+
+def falling(walls=()):
+    """Two disks that drop onto the floor, or one of them onto a wall; little is lost at a bounce."""
+    disks = es.Disks([[0.5, 1.1], [20.0, 3.0]], [[0.0, 0.0], [0.01, 0.0]], 0.1, mass=[1.0, 2.0])
+    return es.Scene(disks, es.Box((40.0, 5.0)), walls, gravity=(0.0, -1.0), restitution=0.95)
+
+
+def test_a_track_goes_on_when_its_disks_have_come_to_rest():
+    track = Track(falling(), "reference")
+    advanced(track, 200.0)
+    assert (track.ended, track.horizon) == (None, 200.0)
+    kinds = track.log().kind
+    assert (kinds == Kind.REST).sum() == 2
+    track.rewind(150.0)
+    track.kick(0, (0.0, 1.0))
+    advanced(track, 200.0)
+    assert (track.ended, track.horizon) == (None, 200.0)
+
+
+def test_a_track_with_a_drop_onto_a_vertex_ends_with_a_reason_at_its_zeno_time():
+    peak = es.Polygon([(0.5, 0.5), (0.2, 0.2), (0.8, 0.2)])
+    scene = es.Scene(es.Disks([[0.5, 1.6]], radius=0.1), es.Box((5.0, 5.0)), [peak], gravity=(0.0, -1.0), restitution=0.95)
+    track = advanced(Track(scene, "reference"), 200.0)
+    assert "collapse" in track.ended
+    assert track.horizon == pytest.approx(math.sqrt(2.0) * 1.95 / 0.05, rel=1e-6)
