@@ -100,7 +100,7 @@ def tie_screen(size: float, slowest: float, between: float) -> float:
     most = GLANCES * between
     if not slowest > 0.0:
         return most
-    least = ROUNDINGS * UNIT * (size / (SLOW * slowest))
+    least = ROUNDINGS * UNIT * (size / SLOW / slowest)
     return least if least < most else most
 
 

@@ -170,12 +170,19 @@ def foot_of_flat(a: Real, b: Real, p: Real, q: Real) -> tuple[Real, Real]:
     low, high = b * q - b * b, sqrt(a * p * a * p + b * q * b * q) - b * b
     for _ in range(STEPS):
         t = 0.5 * (low + high)
-        u, w = a * p / (t + a * a), b * q / (t + b * b)
+        u, w = a * p / (t + a * a), _share(b * q, t + b * b)
         if u * u + w * w > 1.0:
             low = t
         else:
             high = t
     t = 0.5 * (low + high)
-    u, w = a * p / (t + a * a), b * q / (t + b * b)
+    u, w = a * p / (t + a * a), _share(b * q, t + b * b)
     length = sqrt(u * u + w * w)
     return a * (u / length), b * (w / length)
+
+
+def _share(part: Real, whole: Real) -> Real:
+    """part / whole, both at least 0; of nothing, which rounding may leave of the whole, it is all or none."""
+    if whole > 0.0:
+        return part / whole
+    return 1.0 if part > 0.0 else 0.0

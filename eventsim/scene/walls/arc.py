@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from eventsim.errors import SceneError
 from eventsim.formulas.walls import arc as numbers
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Shape
@@ -41,8 +42,17 @@ class Arc(Part):
         return (replace(self, name=name),)
 
     def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
-        """An arc, and posts at its ends, all of part 0, where `moved` brings its points."""
+        """An arc, and posts at its ends, all of part 0, where `moved` brings its points.
+
+        Raises SceneError where rounding takes its bulge there.
+        """
         start, through, end = moved(self.start), moved(self.through), moved(self.end)
+        size = max(abs(c) for point in (start, through, end) for c in point)
+        if bulge(start, through, end) < FLATTEST * size:
+            raise SceneError(
+                f"{self.name or 'an arc'}: its points are on a line, but for the last digits, where they are counted from the "
+                f"corner of the domain: up to {size:g} away (leave less room between walls and disks)"
+            )
         return [(numbers.arc(*start, *through, *end), 0), (Post(*start), 0), (Post(*end), 0)]
 
     def shape_problems(self) -> Iterator[str]:
@@ -120,7 +130,8 @@ def bulge(start: Point, through: Point, end: Point) -> float:
     """The distance of `through` from the line through start and end, or of that which is farther from the others."""
     x0, y0 = Fraction(start[0]), Fraction(start[1])
     ax, ay, bx, by = Fraction(through[0]) - x0, Fraction(through[1]) - y0, Fraction(end[0]) - x0, Fraction(end[1]) - y0
-    return float(abs(ax * by - ay * bx)) / max(math.dist(start, end), math.dist(start, through), math.dist(through, end))
+    longest = max(math.dist(start, end), math.dist(start, through), math.dist(through, end))
+    return float(abs(ax * by - ay * bx)) / longest if longest > 0.0 else 0.0
 
 
 def circle_points(center: Point, radius: float, begin: float, turn: float) -> Floats:
