@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.measure.blocking import block_average
 from eventsim.scene.files import scene_from_dict
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(3600)]
@@ -110,21 +111,63 @@ def test_free_paths_of_points_from_random_starts(name):
     assert abs(path.deviation) < 3.0
 
 
-def test_a_round_container_with_rotation():
-    """L^2 / 2 I is no heat: the temperature is that of the speeds relative to the turning gas."""
-    rng = np.random.default_rng(2)
+def jar(omega, seed=2):
+    """120 disks in a round container that turns with their gas, or not."""
     place = np.array([[x, y] for x in range(-8, 9) for y in range(-8, 9) if x * x + y * y < 60])[:120] * 0.1
-    for omega in (0.0, 2.0):
-        velocity = rng.normal(size=place.shape) + omega * np.column_stack([-place[:, 1], place[:, 0]])
-        scene = es.Scene(es.Disks(place, velocity, 0.03), es.Open(), walls=[es.Circle((0.0, 0.0), 1.0, name="jar")])
-        measures = es.simulate(scene, events=300_000, engine="fast", measure=20.0, profile="x").measures
-        (one,) = measures.profile.species
-        # on the line through the middle the gas turns across the axis: v_y = omega' x, and the rest is heat; slices mix y,
-        # whose turning v_x = -omega' y is heat to them, so only the middle of the temperature is compared without rotation
-        if omega == 0.0:
-            weight = one.density * np.nan_to_num(one.temperature)
-            assert measures["temperature"].value == pytest.approx(weight.sum() / one.density.sum(), rel=0.03)
-            assert measures["Z_walls"].value == pytest.approx(measures["Z"].value, rel=0.01)
-        else:
-            assert math.isnan(measures["Z"].value)
-            assert measures["temperature"].value < 0.9 * 0.5 * float((velocity**2).sum()) / len(place)
+    velocity = np.random.default_rng(seed).normal(size=place.shape) + omega * np.column_stack([-place[:, 1], place[:, 0]])
+    return es.Scene(es.Disks(place, velocity, 0.03), es.Open(), walls=[es.Circle((0.0, 0.0), 1.0, name="jar")])
+
+
+class RadialHeat:
+    """The mean of v_r^2 at contacts' rows, sampled from states: no turning has a part in it."""
+
+    def __init__(self, scene, every):
+        self.sim, self.every, self.found = es.Simulation(scene, engine="fast"), every, []
+
+    def sample(self, begin, count):
+        for k in range(count):
+            self.sim.advance_to(begin + k * self.every)
+            place, velocity = self.sim.state.position, self.sim.state.velocity
+            along = (place * velocity).sum(axis=1) / np.hypot(*place.T)
+            self.found.append(float((along**2).mean()))
+        return np.array(self.found)
+
+
+@pytest.mark.parametrize("omega", [0.0, 2.0])
+def test_a_round_container_with_rotation(omega):
+    """L^2 / 2 I is no heat.  Along the radius nothing turns: kT is m <v_r^2> there."""
+    pytest.importorskip("numba")
+    scene = jar(omega)
+    measures = es.simulate(scene, events=500_000, engine="fast", measure=20.0).measures
+    squares = RadialHeat(scene, 0.5).sample(20.0, 600)
+    bar = block_average(squares)
+    assert bar.error < 0.01 * bar.mean
+    assert abs(measures["temperature"].value - bar.mean) < 3.0 * bar.error
+    if omega == 0.0:
+        assert abs(measures["Z_walls"].deviation) < 3.0
+    else:
+        assert math.isnan(measures["Z"].value)
+        assert measures["temperature"].value < 0.9 * 0.5 * float((scene.disks.velocity**2).sum()) / len(scene.disks)
+
+
+def test_the_barometer():
+    """The density under gravity against hydrostatics with the fluid's pressure: no slice beyond chance, all to 1 %.
+
+    Heat spreads over the height H within (H / free path)^2 contacts of a disk: 2000 of them are left out.
+    """
+    pytest.importorskip("numba")
+    gas = {"count": 300, "radius": 0.5, "temperature": 1.0, "arrangement": "random", "seed": 1}
+    domain = {"kind": "channel", "size": [40.0, 60.0]}
+    scene = scene_from_dict({"gravity": [0.0, -0.05], "domain": domain, "gas": [gas]})
+    measures = es.simulate(scene, events=4_000_000, engine="fast", measure=2700.0, profile="y").measures
+    assert measures["collision_rate"].value * measures.discarded > 2000.0
+    (one,) = measures.profile.species
+    known = np.isfinite(one.theory)
+    assert known.sum() == 28
+    off = (one.density - one.theory)[known] / one.density_error[known]
+    assert np.abs(off).max() < 4.0
+    assert np.sqrt((off**2).mean()) < 1.5
+    assert np.median(one.density_error[known] / one.density[known]) < 5e-3
+    # one temperature from floor to top
+    warm = (one.temperature - measures["temperature"].value) / one.temperature_error
+    assert np.sqrt((warm**2).mean()) < 1.6

@@ -12,7 +12,7 @@ from eventsim.errors import EventsimError
 from eventsim.replay.passage import Passage
 from eventsim.replay.replay import Replay
 from eventsim.show.animate import Film, animate
-from eventsim.show.colouring import Colouring
+from eventsim.show.colouring import Colouring, colouring_of
 from eventsim.show.frames import frames_at
 from eventsim.show.picture import Look, Picture, _clock_format
 
@@ -239,6 +239,18 @@ def test_drawing_needs_neither_a_display_nor_pyplot(tmp_path):
 )
 def test_the_clock_of_a_frame_is_not_rounded_to_another_place(times, shown):
     assert f"{times[-1]:{_clock_format(np.array(times))}}" == shown
+
+
+def test_the_scale_of_speeds_reaches_the_fastest_disk_or_says_that_there_are_faster_ones():
+    """A disk that falls and stays where it lands is fastest just before: no flight begins as fast."""
+    disk = es.Disks([[0.5, 2.1]], radius=0.1)
+    scene = es.Scene(disk, es.Box((1.0, 3.0)), gravity=(0.0, -1.0), restitution=0.0)
+    replay = Replay(es.simulate(scene, until=3.0, log=True).log)
+    key = colouring_of("speed", replay).key
+    assert key.beyond or key.high == pytest.approx(2.0, rel=1e-12)  # sqrt(2 g h), h = 2
+    gas = Replay(es.simulate(es.gallery("gas", n=50), events=200, log=True).log)
+    key, fastest = colouring_of("speed", gas).key, np.hypot(*np.array([gas.log.vxa, gas.log.vya])).max()
+    assert key.beyond == (fastest > key.high)
 
 
 def test_one_event_is_counted_as_one_event():
