@@ -73,6 +73,7 @@ def _compiled() -> Kernels:
         sums.strike,
     ):
         register_jitable(error_model="numpy", forceinline=True, _nrt=False)(part)
+    register_jitable(error_model="numpy", _nrt=False)(sums.widen)  # rare, and long
     whole = (sums.take, sums.finish, sums.hold_all)
     try:
         return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False, cache=True)(part) for part in whole))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+import numpy as np
+
 from eventsim.measure.blocking import ErrorBar, block_average
 from eventsim.measure.ensemble import Ensemble
 from eventsim.record.events import Floats
@@ -26,6 +28,9 @@ SLOW = 0.68, 0.74
 
 Source: E. P. Bernard, W. Krauth, Phys. Rev. Lett. 107, 155704 (2011), doi:10.1103/PhysRevLett.107.155704.
 """
+
+ACROSS, BY_CHANCE = 0.5, 4.0
+"""Of the domain's length, that disks must have come where species began apart; standard errors of the middle of a species."""
 
 FEWEST_DISKS = 16
 """With fewer, a disk need not come far to have been everywhere."""
@@ -70,7 +75,7 @@ def doubts(ensemble: Ensemble, rates: Floats, bar: ErrorBar, late: bool, moved: 
     if abs(first.mean - second.mean) > DRIFT * spread > 0.0:
         away = abs(first.mean - second.mean) / spread
         found.append(f"the pressure drifts: its halves differ by {away:.1f} standard errors")
-    return found + _caged(ensemble, moved)
+    return found + _caged(ensemble, moved) + _unmixed(ensemble, moved)
 
 
 def strangers(deviations: Iterable[tuple[str, float | None, str | None]]) -> list[str]:
@@ -85,6 +90,23 @@ def strangers(deviations: Iterable[tuple[str, float | None, str | None]]) -> lis
     apart = f"{off:.3g} standard errors" if math.isfinite(off) else "further than any error bar"
     others = f", and {len(far) - 1} more are far off" if len(far) > 1 else ""
     return [f"{name} is {apart} from equilibrium ({source}){others}: the disks do not mix, or have not yet"]
+
+
+def _unmixed(ensemble: Ensemble, moved: float) -> list[str]:
+    """A clause where species began in places of their own, and disks have not come far enough to leave them."""
+    size = ensemble.scene.domain.size
+    if ensemble.kinds < 2 or size is None or moved >= ACROSS * max(size):
+        return []
+    middles = []
+    for kind in range(ensemble.kinds):
+        place = (ensemble.scene.disks.position[ensemble.species_of == kind] - ensemble.scene.domain.origin) / np.array(size)
+        chance = BY_CHANCE / np.sqrt(12.0 * len(place))  # of places that are even in a domain of width 1
+        middles.append((place.mean(axis=0), chance))
+    apart = any(
+        (np.abs(here - there) > off + other).any() for here, off in middles for there, other in middles
+    )
+    share = moved / max(size)
+    return [f"species began apart, and disks have moved {share:.2g} of the domain's length only"] if apart else []
 
 
 def _caged(ensemble: Ensemble, moved: float) -> list[str]:

@@ -143,7 +143,6 @@ class Meter:
             end=end,
             discard=self.discard,
             sums=self._sums,
-            thermal_speed=_thermal_speed(self.ensemble),
             correlations=correlator.result(),
             profile=None if self._profiler is None else self._profiler.result(),
             groups=self._groups.count,

@@ -142,7 +142,9 @@ class Profiler:
         return Profile(self.axis, self.edges, species)
 
     def _species(self, kind: int, sums: Floats, samples: Floats) -> SpeciesProfile:
-        one, share = self._ensemble.species[kind], self._ensemble.thermal_share(self._ensemble.species[kind].mass)
+        one = self._ensemble.species[kind]
+        heavy = one.mass > 0.0 and math.isfinite(one.mass)
+        share = self._ensemble.thermal_share(one.mass) if heavy else 1.0
         density = [ratio_average(sums[:, k, COUNT], samples) for k in range(SLICES)]
         areas = self._areas()
         velocity = np.full((SLICES, 2), np.nan)
@@ -155,7 +157,7 @@ class Profiler:
             for axis, column in enumerate((VX, VY)):
                 bar = ratio_average(here[:, column], here[:, COUNT])
                 velocity[k, axis], velocity_error[k, axis] = bar.mean, bar.error
-            if one.mass > 0.0 and math.isfinite(one.mass):
+            if heavy:
                 vx, vy = velocity[k]
                 square = (
                     here[:, V2] - 2.0 * (vx * here[:, VX] + vy * here[:, VY]) + (vx * vx + vy * vy) * here[:, COUNT]

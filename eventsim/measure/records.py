@@ -45,7 +45,6 @@ class Records:
         ensemble, plan, wall_names, sums: see `Meter`.
         duration: of the run; end: of its last flight, which may be an ulp later.
         discard: what is asked to be left out; None: what the pressure tells.
-        thermal_speed: the unit of speeds of a unit mass.
         correlations, profile: of samples.
         groups: into how many the disks that carry energy fall by their contacts with each other.
         found: the values of quantities so far, by name.
@@ -58,7 +57,6 @@ class Records:
     end: float
     discard: float | None
     sums: Sums
-    thermal_speed: float
     correlations: Correlations
     profile: Profile | None
     groups: int = 1

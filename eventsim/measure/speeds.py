@@ -11,15 +11,15 @@ import numpy as np
 from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.plain import plain
 from eventsim.measure.records import Records
-from eventsim.measure.sums import SPEED_BINS, first_speed
+from eventsim.measure.sums import SCALE, SPEED_BINS, first_speed
 from eventsim.measure.theory import survival
 from eventsim.record.events import Floats
 
 WELL_KNOWN = 0.2
 """Relative error below which a bin says something about the fit: rare speeds have no reliable error bars."""
 
-FASTEST = 5.0
-"""Thermal speeds sqrt(kT / m) up to which speeds have bins."""
+FASTEST = 8.0
+"""Thermal speeds sqrt(kT / m) up to which speeds have bins at first; no disk of a gas is ever as fast."""
 
 FEWEST_FREEDOMS = 4
 """With fewer the energy fixes the speeds."""
@@ -67,9 +67,9 @@ def speed_histograms(records: Records) -> tuple[SpeedHistogram, ...]:
     for kind, species in enumerate(ensemble.species):
         if not math.isfinite(species.mass):
             continue
-        unit = math.sqrt(species.mass) if species.mass > 0.0 else 1.0
-        edges = np.linspace(0.0, FASTEST * records.thermal_speed / unit, SPEED_BINS + 1)
-        first = first_speed(plan) + (SPEED_BINS + 1) * kind
+        scale = float(records.sums.disks[ensemble.species_of == kind, SCALE][0])
+        edges = np.linspace(0.0, SPEED_BINS / scale, SPEED_BINS + 1)
+        first = first_speed(plan) + SPEED_BINS * kind
         flown = species.number * records.time
         bars = [records.ratio(records.channel(first + k), flown, remembered=True) for k in range(SPEED_BINS)]
         width = edges[1]

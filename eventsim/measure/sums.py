@@ -35,8 +35,8 @@ PATH, SPEED2, HITS = 0, 1, 2
 PER_SPECIES = 3
 """Channels of a species: length of its flights; integral of v^2; contacts with walls."""
 
-SPEED_BINS = 50
-"""Bins of the speed histogram; one more is for what is beyond."""
+SPEED_BINS = 80
+"""Bins of the speed histogram; an even number.  They double in width when a disk is faster than the last one."""
 
 PIECES = 4
 """Parts of a flight under gravity, each with a speed of its own in the histogram."""
@@ -126,7 +126,7 @@ class Sums(NamedTuple):
 
 def channels_of(plan: Plan) -> int:
     """The number of channels of a bin."""
-    return first_speed(plan) + plan.kinds * (SPEED_BINS + 1)
+    return first_speed(plan) + plan.kinds * SPEED_BINS
 
 
 def first_pair(plan: Plan) -> int:
@@ -180,9 +180,28 @@ def turn(sums: Sums, channel: int, time: float, change: float) -> None:
     sums.rates[channel] += change
 
 
-def slot_of(plan: Plan, species: int, speed: float, scale: float) -> int:
-    """The channel of a speed in the histogram of its species."""
-    return first_speed(plan) + (SPEED_BINS + 1) * species + int(min(speed * scale, float(SPEED_BINS)))
+def slot_of(plan: Plan, sums: Sums, i: int, speed: float, time: float) -> int:
+    """The channel of a speed in the histogram of the species of disk i, at a time since ORIGIN."""
+    disks = sums.disks
+    while speed * disks[i, SCALE] >= SPEED_BINS:
+        widen(plan, sums, int(disks[i, SPECIES]), time)
+    return first_speed(plan) + SPEED_BINS * int(disks[i, SPECIES]) + int(speed * disks[i, SCALE])
+
+
+def widen(plan: Plan, sums: Sums, species: int, time: float) -> None:
+    """Double the width of the bins of speed of a species."""
+    first, bins, rates = first_speed(plan) + SPEED_BINS * species, sums.bins, sums.rates
+    for k in range(SPEED_BINS):
+        turn(sums, first + k, time, 0.0)
+    for k in range(SPEED_BINS):
+        one, other = first + 2 * k, first + 2 * k + 1
+        inside = k < SPEED_BINS // 2
+        rates[first + k] = rates[one] + rates[other] if inside else 0.0
+        for place in range(MOST_BINS):
+            bins[place, first + k] = bins[place, one] + bins[place, other] if inside else 0.0
+    for i in range(len(sums.disks)):
+        if int(sums.disks[i, SPECIES]) == species:
+            sums.disks[i, SCALE] *= 0.5
 
 
 def hold(plan: Plan, sums: Sums, i: int, time: float, sign: float) -> None:
@@ -196,7 +215,7 @@ def hold(plan: Plan, sums: Sums, i: int, time: float, sign: float) -> None:
     general = GENERAL + PER_SPECIES * species
     turn(sums, general + PATH, time, sign * speed)
     turn(sums, general + SPEED2, time, sign * speed2)
-    turn(sums, slot_of(plan, species, speed, disks[i, SCALE]), time, sign)
+    turn(sums, slot_of(plan, sums, i, speed, time), time, sign)
     if mass > 0.0:
         turn(sums, ENERGY, time, sign * 0.5 * mass * speed2)
         turn(sums, XX, time, sign * mass * vx * vx)
@@ -231,7 +250,7 @@ def spread(sums: Sums, begin: float, end: float, channel: int, rate: float) -> N
 def fall(plan: Plan, sums: Sums, i: int, duration: float, time: float) -> None:
     """Add a flight of disk i under gravity, which ends at a time since ORIGIN, to the bins; the disk has its velocity then."""
     disks = sums.disks
-    mass, species, scale = disks[i, MASS], int(disks[i, SPECIES]), disks[i, SCALE]
+    mass, species = disks[i, MASS], int(disks[i, SPECIES])
     gx, gy = disks[i, GX], disks[i, GY]
     general = GENERAL + PER_SPECIES * species
     part = duration / PIECES
@@ -250,7 +269,7 @@ def fall(plan: Plan, sums: Sums, i: int, duration: float, time: float) -> None:
         speed = (math.sqrt(ux * ux + uy * uy) + 4.0 * math.sqrt(middle) + math.sqrt(ex * ex + ey * ey)) / 6.0
         spread(sums, begin, end, general + PATH, speed)
         spread(sums, begin, end, general + SPEED2, speed2)
-        spread(sums, begin, end, slot_of(plan, species, math.sqrt(middle), scale), 1.0)
+        spread(sums, begin, end, slot_of(plan, sums, i, math.sqrt(middle), time), 1.0)
         if mass > 0.0:
             spread(sums, begin, end, ENERGY, 0.5 * mass * speed2)
             spread(sums, begin, end, XX, mass * (ux * ux + 4.0 * mx * mx + ex * ex) / 6.0)

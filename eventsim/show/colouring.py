@@ -99,7 +99,7 @@ def _mapped(amount: Callable[[Frame], Floats], scale: Scale) -> Colouring:
 
 
 def _by_speed(overview: Overview) -> Colouring:
-    scale = Scale("speed", 0.0, overview.usual, beyond=overview.fastest > overview.usual)
+    scale = Scale("speed", 0.0, overview.usual, beyond=overview.falls or overview.fastest > overview.usual)
     return _mapped(lambda frame: np.hypot(*frame.state.velocity.T), scale)
 
 

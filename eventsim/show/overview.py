@@ -23,13 +23,15 @@ class Overview:
     """A log at a glance.
 
     usual: a speed above 0 that `FASTEST_SHARE` of the flights do not pass. fastest: of any. contacts: (N,) of each disk.
-    corners: (2, 2) the least and the largest coordinates of contacts on the scene's axes, (0, 2) without any.
+    corners: (2, 2) the least and the largest coordinates of contacts on the scene's axes, (0, 2) without any. falls: whether disks
+    may be faster between their rows than these tell.
     """
 
     usual: float
     fastest: float
     contacts: NDArray[np.int64]
     corners: Floats
+    falls: bool
 
 
 def overview_of(log: Told, corner: tuple[float, float]) -> Overview:
@@ -53,4 +55,4 @@ def overview_of(log: Told, corner: tuple[float, float]) -> Overview:
         corners += [places.min(axis=0), places.max(axis=0)] if len(rows) else []
     usual = float(np.quantile(np.concatenate(speeds), FASTEST_SHARE)) or fastest or 1.0
     ends = np.array([np.min(corners, axis=0), np.max(corners, axis=0)]) + corner if corners else np.empty((0, 2))
-    return Overview(usual, fastest, contacts, ends)
+    return Overview(usual, fastest, contacts, ends, log.scene.gravity is not None)

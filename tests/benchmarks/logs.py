@@ -1,9 +1,11 @@
-"""What a log costs: rates with none, and with each format, compact and full; repeats in turn, medians, ratios within the run.
+"""What logs and measures cost: rates with none, and with each; repeats in turn, medians, ratios within the run.
 
     python -m tests.benchmarks.logs [--n 1000 10000 100000] [--eta 0.5] [--contacts 2e6] [--repeats 5] [--csv FILE]
 
 The gas is that of `rates`.  Elapsed time counts until the file is whole.  `own_ratio` compares the CPU time of the thread that
 simulates and closes the file: what remains of the ratio where the writer has a core of its own.
+
+`measures` keeps no log, and measures.  Where there is a second core, it takes what is larger: `own_ratio`, or `cpu_ratio` - 1.
 
 `none beside` keeps no log either, while another process keeps a second core busy: on a machine whose cores share their units,
 or are lent by a host, that alone costs something, from one minute to the next, and no log can cost less.
@@ -27,7 +29,8 @@ from tests.benchmarks.table import Table, arguments, whole
 RATIOS = ("ratio", "own_ratio", "cpu_ratio")
 COLUMNS = ("n", "eta", "log", "contacts", "rate_median", *RATIOS, "bytes_per_row")
 BESIDE = "none beside"
-KINDS = ("none", BESIDE, "npz compact", "npz", "parquet compact", "parquet", "csv compact", "csv")
+MEASURES = "measures"
+KINDS = ("none", BESIDE, MEASURES, "npz compact", "npz", "parquet compact", "parquet", "csv compact", "csv")
 TEXT_SHARE = 0.05
 """Text is slower by far: it gets this share of the contacts."""
 
@@ -50,10 +53,11 @@ def busy_core() -> Iterator[None]:
 def run_once(scene: es.Scene, kind: str, contacts: int, folder: Path) -> tuple[float, float, float, float]:
     """(elapsed, own CPU, all CPU) seconds per contact, bytes per row."""
     suffix, _, compact = kind.partition(" ")
-    path = None if suffix == "none" else folder / f"log.{suffix}"
+    path = None if suffix in ("none", MEASURES) else folder / f"log.{suffix}"
     with busy_core() if kind == BESIDE else nullcontext():
         begun = perf_counter(), thread_time(), process_time()
-        run = es.simulate(scene, events=contacts, engine="fast", log=path or False, compact=compact == "compact")
+        wanted = {"measure": 0.0} if kind == MEASURES else {"log": path or False, "compact": compact == "compact"}
+        run = es.simulate(scene, events=contacts, engine="fast", **wanted)
         ended = perf_counter(), thread_time(), process_time()
     size = 0 if path is None else path.stat().st_size
     if path is not None:

@@ -155,3 +155,30 @@ def test_d_is_told_against_the_lag():
     assert found.diffusion[k] == pytest.approx((found.msd[k] - found.msd[half]) / (2.0 * found.lag[k]), rel=1e-12)
     assert np.isnan(found.diffusion[0])
     assert found.to_dict()["diffusion"][0] is None
+
+
+def test_the_histogram_of_speeds_grows_with_the_speeds():
+    """A gas that begins slow and falls from a height, and one that is kicked: all of the time is in the bins."""
+    gas = lattice_gas(16, 0.1, es.Box, seed=3)
+    side, disks = gas.domain.size[0], es.Disks(gas.disks.position, 0.01 * gas.disks.velocity, gas.disks.radius)
+    run = es.simulate(es.Scene(disks, es.Box((side, side)), gravity=(0.0, -5.0)), events=600, engine="reference", log=True)
+    (one,) = measure(run.log, discard=0.0).speeds
+    assert (one.density * np.diff(one.edges)).sum() == pytest.approx(1.0, rel=1e-9)
+    fastest = max(float(np.hypot(run.log.vxa, run.log.vya).max()), 0.0)
+    assert one.edges[-1] > fastest
+    seen = np.flatnonzero(one.density)[-1]
+    assert one.edges[seen + 1] > 0.8 * fastest
+    sim = es.Simulation(gas, engine="reference")
+    sim.advance_to(0.5)
+    sim.set_velocity(3, (50.0, 1.0))
+    sim.advance_to(1.0)
+    (one,) = measure(sim.log, discard=0.0).speeds
+    assert (one.density * np.diff(one.edges)).sum() == pytest.approx(1.0, rel=1e-9)
+    assert one.edges[-1] > 50.0
+
+
+def test_species_that_began_apart_are_not_called_equilibrated_before_they_mix():
+    measures = measured(es.gallery("mixture"), events=3000)
+    assert any("began apart" in doubt for doubt in measures.doubts)
+    mixed = lattice_gas(36, 0.2, es.Periodic, seed=3, masses=(1.0, 3.0))
+    assert not any("began apart" in doubt for doubt in measured(mixed, events=600).doubts)

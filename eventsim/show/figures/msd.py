@@ -6,6 +6,8 @@ Non-uniform Gases (1970), chapter 16; good at low density.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -36,7 +38,7 @@ def draw(figure: Figure, log: Told) -> None:
     _draw_diffusion(below, measures, log)
     who = plural(measures.disks, "disk") if measures.disks else plural(measures.tracers, "tracer")
     told = measures.by_name.get("diffusion")
-    verdict = "" if told is None or told.error != told.error else f", D = {told.value:.3g} \N{PLUS-MINUS SIGN} {told.error:.1g}"
+    verdict = "" if told is None or math.isnan(told.error) else f", D = {told.value:.3g} \N{PLUS-MINUS SIGN} {told.error:.1g}"
     label(above, "", f"$\\langle r^2\\rangle$ [{LENGTH}$^2$]", f"{name_of(log)}: {who}{verdict}")
     label(below, f"lag [{TIME}]", f"D [{LENGTH}$^2$ / {TIME}]", "")
     above.legend(frameon=False)
@@ -60,10 +62,13 @@ def _draw_diffusion(axes: Axes, measures: Measures, log: Told) -> None:
     with np.errstate(invalid="ignore"):
         sure = np.isfinite(slope) & (slope > SURE * error)
     axes.errorbar(found.lag[sure], slope[sure], error[sure], fmt="o", ms=3.5, lw=1, color=BLUE)
-    rate, heat = measures.by_name.get("collision_rate"), measures.by_name.get("temperature")
-    mass = np.unique(log.scene.disks.mass)
-    if rate is not None and heat is not None and len(mass) == 1 and rate.value > 0.0 and heat.value > 0.0:
-        enskog = enskog_diffusion(heat.value, float(mass[0]), rate.value)
+    rate = measures.by_name.get("collision_rate")
+    if rate is not None and rate.theory is not None:  # a fluid of equal disks
+        enskog = enskog_diffusion(measures["temperature"].value, float(log.scene.disks.mass[0]), rate.value)
         axes.axhline(enskog, color=GREEN, lw=1.3, label="Enskog, kT / (m rate)")
         axes.legend(frameon=False)
+    told = measures.by_name.get("diffusion")
+    if not sure.any():
+        why = told.doubt if told is not None and math.isnan(told.value) else "it is not known"
+        axes.text(0.5, 0.5, f"no D: {why}", transform=axes.transAxes, ha="center", va="center", color="#5b6570")
     axes.set_ylim(0.0, None)

@@ -29,9 +29,10 @@ def draw(figure: Figure, log: Told) -> None:
     if not len(series.time):
         raise LogError("series: there is nothing to draw: no time passes")
     panels = figure.subplots(2, 2)
-    _line(panels[0, 0], series.time, series.energy, TIME, "kinetic energy")
-    _line(panels[1, 0], series.time, series.collision_rate, TIME, f"contacts of a disk / {TIME}")
-    _line(panels[1, 1], series.time, series.pressure, TIME, "pressure")
+    time = f"time [{TIME}]"
+    _line(panels[0, 0], series.time, series.energy, time, "kinetic energy")
+    _line(panels[1, 0], series.time, series.collision_rate, time, f"contacts of a disk / {TIME}")
+    _line(panels[1, 1], series.time, series.pressure, time, "pressure")
     warm = panels[0, 1]
     _line(warm, series.contacts, series.temperature, "contacts of a disk", "temperature kT")
     fall = measures.by_name.get("cooling_exponent")
