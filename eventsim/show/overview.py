@@ -23,8 +23,8 @@ class Overview:
     """A log at a glance.
 
     usual: a speed above 0 that `FASTEST_SHARE` of the flights do not pass. fastest: of any. contacts: (N,) of each disk.
-    corners: (2, 2) the least and the largest coordinates of contacts on the scene's axes, (0, 2) without any. falls: whether disks
-    may be faster between their rows than these tell.
+    corners: (2, 2) the least and the largest coordinates of contacts on the scene's axes, (0, 2) without any. falls: whether
+    disks may be faster between their rows than these tell.
     """
 
     usual: float
