@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from eventsim import patience
 from eventsim.engines import engine_named
 from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
@@ -29,8 +30,9 @@ from eventsim.scene.numbers import FASTEST, LONGEST, number, point
 from eventsim.scene.scene import difference
 from eventsim.scene.stage import stage_of
 
-STEP_BUDGET = 4096
-"""Steps of an engine between two looks at whether the next event has come."""
+STEP_BUDGET, FIRST_BUDGET = 4096, 32
+"""Steps of an engine between two looks at whether the next event has come; between the first two, where somebody waits only so
+long: a step may take a hundredth of a second, where ties are told by rationals."""
 
 MOST_WRAPS = 200_000
 """Wraps without an event after which `step` no longer waits for one."""
@@ -266,6 +268,7 @@ class Simulation:
         """Let time pass to `time` on the scene's clock; the rows of what happened.
 
         events: stop after so many even where that is earlier; `time` of the simulation tells which came first.
+        It also stops earlier where nobody waits any more (`eventsim.patience`).
         Raises CollapseError as step; EventsimError for a time that has passed.
         """
         time = number(time, "time")
@@ -316,9 +319,13 @@ class Simulation:
     def _advance(self, stop: Stop) -> Rows:
         before, begun = len(self._blocks), self.time
         stopped, wraps = None, self.counters.wraps
+        budget = FIRST_BUDGET if patience.is_bounded() else STEP_BUDGET
         while stopped is None:
-            stopped = self._advanced(stop)
+            stopped = self._advanced(stop, budget)
+            budget = min(2 * budget, STEP_BUDGET)
             self._keep()
+            if stopped is None and patience.is_over():
+                stopped = "patience"
             if stopped is None and stop.until is None and self.counters.wraps - wraps > MOST_WRAPS:
                 self._time = None
                 raise EventsimError(
@@ -339,11 +346,11 @@ class Simulation:
         self._blocks[before:] = [unchangeable(np.concatenate(blocks))]
         return self._blocks[-1]
 
-    def _advanced(self, stop: Stop) -> str | None:
+    def _advanced(self, stop: Stop, budget: int) -> str | None:
         """A stint of the engine, which Ctrl-C may break off."""
         self._demand_whole()
         self._broken_off = True
-        stopped = self._session.advance(stop, STEP_BUDGET)
+        stopped = self._session.advance(stop, budget)
         self._broken_off = False
         return stopped
 

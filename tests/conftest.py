@@ -3,7 +3,30 @@
 from __future__ import annotations
 
 import signal
+import subprocess
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # Whoever starts tests in the background makes them ignore interrupts, and all programs that they start to interrupt them.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(autouse=True)
+def no_process_is_left(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """End what a test has started and not ended, as one that fails does: a run without an end would go on for ever."""
+    started: list[subprocess.Popen[Any]] = []
+
+    class Started(subprocess.Popen):
+        def __init__(self, *words: Any, **options: Any) -> None:
+            super().__init__(*words, **options)
+            started.append(self)
+
+    monkeypatch.setattr(subprocess, "Popen", Started)
+    yield
+    for process in started:
+        if process.poll() is None:
+            process.kill()
+            process.wait()

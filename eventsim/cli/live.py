@@ -6,6 +6,7 @@ import asyncio
 import os
 import threading
 from collections.abc import Coroutine
+from ipaddress import ip_address
 from typing import Any
 
 import click
@@ -14,7 +15,7 @@ from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.output import DONE, say
 from eventsim.errors import EventsimError
 
-PORT = 8642
+HOST, PORT = "127.0.0.1", 8642
 
 PATIENCE = 1.5
 """Seconds that a server which was ended has to take leave."""
@@ -29,6 +30,13 @@ PATIENCE = 1.5
     show_default=True,
     help="Port on this machine; 0: any that is free.",
 )
+@click.option(
+    "--host",
+    default=HOST,
+    show_default=True,
+    metavar="ADDRESS",
+    help="Listen at this address of the machine (0.0.0.0: at all), for a classroom: who is told the page's address can use it.",
+)
 @click.option("--no-browser", is_flag=True, help="Only print the address; open no browser.")
 @json_option
 @quiet_option
@@ -37,6 +45,7 @@ def command(
     settings: tuple[str, ...],
     seed: int | None,
     port: int,
+    host: str,
     no_browser: bool,
     as_json: bool,
     quiet: bool,
@@ -46,13 +55,15 @@ def command(
     The page plays, pauses, reverses, steps from event to event; while it is paused, disks can be thrown and moved. It
     measures what it shows, compares it with a per-frame engine side by side, and downloads scene and log. The server
     simulates a few seconds ahead and sends events; the page draws what lies between them, exactly. It listens on
-    127.0.0.1 alone and ends with Ctrl-C. What the keys until and events of a scene say is not heeded: it goes on.
+    127.0.0.1 alone unless --host says otherwise, and ends with Ctrl-C. What the keys until and events of a scene say is
+    not heeded: it goes on.
 
     \b
     Examples:
       eventsim live
       eventsim live break
       eventsim live my.toml --set restitution=0.9 --port 9000 --no-browser
+      eventsim live --host 0.0.0.0 --no-browser      for a classroom; what is sent is not encrypted
 
     \b
     Keys of --json:
@@ -67,6 +78,8 @@ def command(
 
     if scene is None and (settings or seed is not None):
         raise click.UsageError("--set and --seed shape a scene: name one")
+    if not _is_address(host):
+        raise click.UsageError(f"--host {host}: must be an address in numbers, such as 192.168.0.10 or 0.0.0.0")
     chosen = None if scene is None else chosen_scene(scene, settings, seed)
     try:
         from eventsim.live.server import serve
@@ -84,9 +97,17 @@ def command(
             webbrowser.open(address)
 
     try:
-        asyncio.run(_served(serve(chosen, port, tell)))
+        asyncio.run(_served(serve(chosen, port, tell, host)))
     except KeyboardInterrupt:
         say("", err=True)  # after the ^C that the terminal shows
+
+
+def _is_address(text: str) -> bool:
+    try:
+        ip_address(text)
+    except ValueError:
+        return False
+    return True
 
 
 async def _served(server: Coroutine[Any, Any, None]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from eventsim.errors import SceneError
 from eventsim.growth.compiled import grower
 from eventsim.growth.kernel import ARRIVED, Floats, Indices, Stretch
+from eventsim.patience import go_on
 
 Point: TypeAlias = tuple[float, float]
 
@@ -111,6 +112,7 @@ class _Growth:
         turn = math.sqrt(DENSE / self.share)
         before, left = self.scale, PATIENCE * n
         while self.scale < target:
+            go_on("to compress these disks")
             fast = self.scale < turn
             rate = self.growth * slowness * (FAST if fast else SLOW)
             goal = min(target, turn) if fast else target

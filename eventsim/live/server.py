@@ -1,18 +1,21 @@
-"""The server: the page, its socket and its downloads, for this machine alone."""
+"""The server: the page, its socket and its downloads, for this machine alone unless its user says otherwise."""
 
 from __future__ import annotations
 
 import asyncio
 import secrets
 import tempfile
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from importlib.resources import files
+from ipaddress import ip_address
 from pathlib import Path
+from socket import AF_INET, AF_INET6, SOCK_DGRAM, gethostname, socket
 
 from aiohttp import web
 
 from eventsim import __version__
 from eventsim.errors import EventsimError
+from eventsim.live.connections import IDLE_SECONDS, Connections, Handler
 from eventsim.live.packets import packet
 from eventsim.live.viewer import Viewer
 from eventsim.live.world import World
@@ -26,6 +29,9 @@ HOST = "127.0.0.1"
 MOST_VIEWERS = 64
 MOST_BYTES = 1 << 20
 """Of a message: a scene file of some thousand disks. A longer one ends the connection, with a reason."""
+
+WRITE_SECONDS = 60.0
+"""How long a client may take for a block of a download."""
 
 ALL_EVENTS = 10_000_000
 """Events that all worlds together keep (1.3 GB)."""
@@ -69,8 +75,6 @@ HEADERS = {
 
 OWN = ("same-origin", "none")
 """What browsers say of requests of the page itself, and of an address that was typed. Source: W3C, Fetch Metadata."""
-
-Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class House:
@@ -134,7 +138,7 @@ class House:
             await response.prepare(request)
             with path.open("rb") as file:
                 while block := file.read(MOST_BYTES):
-                    await response.write(block)
+                    await asyncio.wait_for(response.write(block), WRITE_SECONDS)
             await response.write_eof()
             return response
 
@@ -155,16 +159,20 @@ class House:
         return packet("hello", version=__version__, gallery=gallery, given=given)
 
 
-def application(given: Scene | None = None, token: str = "") -> web.Application:
+def application(
+    given: Scene | None = None, token: str = "", connections: Connections | None = None
+) -> web.Application:
     """Return the server's application.
 
     Args:
         given: the scene that a page begins with, None: what the menu says.
         token: what all addresses begin with, so that only who was told it finds anything.
+        connections: who closes those that ask for nothing.
     """
     prefix = f"/{token}" if token else ""
     house = House(given, prefix)
-    app = web.Application(middlewares=[refuse_foreigners])
+    told = [] if connections is None else [connections.middleware()]
+    app = web.Application(middlewares=[*told, refuse_foreigners])
     app.add_routes([web.get(prefix + path, house.page) for path in PAGE])
     app.router.add_get(prefix + "/socket", house.socket)
     app.router.add_get(prefix + "/worlds/{world}/scene.toml", house.scene_file)
@@ -176,37 +184,68 @@ def application(given: Scene | None = None, token: str = "") -> web.Application:
 async def refuse_foreigners(request: web.Request, handler: Handler) -> web.StreamResponse:
     """Refuse requests that pages of other origins make, and names of this machine that others may have given it."""
     assert request.transport is not None
-    port = request.transport.get_extra_info("sockname")[1]  # not what the request says of itself
-    here = {f"{name}:{port}" for name in (HOST, "localhost")}
-    if port == 80:
-        here |= {HOST, "localhost"}
+    address, port = request.transport.get_extra_info("sockname")[:2]  # not what the request says of itself
+    known = {_in_address(address), *(("localhost",) if ip_address(address).is_loopback else (gethostname().lower(),))}
+    here = {f"{name}:{port}" for name in known} | (known if port == 80 else set())
     origin = request.headers.get("Origin")
-    foreign = origin is not None and origin.removeprefix("http://") not in here
-    if request.host not in here or foreign or request.headers.get("Sec-Fetch-Site", "none") not in OWN:
+    foreign = origin is not None and origin.lower().removeprefix("http://") not in here
+    if request.host.lower() not in here or foreign or request.headers.get("Sec-Fetch-Site", "none") not in OWN:
         raise web.HTTPForbidden(
             text="this server is for its own page on this machine; a page from elsewhere is refused"
         )
     return await handler(request)
 
 
-async def serve(given: Scene | None, port: int, ready: Callable[[str], None]) -> None:
-    """Serve until cancelled; ready(address) is called once the page can be opened. port 0: any that is free.
+async def serve(given: Scene | None, port: int, ready: Callable[[str], None], host: str = HOST) -> None:
+    """Serve until cancelled; ready(address) is called once the page can be opened.
 
-    Raises EventsimError where the port is taken.
+    Args:
+        given: see `application`.
+        port: 0 takes any that is free.
+        ready: who hears of the address.
+        host: an address of this machine, at which others may reach it; 0.0.0.0 stands for all of them.
+
+    Raises:
+        EventsimError: where the port is taken, or the address is none of this machine.
     """
-    token = secrets.token_urlsafe(16)
-    runner = web.AppRunner(application(given, token), access_log=None, shutdown_timeout=1.0)
+    token, connections = secrets.token_urlsafe(16), Connections()
+    application_ = application(given, token, connections)
+    runner = web.AppRunner(application_, access_log=None, shutdown_timeout=0.5, keepalive_timeout=IDLE_SECONDS)
     await runner.setup()
+    watching = None
     try:
         try:
-            site = web.TCPSite(runner, HOST, port)
+            site = web.TCPSite(runner, host, port)
             await site.start()
         except OSError as error:
-            raise EventsimError(f"port {port} cannot be used ({error.strerror}): choose another with --port") from None
-        ready(f"http://{HOST}:{runner.addresses[0][1]}/{token}/")
+            why = error.strerror or error
+            raise EventsimError(f"{host}, port {port} cannot be used ({why}): see --port and --host") from None
+        assert runner.server is not None
+        watching = asyncio.create_task(connections.watch(runner.server))
+        ready(f"http://{_in_address(_told(host))}:{runner.addresses[0][1]}/{token}/")
         await asyncio.Event().wait()
     finally:
+        if watching is not None:
+            watching.cancel()
         await runner.cleanup()
+
+
+def _in_address(host: str) -> str:
+    """How a numerical address stands in one of a page."""
+    return f"[{host}]" if ":" in host else host
+
+
+def _told(host: str) -> str:
+    """The address to tell for one that is listened at: of all addresses the one by which this machine reaches others."""
+    if not ip_address(host).is_unspecified:
+        return host
+    there = ("203.0.113.1", 9) if ip_address(host).version == 4 else ("2001:db8::1", 9)  # nobody's; nothing is sent
+    with socket(AF_INET if ip_address(host).version == 4 else AF_INET6, SOCK_DGRAM) as asked:
+        try:
+            asked.connect(there)
+        except OSError:
+            return HOST
+        return str(asked.getsockname()[0])
 
 
 def _attachment(name: str) -> dict[str, str]:

@@ -10,9 +10,13 @@ from eventsim.errors import EventsimError, SceneError
 from eventsim.scene import Scene
 from eventsim.scene.files import scene_from_dict
 from eventsim.scene.gallery import Value, gallery
+from eventsim.scene.walls import parts_of
 
 MOST_DISKS = 5000
 """Disks in a live view; more are for files and movies."""
+
+MOST_SHAPES = 1000
+"""Walls, their edges counted: the first look of all disks at all of them must not take minutes."""
 
 ABOUT_COUNTS = ("n", "n_small", "n_large")
 """Parameters of built-in scenes that count disks."""
@@ -68,6 +72,14 @@ class Text:
             if isinstance(gas, dict):
                 demand_few(gas.get("count", 0), "gas.count")
         return scene_from_dict(data)
+
+
+def demand_small(scene: Scene) -> None:
+    """Raise where a scene is too large for a live view."""
+    demand_few(len(scene.disks), "disks")
+    shapes = len(parts_of(scene.walls))
+    if shapes > MOST_SHAPES:
+        raise EventsimError(f"a live view has at most {MOST_SHAPES} walls, edges counted, and there are {shapes}")
 
 
 def demand_few(count: object, what: str) -> None:

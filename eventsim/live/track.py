@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.errors import CollapseError
+from eventsim.errors import CollapseError, EventsimError
+from eventsim.patience import patience
 from eventsim.record.events import Rows, State, blank_rows
 from eventsim.replay.log import EventLog
 from eventsim.scene import Scene
@@ -20,6 +21,12 @@ FIRST_PIECE, LONGEST_PIECE = 256, 1 << 16
 
 PIECE_SECONDS = 0.02
 """What a piece should take: short enough for twenty worlds to share two cores, long enough to be worth a thread."""
+
+LONGEST_SECONDS = 0.1
+"""What a piece may take that has few events and much else to do, as disks that fly around a torus."""
+
+MARK_SECONDS, REWIND_SECONDS = 0.5, 10.0
+"""Seconds of work between two points to go back to, at most; seconds that going back may take."""
 
 MARK_EVENTS, MARK_EVENTS_PER_DISK = 4096, 16
 """Events between two points that a track can go back to; going back simulates at most so many again."""
@@ -52,6 +59,7 @@ class Track:
         self._blocks: list[Rows] = []
         self._ends: list[int] = []
         self._piece = FIRST_PIECE
+        self._worked = 0.0
         self._spacing = max(MARK_EVENTS, MARK_EVENTS_PER_DISK * len(scene.disks))
         self._marks = [Mark(0.0, 0, self.simulation.snapshot())] if returns else []
 
@@ -67,14 +75,17 @@ class Track:
         began = perf_counter()
         events = max(min(self._piece, most), 1)
         try:
-            rows = simulation.advance_to(target, events)
+            with patience(LONGEST_SECONDS):
+                rows = simulation.advance_to(target, events)
         except CollapseError as error:
             rows = simulation.log.rows[self.count :].copy()
             self.ended = str(error)
         self._append(rows)
-        if self.ended is None and simulation.time >= target:
-            self.horizon = max(self.horizon, goal)
+        if self.ended is None:  # what is before the clock is known, also where nothing but wraps came
+            reached = goal if simulation.time >= target else simulation.time - self.scene.start_time
+            self.horizon = max(self.horizon, reached)
         took = perf_counter() - began
+        self._worked += took
         if took > 2.0 * PIECE_SECONDS:
             self._piece = max(self._piece // 2, 1)
         elif took < PIECE_SECONDS and len(rows) >= events:
@@ -91,8 +102,11 @@ class Track:
             ([mark_rows], [mark.count]) if len(mark_rows := self.rows(0, mark.count)) else ([], [])
         )
         self.horizon, self.ended = mark.time, None
+        began = perf_counter()
         while self.horizon < time and self.ended is None:
             self.advance(time)
+            if perf_counter() - began > REWIND_SECONDS:
+                raise EventsimError(f"time = {time:g} takes too long to compute again: act at an earlier one")
         return self.simulation.state
 
     def kick(self, disk: int, velocity: tuple[float, float]) -> None:
@@ -139,8 +153,10 @@ class Track:
                 self._ends.append(count)
 
     def _mark(self) -> None:
-        if not self._marks or self.ended is not None or self.count - self._marks[-1].count < self._spacing:
+        near = self.count - self._marks[-1].count < self._spacing if self._marks else True
+        if not self._marks or self.ended is not None or (near and self._worked < MARK_SECONDS):
             return
+        self._worked = 0.0
         self._marks.append(Mark(self.horizon, self.count, self.simulation.snapshot()))
         if len(self._marks) > MOST_MARKS:
             del self._marks[1::2]

@@ -16,8 +16,9 @@ from eventsim.errors import EventsimError
 from eventsim.live.described import gas_of, settings_of
 from eventsim.live.messages import OPPONENTS, Move, Open, Resize, Throw
 from eventsim.live.packets import packet
-from eventsim.live.source import demand_few
+from eventsim.live.source import demand_small
 from eventsim.live.track import Track
+from eventsim.patience import patience
 from eventsim.record.events import State
 from eventsim.replay.replay import Replay
 from eventsim.scene import Box, Disks, Scene
@@ -43,6 +44,9 @@ SECONDS = 10.0
 
 CROSSING_SECONDS = 5.0
 """Where there is no such span: how long a disk of usual speed takes to cross the picture."""
+
+MAKING_SECONDS = 20.0
+"""How long a page waits for its disks to be placed; a file or a notebook waits longer."""
 
 MOST_PER_FRAME = 1000
 """Disks in a comparison: some engines, and the page that looks for overlaps, go through all pairs in each frame."""
@@ -100,7 +104,8 @@ class World:
             source = message.source
             if source is None and self._given is None:
                 raise EventsimError("the server was started without a scene: choose one, or use the menu")
-            scene = self._given if source is None else await asyncio.to_thread(source.scene)
+            with patience(MAKING_SECONDS):
+                scene = self._given if source is None else await asyncio.to_thread(source.scene)
             assert scene is not None
             pace = None if source is None else source.pace
             self._opponent = message.opponent
@@ -147,7 +152,7 @@ class World:
 
     async def _begin(self, scene: Scene, rate: float | None, why: str, pace: float | None) -> None:
         """Put a scene before the viewers, which is held still. pace: scene time per second, None: as suits it."""
-        demand_few(len(scene.disks), "disks")
+        demand_small(scene)
         notice = None
         track, speed, header, columns = await asyncio.to_thread(_scouted, scene, pace)
         tracks = [track]
@@ -189,10 +194,11 @@ class World:
             raise EventsimError(f"disk {disk} does not exist; there are {len(track.scene.disks)}, counted from 0")
         if time > track.horizon:
             raise EventsimError(f"time = {time:g}: is not simulated yet, and no page shows it; {track.horizon:g} is")
-        state = await asyncio.to_thread(track.rewind, time)
-        for viewer in self.viewers:
-            viewer.cut(track.count, track.horizon)
-        return state
+        try:
+            return await asyncio.to_thread(track.rewind, time)
+        finally:
+            for viewer in self.viewers:
+                viewer.cut(track.count, track.horizon)
 
     @asynccontextmanager
     async def _changing(self) -> AsyncIterator[None]:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.patience import go_on
 from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.disks import Floats
 from eventsim.scene.numbers import Point
@@ -53,6 +54,7 @@ def insert_at_random(
     left = LEAST_DROPS + DROPS_PER_DISK * count
     while len(placed) < count and left > 0:
         left -= batch
+        go_on("to place these disks at random")
         drops = lower + extent * rng.random((batch, 2))
         drops = drops[free(drops)]
         taken = np.zeros(len(drops), dtype=np.bool_)

@@ -5,6 +5,8 @@ import math
 import pytest
 
 import eventsim as es
+from eventsim.engines.ends import end_of_clock
+from eventsim.scene.stage import stage_of
 from eventsim.validation.stress.catalogue.scenes import on_plane
 from tests.engines.scenes import lattice_gas
 
@@ -85,3 +87,11 @@ def test_disks_that_part_for_ever_need_no_clock(engine):
     apart = es.Disks([[0.0, 0.0], [3.0, 0.0]], [[0.0, 0.0], [1.0, 0.0]], 0.5)
     run = es.simulate(es.Scene(apart, es.Open()), events=9, engine=engine)
     assert (run.stopped, run.reason) == ("quiet", None)
+
+
+def test_a_clock_that_ends_before_a_contact_that_nobody_can_name_says_so():
+    """The time of no contact is no number that could be told."""
+    stage = stage_of(es.gallery("two-disks"))
+    word, sentence = end_of_clock(stage, 5, 0.5, math.inf, ahead=True)
+    assert word == "digits"
+    assert "a contact may still be ahead; a scene" in sentence

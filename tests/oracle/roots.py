@@ -131,11 +131,14 @@ def _bound(p: Polynomial) -> Decimal:
 
 
 def _power(x: Decimal, n: int) -> Decimal:
-    """x to the power 1/n, n from 1 to 4, to a few digits."""
+    """x to the power 1/n, n from 1 to 4, to a few digits upwards."""
     if n == 1:
         return x
-    tens = x.adjusted() // n
-    return Decimal(float(x.scaleb(-n * tens)) ** (1.0 / n)).scaleb(tens)
+    if n == 2:
+        return root(x)
+    if n == 4:
+        return root(root(x))
+    return (x.ln() / 3).exp()
 
 
 def _root_between(p: Polynomial, low: Decimal, high: Decimal, before: int) -> Decimal:

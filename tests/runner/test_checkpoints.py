@@ -260,3 +260,26 @@ def test_a_checkpoint_is_the_old_or_the_new_one(tmp_path, monkeypatch):
     with pytest.raises(BrokenOff):
         es.resume(path, events=200)
     assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("suffix", LOGS)
+@pytest.mark.parametrize("where", ["", ".part"])
+def test_a_checkpoint_without_rows_replaces_no_other_log(tmp_path, suffix, where):
+    """It was begun anew over whatever had come to stand there."""
+    path, log = tmp_path / "run.checkpoint", tmp_path / f"run{suffix}"
+    es.simulate(lattice_gas(4, 0.3), events=0, engine="reference", log=log, checkpoint=path)
+    other = es.gallery("two-disks")
+    if where:
+        log.unlink()
+
+        def end(rows):
+            raise BrokenOff
+
+        with pytest.raises(BrokenOff):
+            es.simulate(other, events=5, engine="reference", log=log, on_event=end)
+    else:
+        es.simulate(other, events=5, engine="reference", log=log)
+    before = es.load_log(f"{log}{where}").scene
+    with pytest.raises(es.EventsimError, match="is not the log of the run that goes on"):
+        es.resume(path, events=20)
+    assert es.load_log(f"{log}{where}").scene == before == other

@@ -74,6 +74,9 @@ class StepClock:
             self.epoch += 1 << self.window
             self.window = next_window(self.window, self.window_rows, stage.n, stage.clock.window_cap)
             self.window_rows = 0
+            if self.window >= stage.clock.window_cap:  # windows without a row, all of one length
+                empty = int((time - self.epoch * stage.epoch_length) / window_length(self.window, stage.epoch_length))
+                self.epoch += max(empty - 1, 0) << self.window
 
 
 def usual_step(stage: Stage) -> float:

@@ -4,7 +4,8 @@
 const RETRY_SECONDS = [0.3, 1, 2, 4];
 
 class Link {
-  /* hear(header, columns): called with each packet. broken(): called when the connection is lost. */
+  /* hear(header, columns): called with each packet. broken(replaced): called when the connection is lost;
+     replaced: another server is there, which was started anew and does not know this address. */
   constructor(hear, broken) {
     this.hear = hear;
     this.broken = broken;
@@ -34,7 +35,8 @@ class Link {
     this.socket.onmessage = (event) => this._unpack(event.data);
     this.socket.onclose = () => {
       const wait = RETRY_SECONDS[Math.min(this.failures++, RETRY_SECONDS.length - 1)];
-      this.broken();
+      this.broken(false);
+      fetch(location.pathname, { cache: "no-store" }).then((answer) => { if (answer.status === 404) this.broken(true); }, () => {});
       setTimeout(() => this._connect(), 1000 * wait);
     };
   }

@@ -14,7 +14,7 @@ class LiveView {
     this.world = null;
     this.edition = -1;
     this.resume = null;
-    this.link = new Link((header, columns) => this._hear(header, columns), () => this._lost());
+    this.link = new Link((header, columns) => this._hear(header, columns), (replaced) => this._lost(replaced));
     this.menu.form.addEventListener("submit", (event) => { event.preventDefault(); this.init(); });
     this.part("fold").addEventListener("click", () => this._fold(!root.classList.contains("folded")));
     this.part("file").addEventListener("change", () => this._read(this.part("file").files[0]));
@@ -172,13 +172,15 @@ class LiveView {
     player.await(header.time, header.playing);
   }
 
-  _lost() {
+  _lost(replaced) {
     if (this.player) {
       if (!this.resume) this.resume = { time: this.player.view.time, playing: this.player.playing };
       this.player.pause();
     }
     this.edition = -1;
-    this._notice("The connection to the server is lost; trying again. (eventsim live starts it.)");
+    this._notice(replaced
+      ? "The server was started anew, and told another address: open that one. This page cannot reach it."
+      : "The connection to the server is lost; trying again. (eventsim live starts it.)");
   }
 
   /* The rest of the page. */

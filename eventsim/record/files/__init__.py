@@ -53,6 +53,7 @@ def continued_sink(path: Path, provenance: Provenance, compact: bool, mark: Mark
     """Open a streaming writer that goes on behind the first rows of a log, those up to `mark`.
 
     They are in `NAME.part`, where a run was killed, else in the whole log, which keeps its name until the longer one is whole.
+    Where no row had come, what stands there must still be the log of that run: another one is not replaced.
 
     Args:
         path: of the log.
@@ -63,10 +64,16 @@ def continued_sink(path: Path, provenance: Provenance, compact: bool, mark: Mark
     Raises:
         LogError: where neither file has these rows.
     """
-    if mark.rows == 0:
-        return open_sink(path, provenance, compact)
     part = part_of(path)
     kept = replace(provenance, compact=compact)
+    if mark.rows == 0:
+        for file in (part, path):
+            if file.exists():
+                found, blocks = open_log(file)
+                blocks.close()
+                demand_same(found, kept, file)
+                break
+        return open_sink(path, provenance, compact)
     reasons = []
     if part.exists():
         try:

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 import eventsim as es
 from eventsim.engines import STEPPED
 from eventsim.engines.base import Stop
+from eventsim.engines.stepped.clock import StepClock
 from eventsim.engines.trajectory import MOST_SAMPLES
 from eventsim.replay.replay import Replay
 from eventsim.runner.residuals import residuals_of
@@ -178,3 +180,14 @@ def test_without_numba_the_loops_run_as_plain_python_with_the_same_contacts():
     ]
     assert said[0] == said[1]
     assert said[0].count("\n") == 2
+
+
+def test_a_clock_of_steps_passes_any_number_of_windows_without_a_row_at_once():
+    """A disk thrown at 1e15 makes epochs so short that a second has 1e15 of them: the clock counted each window."""
+    stage = stage_of(es.gallery("two-disks"))
+    short = replace(stage, clock=stage.clock._replace(epoch_length=2.0**-50))
+    clock = StepClock(short, 0.01)
+    clock.now = 3.0
+    epoch, remainder = clock.reading
+    assert epoch * 2.0**-50 + remainder == 3.0
+    assert 0.0 <= remainder < 2.0 ** (stage.clock.window_cap + 1 - 50)
