@@ -176,6 +176,10 @@ class ExactState(ABC):
         """How long before its flight began disk i struck a wall, -1 - its place, or one in line with it; else NOT_LAST."""
         if not has_struck(self.supports, self.met[i], -1 - wall):
             return NOT_LAST
+        return self.since_contact(i)
+
+    def since_contact(self, i: int) -> Real:
+        """How long before its flight began disk i had its last contact."""
         begun, struck = self.t[i], self.contact_time[i]
         return 0.0 if begun is struck else begun - struck
 

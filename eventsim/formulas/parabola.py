@@ -17,7 +17,9 @@ DOUBLINGS = 2000
 
 
 ANY_OVERLAP, PRESENT_OVERLAP, NO_OVERLAP = 2, 1, 0
-"""Which falling pieces that begin with a closed gap are contacts: all; only one that falls already now; none."""
+"""Which falling pieces that begin with a closed gap are contacts: all; only the first one; none.
+
+The first piece of a flight that begins on the circle, or close to it, may begin with a gap that only rounding has closed."""
 
 
 class Round(NamedTuple):
@@ -151,9 +153,9 @@ def round_delays(
                     if found < NEVER:
                         return found, delay
                     found = delay
+                counts = late
             else:
                 fall = turn
-            counts = late
         start = end
         falls = falls_then
     if falls:

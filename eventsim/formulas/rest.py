@@ -12,10 +12,11 @@ place, bounces would never become shorter than sqrt(2 ulp(place) / (a (1 - e)));
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from eventsim.formulas.crossing import closing_delay, crossing_delay
+from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER, Real, is_float, sqrt
-from eventsim.formulas.walls.face import TOUCHING, Face, face_side, hangs_below, is_met, slope
-from eventsim.formulas.walls.point import side_known
+from eventsim.formulas.slide import end_delay, slide_delay
+from eventsim.formulas.walls.face import TOUCHING, Face, flight_side, hangs_below, is_met, slope
+from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Shape
 
 AT_ONCE = 2.0**-48
@@ -244,16 +245,6 @@ def rebound(nx: Real, ny: Real, u: Real, w: Real, speed: Real) -> tuple[Real, Re
     return u - share * nx, w - share * ny
 
 
-def slide_delay(shape: Face, low: float, high: float, x: Real, y: Real, vx: Real, vy: Real, ax: Real, ay: Real) -> Real:
-    """The delay until a disk that slides along a face passes the end of its support."""
-    along = shape.ex * (x - shape.x) + shape.ey * (y - shape.y)
-    rate = shape.ex * vx + shape.ey * vy
-    pull = shape.ex * ax + shape.ey * ay
-    down = closing_delay(along - low, rate, pull) if low > -NEVER else NEVER  # a sealed end is never passed
-    up = closing_delay(high - along, -rate, -pull) if high < NEVER else NEVER
-    return down if down < up else up
-
-
 def border_contact(
     supports: Sequence[Support | None] | None,
     held: Held | None,
@@ -321,9 +312,17 @@ def shape_contact(
             return slide_delay(on.face, on.low, on.high, *flight), held.side, LEFT
         if _is_beside(on.face, shape, held):
             return NEVER, met, STRUCK
+        if held.how == LEFT and isinstance(shape, Post) and shape.lies_on(on.face) and radius > 0.0:
+            delay = end_delay(shape.x, shape.y, *flight, radius, since)
+            if not delay < 0.0:
+                return delay, 1, STRUCK
+        if held.how == LEFT:
+            since = NOT_LAST
     support = supports[place]
     if support is not None:
-        side = side_known(met, beside) or face_side(support.face, *flight[:4])
+        side = flight_side(support.face, met, beside, *flight[:4], radius)
+        if met != 0 and side != met:  # it has come round an end since
+            since = NOT_LAST
         delay = rest_on_face_delay(support.face, side, support.low, support.high, *flight, radius, restitution, t, since)
         if delay < NEVER:
             return delay, side, SUPPORTED

@@ -91,8 +91,8 @@ def test_what_brackets_the_cubic(polynomial, roots):
     [
         (-1.0, 0.0, 0.0, NEVER),  # it falls
         (0.0, 0.0, 0.0, NEVER),  # it is about to
-        (0.25, 0.125, NEVER, NEVER),  # it rises by 1/64 and falls again, closed all the time
-        (0.5, 0.25, NEVER, NEVER),
+        (0.25, 0.125, 0.125, NEVER),  # it rises by 1/64 and falls again, closed all the time
+        (0.5, 0.25, 0.25, NEVER),
     ],
 )
 def test_a_closed_gap_counts_as_the_caller_says(speed, any_overlap, present, none):

@@ -21,6 +21,7 @@ def count(name: str, judge: Callable[[Generator, str], Verdict], scenes: int, se
         verdict = judge(np.random.default_rng([seed, k]), engine)
         words["wrong" if verdict.wrong else "refused" if verdict.refused else "right"] += 1
         words["exact hits"] += verdict.exact
+        words["at rest between two walls"] += verdict.held
         if verdict.wrong:
             wrong.append(f"{k}: {verdict.wrong}")
         if verdict.refused:

@@ -86,3 +86,12 @@ def floor_height(points: Sequence[Point], x: float) -> float:
         if ax <= x <= bx:
             return ay + (by - ay) * ((x - ax) / (bx - ax))
     raise ValueError(x)
+
+
+def is_valley(points: Sequence[Point], x: float, y: float, near: float) -> bool:
+    """Whether a place is at a point of a chain between two borders from which both ways lead up."""
+    for k, (px, py) in enumerate(points):
+        beside = [points[j][1] for j in (k - 1, k + 1) if 0 <= j < len(points)]
+        if math.hypot(x - px, y - py) <= near and min(beside) > py:
+            return True
+    return False

@@ -165,6 +165,7 @@ def test_points_kicked_when_they_meet_a_wall_stay_on_their_side():
 def test_points_dropped_onto_random_floors_stay_above(engine):
     verdicts = [dropped(np.random.default_rng([3, k]), engine) for k in range(200)]
     assert [verdict.wrong for verdict in verdicts if verdict.wrong] == []
+    assert [verdict.refused for verdict in verdicts if verdict.refused] == []
 
 
 @pytest.mark.slow

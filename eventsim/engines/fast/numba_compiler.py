@@ -23,6 +23,7 @@ from numba.extending import overload, register_jitable
 from eventsim.formulas import (
     careful_impulse,
     contact,
+    corner,
     crossing,
     digits,
     doubt,
@@ -33,6 +34,7 @@ from eventsim.formulas import (
     parabola,
     real,
     rest,
+    slide,
 )
 from eventsim.formulas.walls import point
 from eventsim.record import events
@@ -229,5 +231,5 @@ def _register(module: ModuleType, **options: Any) -> None:
 for _module in (motion, contact, doubt, impulse):
     _register(_module, forceinline=True, error_model="numpy")
 _shapes = [sys.modules[shape.__module__] for shape in SHAPES]
-for _module in (careful_impulse, crossing, digits, expansion, low_place, parabola, point, rest, *_shapes):
+for _module in (careful_impulse, corner, crossing, digits, expansion, low_place, parabola, point, rest, slide, *_shapes):
     _register(_module, error_model="numpy")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, speed
 from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.corner import may_be_spent
 from eventsim.engines.fast.event_order import earlier
 from eventsim.engines.fast.layout import (
     COUNT,
@@ -39,7 +40,7 @@ def predict(m, grid, rules, i, now, floor):
     time, code, shared = earliest_at_shapes(m, rules, i, floor, time, code, shared, rules.features)
     contacts = either(m.slots, contacts_in_cells, contacts_of_everyone)
     time, code, shared = contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
-    shared = _or_for_rules(m, rules, i, code, time, shared, m.supports)
+    shared = _or_for_rules(m, rules, i, code, time, shared, m.supports, rules.still)
     count = word(m.disks, (code if code >= 0 else grid.n) * WORDS + COUNT)  # of the sentinel: 0
     store(m.disks, i * REALS + DUE, time)
     store(m.disks, i * WORDS + PARTNER, code)
@@ -47,8 +48,10 @@ def predict(m, grid, rules, i, now, floor):
 
 
 @inline
-def _or_for_rules(m, rules, i, code, time, shared, supports):
+def _or_for_rules(m, rules, i, code, time, shared, supports, still):
     """Whether an event is to be left to the reference engine's rules: because of rest, as if another one shared its time."""
+    if may_be_spent(m, rules, i, code, time, still):
+        return 1
     if supports is None:
         return shared
     return 1 if is_for_rules(m, rules, i, code, time) else shared

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import pulls
 from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.corner import is_cornered
 from eventsim.engines.fast.last_contact import side_met
 from eventsim.engines.fast.layout import (
     CONTACT_TIME,
@@ -22,7 +23,6 @@ from eventsim.engines.fast.layout import (
     SUPPORT,
     SUPPORT_FACE,
     SUPPORT_HIGH,
-    SUPPORT_LINE,
     SUPPORT_LOW,
     VX,
     VY,
@@ -33,7 +33,9 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, word
-from eventsim.engines.fast.shapes import beside, face_at, is_passed, is_straight, lies_on
+from eventsim.engines.fast.shapes import CENTER, WIDTH, beside, face_at, is_passed, is_post, is_straight, lies_on
+from eventsim.engines.fast.supports import are_in_line, is_support, support_face
+from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import (
     LEFT,
@@ -44,10 +46,9 @@ from eventsim.formulas.rest import (
     hop_on_face_delay,
     launch,
     rest_on_face_delay,
-    slide_delay,
 )
-from eventsim.formulas.walls.face import face_side
-from eventsim.formulas.walls.point import side_known
+from eventsim.formulas.slide import end_delay, slide_delay
+from eventsim.formulas.walls.face import flight_side
 
 
 @inline
@@ -70,9 +71,7 @@ def _has_struck(m, i, place):
     met = word(m.disks, i * WORDS + MET)
     if not SEVERAL < met < NOBODY or word(m.disks, i * WORDS + MET_KY) != STRUCK:
         return False
-    last = -2 - met
-    same = real(m.supports, SUPPORT * place + SUPPORT_LINE) == real(m.supports, SUPPORT * last + SUPPORT_LINE)
-    return same and is_support(m, place) and is_support(m, last)
+    return are_in_line(m, place, -2 - met)
 
 
 @inline
@@ -93,6 +92,8 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
     restitution = _series(rules.wall_restitution, rules.duration)
     delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, _since_met(m, i, place))
+    if how == SUPPORTED and is_cornered(m, rules, i, place, side, real(m.disks, f + X), real(m.disks, f + Y), rules.still):
+        return t + crossing_delay(x, v, g, target, side), STRUCK
     return t + delay, how
 
 
@@ -118,18 +119,25 @@ def shape_rest(m, rules, i, k):
             return NEVER, 0, LEFT
         if how == SUPPORTED and is_passed(m, k, line, word(m.disks, w + MET_KX)):
             return NEVER, 0, LEFT
+        if how != SUPPORTED and r > 0.0 and is_post(m, k) and lies_on(m, k, line):
+            px, py = real(m.features, WIDTH * k + CENTER), real(m.features, WIDTH * k + CENTER + 1)
+            delay = end_delay(px, py, x, y, vx, vy, ax, ay, r, t - real(m.disks, f + CONTACT_TIME))
+            if not delay < 0.0:
+                return (delay, 1, STRUCK) if delay < NEVER else (NEVER, 0, LEFT)
     if not is_support(m, place):
         return NEVER, 0, STRUCK
     low, high = real(m.supports, SUPPORT * place + SUPPORT_LOW), real(m.supports, SUPPORT * place + SUPPORT_HIGH)
     face = support_face(m, place)
-    side = side_met(m, i, place)
+    before = side_met(m, i, place)
     close = beside(m, rules, i, k, m.sides)
-    side = side_known(side, close)
-    if side == 0:
-        side = face_side(face, x, y, vx, vy)
+    side = flight_side(face, before, close, x, y, vx, vy, r)
     restitution, since = _series(rules.wall_restitution, rules.duration), _since_met(m, i, place)
+    if before != 0 and side != before:  # it has come round an end since
+        since = NOT_LAST
     delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t, since)
     if delay < NEVER:
+        if is_cornered(m, rules, i, place, side, x, y, rules.still):
+            return NEVER, 0, STRUCK
         return delay, side, SUPPORTED
     return NEVER if since < 0.0 else hop_on_face_delay(face, side, x, y, vx, vy, ax, ay, since, r, close), side, STRUCK
 
@@ -145,18 +153,6 @@ def launched(m, rules, i, place, side, nx, ny):
         return 0.0
     f = i * REALS
     return launch(nx * real(m.disks, f + VX) + ny * real(m.disks, f + VY), fall, _since_met(m, i, place))
-
-
-@inline
-def is_support(m, place):
-    """Whether a wall supports disks."""
-    return real(m.supports, SUPPORT * place + SUPPORT_LOW) < real(m.supports, SUPPORT * place + SUPPORT_HIGH)
-
-
-@inline
-def support_face(m, place):
-    """The face of a wall that supports disks."""
-    return face_at(m.supports, SUPPORT * place + SUPPORT_FACE)
 
 
 @part

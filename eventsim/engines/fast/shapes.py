@@ -220,6 +220,18 @@ def shape_normal(m, i, k, side, x, y):
 
 
 @inline
+def wall_normal(m, rules, i, wall, side, x, y, wall_x, wall_y, features):
+    """The normal, of any length, of a wall of the domain or a shape, by its place among all walls."""
+    if wall_x is not None and wall_x <= wall < wall_x + 2:
+        return float(side), 0.0
+    if wall_y is not None and wall_y <= wall < wall_y + 2:
+        return 0.0, float(side)
+    if features is None:
+        return 0.0, 0.0
+    return shape_normal(m, i, wall - rules.first_feature, side, x, y)
+
+
+@inline
 def lies_on(m, k, line):
     """Whether the k-th shape is on the line of a face, so that a disk which slides there passes it."""
     row = m.features
@@ -253,3 +265,9 @@ def is_exact_hit(m, k, radius, sides):
 def is_straight(m, k):
     """Whether the k-th shape is a face."""
     return real(m.features, WIDTH * k) == FACE
+
+
+@inline
+def is_post(m, k):
+    """Whether the k-th shape is a post."""
+    return real(m.features, WIDTH * k) == POST

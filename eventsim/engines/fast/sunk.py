@@ -7,7 +7,7 @@ from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import RADIUS, REALS, WALL, T
 from eventsim.engines.fast.memory import real
 from eventsim.engines.fast.pairs import images, shifts
-from eventsim.engines.fast.shapes import shape_normal
+from eventsim.engines.fast.shapes import wall_normal
 from eventsim.formulas.doubt import is_sunk
 
 WIDER = 2.0
@@ -45,17 +45,6 @@ def _wall_may_be_sunk(m, rules, i, code, now):
     wall, side = (WALL - code) // 2, -1 if (WALL - code) % 2 else 1
     x, y = place(m, rules, i, now)
     u, w = speed(m, rules, i, now)
-    nx, ny = _normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
+    nx, ny = wall_normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
     size = abs(nx * x) + abs(ny * y) + max(abs(nx), abs(ny)) * real(m.disks, i * REALS + RADIUS)
     return is_sunk(-(nx * u + ny * w), now - real(m.disks, i * REALS + T), WIDER * size)
-
-
-@inline
-def _normal(m, rules, i, wall, side, x, y, wall_x, wall_y, features):
-    if wall_x is not None and wall_x <= wall < wall_x + 2:
-        return float(side), 0.0
-    if wall_y is not None and wall_y <= wall < wall_y + 2:
-        return 0.0, float(side)
-    if features is None:
-        return 0.0, 0.0
-    return shape_normal(m, i, wall - rules.first_feature, side, x, y)

@@ -14,8 +14,9 @@ from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER, Real
-from eventsim.formulas.rest import STRUCK, border_contact, held_by, shape_contact
+from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, border_contact, held_by, shape_contact
 from eventsim.formulas.walls.shape import Shape
+from eventsim.scene.corners import is_cornered
 from eventsim.scene.stage import Stage
 
 Apart: TypeAlias = tuple[float, float, float, float]
@@ -34,6 +35,7 @@ class Predictor:
     straight_delay: Callable[..., Real] = staticmethod(screened_pair_delay)
 
     def __init__(self, stage: Stage, state: EngineState, calendar: Calendar, cells: Cells | None) -> None:
+        self._stage = stage
         self._state = state
         self._push: Callable[[Event], None] = calendar.push
         self._cells = cells
@@ -192,6 +194,8 @@ class Predictor:
             delay, how = border_contact(
                 state.supports, held, place, -step, target, x[i], v[i], g[i], size, e, state.t[i], since
             )
+            if how == SUPPORTED and self._is_cornered(i, place, -step):
+                delay, how = crossing_delay(x[i], v[i], g[i], target, -step), STRUCK
         if delay < NEVER:
             b, image = (axis, (step, 0)) if rank == WRAP else (-1 - place, (-step, how))
             self._push(Event(state.t[i] + delay, rank, i, b, image, state.count[i], 0))
@@ -204,13 +208,22 @@ class Predictor:
         held = None if state.supports is None else held_by(state.met[i])
         since = state.since_met(i, -1 - place)
         touches = self._settles and met != 0 and bool(since == 0.0)
+        if held is not None and held.how == LEFT:
+            since = state.since_contact(i)
         beside = state.side_beside(i, place)
         e, t = self._series_restitution, state.t[i]
         delay, side, how = shape_contact(
             state.supports, held, place, shape, flight, self._radius[i], met, e, t, since, touches, beside
         )
+        if how == SUPPORTED and self._is_cornered(i, place, side):
+            (delay, side), how = shape.delay(*flight, self._radius[i], met, touches, beside), STRUCK
         if delay < NEVER:
             self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, how), state.count[i], 0))
+
+    def _is_cornered(self, i: int, place: int, side: int) -> bool:
+        """Whether a wall that disk i has not met last makes a corner that holds it with one that it has."""
+        state = self._state
+        return is_cornered(self._stage, state.met[i], place, side, state.x[i], state.y[i])
 
     def _crossing(self, i: int, now: Real) -> None:
         """Push the next passage of disk i into another cell, reckoned from where it is now."""

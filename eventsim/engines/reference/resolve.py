@@ -52,6 +52,7 @@ class Resolver:
 
     def resolve(self, component: list[Event]) -> list[int]:
         """Resolve contacts of one instant that are connected through shared disks; the disks that it changed."""
+        self._rests.check_corner(component)
         if self._state.supports is not None:
             rests = [event for event in component if event.b < 0 and event.image[1]]
             if rests:

@@ -7,10 +7,12 @@ from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger
+from eventsim.formulas.corner import is_spent
 from eventsim.formulas.real import Real
-from eventsim.formulas.rest import LEFT, SUPPORTED, held_by
+from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, held_by
 from eventsim.formulas.walls.face import slope
 from eventsim.record.events import Kind
+from eventsim.scene.corners import corners_of
 from eventsim.scene.stage import Stage
 
 
@@ -94,6 +96,24 @@ class Rests:
         if held.side * (old.face.nx * new.ax + old.face.ny * new.ay) < 0.0:
             walls = [self._stage.wall_names[self._stage.surfaces[k].wall] for k in (held.place, place)]
             raise TwoSupportsError(i, walls, self._stage)
+
+    def check_corner(self, component: list[Event]) -> None:
+        """Raise TwoSupportsError where a disk meets a wall that holds it in a corner, and has no energy left to bounce there."""
+        i, state, stage = component[0].a, self._state, self._stage
+        gravity = stage.gravity
+        if gravity is None or not stage.settles or any(event.b >= 0 for event in component):
+            return
+        now = tuple((event.b, event.image[0], STRUCK) for event in component)
+        for event in component:
+            t, place, side = event.time, -1 - event.b, event.image[0]
+            x, y = state.place(i, t)
+            for corner in corners_of(stage, state.met[i] + now, place, side, x, y):
+                is_now = any(corner.place == -1 - other.b for other in component)
+                lag = 0.0 if corner.rests or is_now else t - state.contact_time[i]
+                size, e = abs(x) + abs(y) + self._radius[i], stage.law.wall
+                if is_spent(*corner.first, *corner.second, *gravity, *state.speed(i, t), lag, size, e):
+                    walls = [stage.wall_names[stage.surfaces[k].wall] for k in (corner.place, place)]
+                    raise TwoSupportsError(i, walls, stage)
 
     def _leave(self, event: Event) -> None:
         """Let a disk that slid over the end of its wall fly on; a row without an impulse."""

@@ -25,6 +25,7 @@ from eventsim.formulas.walls.point import (
     End,
     begins_in_corner,
     end_of,
+    has_passed,
     is_cornered,
     is_point,
     passes_end,
@@ -81,7 +82,7 @@ class Arc(NamedTuple):
         A disk that is outside may pass through the open part and meet the inside, and the other way round.
         """
         side = side_known(met, beside)
-        if side == 0:
+        if side == 0 or (gx is not None and has_passed(side * _excess(self, x, y), radius, self.size, beside)):
             side = arc_side(self, x, y, vx, vy)
         if gx is None:
             return _straight_to_arc(self, side, x, y, vx, vy, None, None, radius, met, beside)

@@ -16,6 +16,7 @@ from eventsim.formulas.walls.point import (
     begins_in_corner,
     careful_line,
     end_of,
+    has_passed,
     is_cornered,
     is_point,
     passes_end,
@@ -87,7 +88,7 @@ class Face(NamedTuple):
         distance, rate = _approach(self, beside, x, y, vx, vy, radius)
         width = radius * self.norm
         side = side_known(met, beside)
-        if side == 0:
+        if side == 0 or has_passed(side * distance, radius, self.size, beside):
             side = face_side(self, x, y, vx, vy)
         cornered = is_cornered(met, beside) and side * rate < 0.0
         if gx is None:
@@ -322,6 +323,17 @@ def _holds(shape: Face, side: int, along: Real, slack: Real) -> bool:
     beyond, _ = end_of(shape.ends, True, side)
     least = 0.0 if before else -slack
     return bool(along >= least and along <= shape.along2 + (0.0 if beyond else slack))
+
+
+def flight_side(
+    shape: Face, met: int, beside: int | None, x: Real, y: Real, vx: Real, vy: Real, radius: Real
+) -> int:
+    """The side of the line of a face that a flight begins on; met, beside: as for `Shape.delay`."""
+    side = side_known(met, beside)
+    distance = side * (shape.nx * (x - shape.x) + shape.ny * (y - shape.y))
+    if side == 0 or has_passed(distance, radius, shape.size, beside):
+        return face_side(shape, x, y, vx, vy)
+    return side
 
 
 def hangs_below(line: Face, side: int, x0: Real, y0: Real, x1: Real, y1: Real) -> bool:

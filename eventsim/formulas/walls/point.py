@@ -55,6 +55,19 @@ def side_known(met: int, beside: int | None) -> int:
     return 1 if beside > 0 else -1 if beside < 0 else 0
 
 
+def has_passed(distance: float, radius: float, size: float, beside: int | None) -> bool:
+    """Whether a disk has come round an end of a wall since it met it; distance: from the line, on the side that it met.
+
+    Its place tells, unless it is a point that is close to the wall.
+    """
+    if is_point(radius, size):
+        if beside is None:
+            return False
+        if beside != 0:
+            return False
+    return bool(distance < 0.0)
+
+
 def is_cornered(met: int, beside: int | None) -> bool:
     """Whether a point is in the corner of a wall and another one, which it has just met."""
     if beside is None:

@@ -1,0 +1,47 @@
+"""A corner of two walls that holds a disk under gravity: when what is left of its bounces there is below the digits.
+
+Between two walls that bear it together a disk loses energy at each bounce, and never leaves.  The series of its bounces is over
+after a finite time, at rest on both walls.  How they share its weight is no question of impulses, so there the run ends.  It ends
+before, once a last bit of the disk's place is worth as much energy as it has left.
+"""
+
+from eventsim.formulas.real import Real
+from eventsim.formulas.rest import LEAST_LOSS, ROUNDED
+
+SPENT = 8.0
+"""Energy so many times that of a fall by the last bit of a place, over 1 - e^2, is what rounding may keep up in a corner."""
+
+
+def holds(ax: Real, ay: Real, bx: Real, by: Real, gx: Real, gy: Real) -> bool:
+    """Whether gravity presses a disk onto two walls at once: -g lies between their normals a and b."""
+    turn = ax * by - ay * bx
+    return bool(turn * (gy * bx - gx * by) > 0.0 and turn * (gx * ay - gy * ax) > 0.0)
+
+
+def is_spent(
+    ax: Real,
+    ay: Real,
+    bx: Real,
+    by: Real,
+    gx: Real,
+    gy: Real,
+    u: Real,
+    w: Real,
+    lag: Real,
+    size: Real,
+    restitution: Real,
+) -> bool:
+    """Whether a disk that comes at (u, w) to wall b has no energy left that its place, known to last bits of `size`, can tell.
+
+    It left wall a, with which b holds it, `lag` ago.  So far it came from a; along b that is a climb out of the corner.
+    """
+    way = ax * (lag * (u - (0.5 * gx) * lag)) + ay * (lag * (w - (0.5 * gy) * lag))
+    climb = way * ((gy * bx - gx * by) / (ax * by - ay * bx))
+    energy = 0.5 * (u * u + w * w) + (climb if climb > 0.0 else 0.0)
+    return bool(energy < kept_up_energy(gx, gy, size, restitution))
+
+
+def kept_up_energy(gx: Real, gy: Real, size: Real, restitution: Real) -> Real:
+    """The energy that rounding may keep up: places are known to the last bits of `size`."""
+    loss = 1.0 - restitution * restitution
+    return (SPENT * ROUNDED) * (size * (abs(gx) + abs(gy))) / (loss if loss > LEAST_LOSS else LEAST_LOSS)

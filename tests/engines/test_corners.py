@@ -1,0 +1,81 @@
+"""Disks and points that come to rest in a corner of two walls: the run ends there, by a word, and not before."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import eventsim as es
+from eventsim.formulas.corner import holds, is_spent
+
+ENGINES = ["reference", pytest.param("fast", marks=pytest.mark.slow)]
+
+
+def fall(position, radius, engine, restitution=0.6, **scene):
+    made = es.Scene(
+        disks=es.Disks([position], [(0.0, 0.0)], radius, 1.0), gravity=(0.0, -1.0), restitution=restitution, **scene
+    )
+    return es.simulate(made, until=30.0, events=3000, engine=engine, log=True)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("radius", [0.0, 0.25])
+def test_a_central_drop_into_a_corner_ends_at_its_zeno_time(engine, radius):
+    corner = es.Polyline(((0.0, 1.0), (1.0, 0.0), (2.0, 1.0)))
+    run = fall((1.0, 3.0), radius, engine, restitution=0.5, domain=es.Open(), walls=(corner,))
+    assert run.stopped == "collapse"
+    assert "wall0.0" in str(run.reason)
+    assert "wall0.1" in str(run.reason)
+    height, e = 3.0 - radius * math.sqrt(2.0), 0.5
+    assert run.time == pytest.approx(math.sqrt(2.0 * height) * (1.0 + e) / (1.0 - e), abs=1e-6)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("radius", [0.0, 0.1])
+def test_bounces_in_a_corner_end_without_a_tail_of_rounding(engine, radius):
+    """What rounding keeps up there bounces on at some 1e-15 of energy, for ever."""
+    corner = es.Polyline(((0.0, 1.0), (1.0, 0.0), (2.5, 1.0)))
+    run = fall((0.3, 2.0), radius, engine, domain=es.Open(), walls=(corner,))
+    assert run.stopped == "collapse"
+    assert "comes to rest on two walls" in str(run.reason)
+    lowest = 1.0, radius * math.hypot(1.0, 1.5) / 1.5
+    if radius == 0.0:
+        assert run.state.position[0] == pytest.approx(lowest, abs=1e-13)
+    energy = 0.5 * (run.log.vxa**2 + run.log.vya**2) + run.log.ya - run.log.ya[-1]
+    assert energy[-1] > 1e-15
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_corner_of_a_border_and_a_face_ends_a_run_as_well(engine):
+    floor = es.Segment((0.0, 1.0), (4.0, 0.0), name="floor")
+    run = fall((3.0, 2.0), 0.0, engine, domain=es.Box((4.0, 4.0)), walls=(floor,))
+    assert run.stopped == "collapse"
+    assert "right" in str(run.reason)
+    assert "floor" in str(run.reason)
+    assert run.state.position[0] == pytest.approx((4.0, 0.0), abs=1e-13)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_that_bends_off_on_its_way_down_is_not_held(engine):
+    slopes = es.Polyline(((0.0, 3.0), (1.0, 1.0), (3.0, 0.5)))
+    run = fall((0.5, 2.5), 0.1, engine, domain=es.Open(), walls=(slopes,))
+    assert run.stopped == "quiet"
+    assert run.state.position[0, 0] > 3.0
+
+
+def test_a_corner_holds_where_gravity_lies_between_its_walls():
+    assert holds(1.0, 1.0, -1.0, 2.0, 0.0, -1.0)
+    assert holds(-1.0, 2.0, 1.0, 1.0, 0.0, -1.0)
+    assert not holds(1.0, 1.0, 1.0, 2.0, 0.0, -1.0)
+    assert not holds(1.0, -1.0, -1.0, -1.0, 0.0, -1.0)
+    assert holds(1.0, 0.0, -0.1, 1.0, 0.0, -1.0)
+
+
+def test_the_energy_left_in_a_corner_counts_from_its_lowest_place():
+    """At (0, h) above the corner of walls at 45 degrees, on the second one after a way of h sqrt(2) from the first."""
+    corner, pull = (1.0, 1.0, -1.0, 1.0), (0.0, -1.0)
+    assert is_spent(*corner, *pull, 0.0, 0.0, 0.0, 1.0, 0.5)
+    assert not is_spent(*corner, *pull, 1e-6, 0.0, 0.0, 1.0, 0.5)
+    assert not is_spent(*corner, *pull, 1e-8, 0.0, 1e-4, 1.0, 0.5)
+    assert is_spent(*corner, *pull, 1e-8, 0.0, 1e-9, 1.0, 0.5)

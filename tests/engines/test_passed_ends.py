@@ -1,0 +1,70 @@
+"""What leaves a wall over its end, or comes round it, meets it from where it is."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import eventsim as es
+
+ENGINES = ["reference", pytest.param("fast", marks=pytest.mark.slow)]
+
+BOWL = es.Arc((-1.0, 0.0), (0.0, -1.0), (1.0, 0.0))
+
+
+def run_of(position, velocity, radius, engine, until, **scene):
+    made = es.Scene(disks=es.Disks([position], [velocity], radius, 1.0), domain=es.Open(), **scene)
+    return es.simulate(made, until=until, events=1000, engine=engine, log=True)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_that_slides_over_the_end_of_a_slope_does_not_meet_its_end(engine):
+    slope = es.Segment((0.0, 0.0), (1.0, -0.48))
+    run = run_of((0.23, 1.0), (0.0, 0.0), 0.2, engine, 20.0, walls=(slope,), gravity=(0.0, -1.0), restitution=0.3)
+    assert run.stopped == "quiet"
+    assert run.log.kind[-2:].tolist() == [2, 1]
+    assert run.log.impulse[-1] == 0.0
+    pull = 0.48 / math.hypot(1.0, 0.48)
+    speed = math.hypot(run.log.vxa[-1], run.log.vya[-1])
+    slid = math.hypot(run.log.xa[-1] - run.log.xa[-2], run.log.ya[-1] - run.log.ya[-2])
+    before = math.hypot(run.log.vxa[-2], run.log.vya[-2])
+    assert speed**2 == pytest.approx(before**2 + 2.0 * pull * slid, rel=1e-12)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_that_creeps_over_an_end_rolls_and_has_no_answer(engine):
+    """v.v < r g.n: gravity presses it onto the end."""
+    slope = es.Segment((0.0, 0.0), (1.0, -0.01))
+    run = run_of((0.9, 0.25), (0.0, 0.0), 0.2, engine, 60.0, walls=(slope,), gravity=(0.0, -1.0), restitution=0.3)
+    assert run.stopped == "collapse"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("radius", [0.0, 0.05])
+def test_a_disk_behind_a_wall_that_it_met_in_front_is_behind_it_when_the_clock_turns_over(engine, radius):
+    wall = es.Segment((0.0, -9.0), (0.0, 1.0))
+    run = run_of((0.5, 0.2), (-1.0, 1.5), radius, engine, 60.0, walls=(wall,), gravity=(-0.5, -0.1))
+    first = -2.0 + 2.0 * math.sqrt(1.0 + 0.5 - radius)
+    assert run.log.time.tolist() == pytest.approx([first], abs=1e-14)
+    assert run.stopped == "quiet"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_outside_an_arc_that_it_met_inside_is_outside_when_the_clock_turns_over(engine):
+    velocity = 0.86806943, -0.87207197
+    run = run_of((-0.53092139, 1.62971612), velocity, 0.05, engine, 6.0, walls=(BOWL,), gravity=(0.0, -1.0))
+    assert len(run.log) == 2
+    assert run.stopped == "quiet"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_point_whose_bounces_in_a_bowl_are_over_does_not_fall_through_it(engine):
+    velocity = -0.36451485, 0.03764259
+    gravity = 0.0, -1.0
+    run = run_of(
+        (-0.03565945, 0.50050161), velocity, 0.0, engine, 6.0, walls=(BOWL,), gravity=gravity, restitution=0.5
+    )
+    assert run.stopped == "collapse"
+    assert run.time == pytest.approx(3.527322967, abs=1e-7)
+    assert math.hypot(*run.state.position[0]) == pytest.approx(1.0, abs=1e-14)
