@@ -12,6 +12,7 @@ from eventsim.cli.output import say
 
 if TYPE_CHECKING:
     from eventsim.validation.chart import Chart
+    from eventsim.validation.precision import Task
 
 
 TABLE = (
@@ -23,13 +24,16 @@ TABLE = (
 @click.command()
 @click.argument("scenes", nargs=-1, metavar="[SCENE...]")
 @click.option("--out", default="chart.png", show_default=True, metavar="FILE", help="The figure: .png, .svg or .pdf.")
+@click.option("--details", metavar="FILE", help="All panels and the table of advantages, on a longer page.")
 @click.option("--csv", metavar="FILE.csv", help="The numbers; without it, beside the figure.")
 @click.option(
     "--patience", type=float, default=0.4, show_default=True, metavar="S", help="CPU seconds for one run at most."
 )
 @json_option
 @quiet_option
-def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float, as_json: bool, quiet: bool) -> None:
+def command(
+    scenes: tuple[str, ...], out: str, details: str | None, csv: str | None, patience: float, as_json: bool, quiet: bool
+) -> None:
     """Chart error against computing time for all engines: event-driven ones, balls, and stepped ones over their steps.
 
     Without a SCENE: a gas, the break, Galperin's disks, pressures of a gas and of a very dense packing, a pile that
@@ -41,7 +45,7 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
     \b
     Examples:
       eventsim chart                        chart.png and chart.csv, in about two minutes
-      eventsim chart gas break --out two.svg
+      eventsim chart gas break --out two.svg --details two-all.png
       eventsim chart my.toml --patience 10  finer steps
 
     \b
@@ -56,7 +60,7 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
 
     Exit codes: 0 done; 2 bad usage or scene.
     """
-    figure = writable(out, "--out", suffixes.FIGURES)
+    figure, page = writable(out, "--out", suffixes.FIGURES), writable(details, "--details", suffixes.FIGURES)
     assert figure is not None
     table = writable(csv if csv is not None else str(figure.with_suffix(".csv")), "--csv", (".csv",))
     assert table is not None
@@ -66,22 +70,24 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
     from dataclasses import asdict
 
     from eventsim.cli.progress import status_line
-    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
     from eventsim.show.versus.precision import write_chart
+    from eventsim.show.versus.summary import write_summary
     from eventsim.validation.advantages import advantages
-    from eventsim.validation.chart import chart_of, default_tasks, task_of
+    from eventsim.validation.chart import chart_of, default_tasks
     from eventsim.validation.conclusions import conclusions
     from eventsim.validation.table import chart_rows, provenance_lines, write_csv
 
     with status_line(quiet or as_json) as tell:
-        tasks = [task_of(chosen_scene(name, (), None), name) for name in scenes] if scenes else default_tasks()
+        tasks = [seeded_task(name) for name in scenes] if scenes else default_tasks()
         chart = chart_of(tasks, patience, further=not scenes, tell=tell)
     names = [task.name for task in tasks]
     rows = chart_rows(chart)
     command_line = click.get_current_context().obj
     write_csv(table, rows, provenance_lines(command_line, {"scenes": names, "patience_s": patience}))
-    write_chart(chart, figure)
+    write_summary(chart, figure)
+    if page is not None:
+        write_chart(chart, page)
     if as_json:
         data = {
             "scenes": names,
@@ -96,6 +102,19 @@ def command(scenes: tuple[str, ...], out: str, csv: str | None, patience: float,
     elif not quiet:
         say(_text(chart))
         say(f"\ncharted in {figure}, numbers in {table}")
+
+
+def seeded_task(name: str) -> Task:
+    """The task on a scene, and on the same with other seeds where it draws random numbers."""
+    from dataclasses import replace
+
+    from eventsim.cli.source import draws_at_random, seeded_scene
+    from eventsim.validation.chart import SEEDS, task_of
+
+    task = task_of(seeded_scene(name, (), None), name)
+    if not draws_at_random(name, ()):
+        return task
+    return replace(task, others=tuple(seeded_scene(name, (), seed) for seed in SEEDS))
 
 
 def _text(chart: Chart) -> str:

@@ -107,17 +107,18 @@ def chosen_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene
         SceneError: if there is no such scene, a setting does not fit, or the scene breaks a rule.
     """
     made = seeded_scene(scene, settings, seed)
-    if seed is not None and not _draws_at_random(scene, settings):
+    if seed is not None and not draws_at_random(scene, settings):
         say(f"note: --seed {seed} changes nothing: {scene} draws no random numbers", err=True)
     return made
 
 
-def _draws_at_random(scene: str, settings: Sequence[str]) -> bool:
-    from eventsim.scene.files import draws_at_random
+def draws_at_random(scene: str, settings: Sequence[str]) -> bool:
+    """Whether a scene has random numbers, so that a seed changes it."""
+    from eventsim.scene import files
     from eventsim.scene.gallery import describe
 
     if Path(scene).suffix.lower() in suffixes.SCENES:
-        return draws_at_random(scene, settings)
+        return files.draws_at_random(scene, settings)
     return "seed" in describe(scene).parameters
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -23,12 +23,16 @@ from eventsim.validation.compare import Comparison, Tell, compare, truth_to_comp
 from eventsim.validation.competitors import COMPETITORS, Competitor
 from eventsim.validation.follow import follow, position_errors
 from eventsim.validation.pile import pile
-from eventsim.validation.precision import Curves, Task, curves
+from eventsim.validation.precision import Curves, Task
+from eventsim.validation.seeds import curves_over_seeds
 from eventsim.validation.timing import timing_of, warm_up
 from eventsim.validation.truth import best_engine, time_after, truth_of
 
 CONTACTS = 3.0
 """Mean free times after which trajectories are compared, where the task does not say."""
+
+SEEDS = (101, 102)
+"""Further seeds of the gas whose positions are compared: its errors are medians, with bars."""
 
 CHAOS_CONTACTS = 48
 CHAOS_STEPS = (0.1, 0.01)
@@ -76,7 +80,10 @@ def default_tasks() -> list[Task]:
     assert galperin.until is not None
     dense = gallery("periodic-fluid", n=100, packing_fraction=0.88)
     return [
-        task_of(gallery("gas", n=100), "gas", "100 disks, packing 0.3, after 3 contacts a disk"),
+        replace(
+            task_of(gallery("gas", n=100), "gas", "100 disks, packing 0.3, after 3 contacts a disk"),
+            others=tuple(gallery("gas", n=100, seed=seed) for seed in SEEDS),
+        ),
         Task("break", gallery("break"), "trajectory", 0.5, "15 touching disks and a cue, 0.5 s"),
         Task("galperin", galperin, "trajectory", galperin.until, "mass ratio 100, after all 31 contacts"),
         task_of(gallery("gas", n=100), "gas, long", "100 disks, packing 0.3, 100 contacts a disk", "pressure", 100.0),
@@ -101,7 +108,7 @@ def chart_of(
 ) -> Chart:
     """Measure all tasks; further: also losses, chaos and rates, on the gas."""
     competitors = list(COMPETITORS.values())
-    chart = Chart([curves(task, competitors, patience_s, tell) for task in tasks])
+    chart = Chart([curves_over_seeds(task, competitors, patience_s, tell) for task in tasks])
     if further:
         chart.losses = compare(gallery("gas"), competitors, until=LOSSES_UNTIL, patience_s=patience_s, tell=tell)
         tell("chaos")

@@ -28,18 +28,13 @@ def conclusions(chart: Chart) -> list[Answer]:
 
 
 def _engine(chart: Chart) -> Answer | None:
-    """On the scenes whose trajectories are compared: who reaches the error first, and who comes next."""
+    """On the first scene whose trajectories are compared: by what the first engine is ahead of the next."""
     known = [a for a in advantages(chart) if a.scene in _measured(chart, "trajectory")]
     if not known:
         return None
-    wanted = known[0].wanted
-    own = {curves.task.name: own_points(curves)[0].label for curves in chart.tasks if own_points(curves)}
-    ahead = [_ahead(scene, [a for a in known if a.scene == scene]) for scene in dict.fromkeys(a.scene for a in known)]
-    name = " or ".join(dict.fromkeys(own[a.scene] for a in known))
-    question = f"Which engine for an error of {wanted:g}?"
-    if any(a.bound == "" and a.time_ratio < 1.0 for a in known):
-        return Answer(question, f"Against event-driven ({name}): {'; '.join(ahead)}.")
-    return Answer(question, f"Event-driven ({name}), with ten digits to spare: {'; '.join(ahead)}.")
+    scene = known[0].scene
+    question = f"Which engine for positions to {known[0].wanted:g} diameters?"
+    return Answer(question, _ahead(scene, [a for a in known if a.scene == scene]))
 
 
 def _measured(chart: Chart, measure: str) -> list[str]:
@@ -51,21 +46,25 @@ def _ahead(scene: str, those: list[Advantage]) -> str:
     reached = [a for a in those if a.bound == "" and not math.isnan(a.time_ratio)]
     if reached:
         nearest = min(reached, key=lambda a: a.time_ratio)
-        return f"on {scene} the next, {nearest.label}, takes {amount(nearest.time_ratio)} x the time"
+        if nearest.time_ratio < 1.0:
+            return f"On the {scene} {nearest.label}: event-driven takes {amount(1.0 / nearest.time_ratio)} x its time."
+        return f"Event-driven: on the {scene} the next, {nearest.label}, takes {amount(nearest.time_ratio)} x the time."
     most = max((a.time_ratio for a in those if a.bound == ">"), default=math.nan)
-    return f"on {scene} no other reached it" + ("" if math.isnan(most) else f" in up to {amount(most)} x the time")
+    if math.isnan(most):
+        return f"None of them reaches it on the {scene}."
+    return f"Event-driven: on the {scene} no other reached it in up to {amount(most)} x the time."
 
 
 def _steps(chart: Chart) -> Answer | None:
-    """The largest step with which each engine finds all but one in a hundred contacts."""
+    """The largest step with which any engine finds all but one in a hundred contacts."""
     if chart.losses is None:
         return None
-    found, never = whole_from(chart.losses)
-    parts = [f"{line.label} {line.step:.2g}" for line in found]
-    text = f"More than {1.0 - ALL:.0%} are missed where a disk flies more than so many radii a step: {', '.join(parts)}."
-    lost = [f"{line.label} (at {line.step:.2g} still {100.0 * line.census.share(line.census.missed):.2g}%)" for line in never]
-    text = (text if parts else "") + (f" With every step tried: {', '.join(lost)}." if lost else "")
-    return Answer("At which step are contacts lost?", text.strip())
+    question = "At which step are contacts lost?"
+    found, _ = whole_from(chart.losses)
+    if not found:
+        return Answer(question, f"With every step that was tried, more than {1.0 - ALL:.0%} are.")
+    best = max(found, key=lambda line: line.step)
+    return Answer(question, f"Above {best.step:.2g} radii a step every engine loses more than 1 in 100 (the best: {best.label}).")
 
 
 def _energy(chart: Chart) -> Answer | None:
@@ -74,31 +73,26 @@ def _energy(chart: Chart) -> Answer | None:
     if not blind:
         return None
     worst = blind[0]
-    return Answer(
-        "What does energy hide?",
-        f"Lost contacts. {worst.label} at {worst.step:.2g} radii a step keeps it to the last bits and misses "
-        f"{worst.census.share(worst.census.missed):.0%} of the contacts; {len(blind)} runs are of this kind.",
-    )
+    lost = worst.census.share(worst.census.missed)
+    text = f"Lost contacts: {worst.label} keeps it to the last bits and misses {lost:.0%} of them."
+    return Answer("What does energy hide?", text)
 
 
 def _float64(chart: Chart) -> Answer | None:
     if chart.chaos is None or math.isnan(chart.chaos.slope):
         return None
-    return Answer(
-        "Where does float64 end?",
-        f"After {chart.chaos.horizon:.0f} contacts of each disk in this gas: {chart.chaos.slope:.2g} bits are lost in each. "
-        "From there on only statistics are true, or the certified engine with more bits.",
-    )
+    text = f"After {chart.chaos.horizon:.0f} contacts of each disk; then only statistics are true."
+    return Answer("Where does float64 end?", text)
 
 
 def _stepped_wins(chart: Chart) -> Answer | None:
-    """Where a stepped engine is nearer to the truth in less time, and where the best of them comes nearest to that."""
-    places = [win for curves in chart.tasks if (win := winning(curves)) is not None]
+    """Where a stepped engine is nearer to the truth in less time."""
+    wins = [win for curves in chart.tasks if (win := winning(curves)) is not None]
     question = "Where does a stepped engine win?"
-    if not places:
+    if not wins:
         return Answer(question, "On none of these scenes.") if advantages(chart) else None
-    parts = [f"on the {win.scene} {win.label} is within {win.error:.1g} of rest {amount(win.ratio)} x sooner" for win in places]
-    return Answer(question, f"Where contacts last: {'; '.join(parts)}. Event-driven pays for ever more contacts there.")
+    win = max(wins, key=lambda one: one.ratio)
+    return Answer(question, f"Where contacts last: on the {win.scene} {win.label} comes to rest {amount(win.ratio)} x sooner.")
 
 
 class Win(NamedTuple):

@@ -55,8 +55,8 @@ class Point:
     """One engine with one parameter on one scene: error against work.
 
     parameter: `dt` (time), `bits`, or `contact_duration` (time).  elapsed: CPU seconds per simulated time, a median; least,
-    most: of the runs that were timed.  events, steps, pair_tests, calendar: how often what was done; calendar: contacts,
-    crossings, wraps and stale predictions that were taken from it.
+    most: of the runs that were timed.  error_least, error_most: over the seeds, whose median the error is.  events, steps,
+    pair_tests, calendar: how often what was done; calendar: contacts, crossings, wraps and stale predictions taken from it.
     """
 
     scene: str
@@ -68,6 +68,8 @@ class Point:
     elapsed: float
     least: float = math.nan
     most: float = math.nan
+    error_least: float = math.nan
+    error_most: float = math.nan
     events: int = 0
     steps: int = 0
     pair_tests: int = 0
@@ -76,13 +78,14 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A scene, what is asked of it, until when, and a few words for its panel."""
+    """A scene, what is asked of it, until when, a few words for its panel; others: the scene with other seeds."""
 
     name: str
     scene: Scene
     measure: str
     until: float
     words: str = ""
+    others: tuple[Scene, ...] = ()
 
 
 @dataclass(slots=True)
@@ -115,8 +118,10 @@ class _Runner:
     error: ErrorOf
 
 
-def curves(task: Task, competitors: Sequence[Competitor], patience_s: float, tell: Tell = lambda _: None) -> Curves:
-    """Run every engine over its parameter, engines in turn; a run that would take longer than `patience_s` is left out."""
+def curves(
+    task: Task, competitors: Sequence[Competitor], patience_s: float, tell: Tell = lambda _: None, timed: bool = True
+) -> Curves:
+    """Run every engine over its parameter; a run that would take longer than `patience_s` is left out; timed: time them again."""
     tell(f"{task.name}: event-driven run")
     result = Curves(task)
     stage = stage_of(task.scene)
@@ -147,7 +152,8 @@ def curves(task: Task, competitors: Sequence[Competitor], patience_s: float, tel
     begin = task.scene.start_time
     for runner_list in runners:
         _run_list(result, runner_list, task.until, task.until - begin, patience_s, tell)
-    _time(result, [runner for each in runners for runner in each], task.until, task.until - begin)
+    if timed:
+        _time(result, [runner for each in runners for runner in each], task.until, task.until - begin)
     return result
 
 
@@ -155,7 +161,8 @@ def _run_list(
     result: Curves, runners: Sequence[_Runner], until: float, duration: float, patience_s: float, tell: Tell
 ) -> None:
     """Run one engine from its cheapest parameter on, as long as there is patience."""
-    taken, before = 0.0, 0.0
+    taken, before, why = 0.0, 0.0, ""
+    stopped: list[_Runner] = []
     for place, runner in enumerate(runners):
         growth = max(before / runner.value, runner.value / before) if before else 1.0
         if runner.parameter == "dt" and taken * growth > patience_s:
@@ -173,12 +180,15 @@ def _run_list(
         if run.stopped is None:
             result.points.append(_point(result.task, runner, run, session, duration))
         else:
-            _give_up(result, [runner], f"it stopped ({session.reason or run.stopped})")
+            stopped.append(runner)
+            why = why or session.reason or run.stopped
+    if stopped:
+        _give_up(result, stopped, f"it stopped ({why})")
 
 
 def _give_up(result: Curves, runners: Sequence[_Runner], why: str) -> None:
     """Tell that an engine does not take part with some of its parameters."""
-    values = ", ".join(f"{runner.value:.3g}" for runner in runners)
+    values = ", ".join(f"{runner.value:.4g}" for runner in runners)
     result.left_out.append(f"{runners[0].label} with {runners[0].parameter} = {values} is left out: {why}")
 
 

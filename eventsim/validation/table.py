@@ -69,6 +69,8 @@ def chart_rows(chart: Chart) -> list[dict[str, Any]]:
                     "parameter": point.parameter,
                     "value": point.value,
                     "error": point.error,
+                    "error_least": point.error_least,
+                    "error_most": point.error_most,
                     "elapsed_per_time": point.elapsed,
                     "elapsed_least": point.least,
                     "elapsed_most": point.most,

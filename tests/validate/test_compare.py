@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import struct
 import time
 from dataclasses import replace
 from itertools import pairwise
@@ -271,11 +272,11 @@ def test_each_question_is_answered_with_numbers_of_the_chart(gas):
     chart = a_chart()
     chart.losses = gas
     engine, steps, energy, float64, wins = (answer.answer for answer in conclusions(chart))
-    assert "on gas the next, stepped, takes 10 x the time" in engine
-    assert "stepped-located" in steps
-    assert energy.startswith("Lost contacts.")
+    assert engine == "Event-driven: on the gas the next, stepped, takes 10 x the time."
+    assert "radii a step every engine loses more than 1 in 100" in steps
+    assert energy.startswith("Lost contacts: ")
     assert "After 30 contacts of each disk" in float64
-    assert "on the pile penalty is within 0.1 of rest 5 x sooner" in wins
+    assert "on the pile penalty comes to rest 5 x sooner" in wins
 
 
 def test_a_chart_without_stepped_engines_answers_nothing():
@@ -285,11 +286,14 @@ def test_a_chart_without_stepped_engines_answers_nothing():
 def test_figures_are_drawn(gas, tmp_path):
     from eventsim.show.versus.comparison import write_comparison
     from eventsim.show.versus.precision import write_chart
+    from eventsim.show.versus.summary import write_summary
 
     write_comparison(gas, tmp_path / "gas.png")
     chart = a_chart()
     chart.losses = gas
     write_chart(chart, tmp_path / "chart.svg")
+    write_summary(chart, tmp_path / "summary.png")
+    assert struct.unpack(">II", (tmp_path / "summary.png").read_bytes()[16:24]) == (1600, 900)
     assert (tmp_path / "gas.png").stat().st_size > 20_000
     assert (tmp_path / "chart.svg").read_text().startswith("<?xml")
     assert {row["panel"] for row in chart_rows(chart)} == {"precision", "losses", "chaos", "rate", "advantage"}

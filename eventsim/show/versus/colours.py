@@ -36,6 +36,8 @@ LOOKS = {
     "stepped-located": Look(KINDS[3], "o", "--", hollow=True),
     "penalty": Look(KINDS[2], "^", "-"),
     "pymunk": Look(KINDS[1], "v", "-"),
+    "pymunk-1": Look(KINDS[1], "v", ":", hollow=True),
+    "pymunk-30": Look(KINDS[1], "^", "--", hollow=True),
 }
 
 NAMES = {
@@ -48,7 +50,9 @@ NAMES = {
     "stepped": "stepped (fixed step)",
     "stepped-located": "stepped-located (impact found in the step)",
     "penalty": "penalty (springs)",
-    "pymunk": "pymunk (Chipmunk)",
+    "pymunk": "pymunk (Chipmunk, 10 iterations)",
+    "pymunk-1": "pymunk-1 (1 iteration)",
+    "pymunk-30": "pymunk-30 (30 iterations)",
 }
 
 

@@ -23,7 +23,7 @@ from eventsim.validation.advantages import (
     time_at,
 )
 from eventsim.validation.conclusions import Win, winning
-from eventsim.validation.precision import Curves
+from eventsim.validation.precision import Curves, Point
 
 ERRORS = {
     "trajectory": "position error [diameters]",
@@ -41,6 +41,13 @@ def draw_work(axes: Axes, curves: Curves) -> None:
         points, alone = curves.of(name), len(curves.of(name)) == 1
         style = look(name).drawn(13 if alone else 5)
         axes.plot([p.elapsed for p in points], [p.error for p in points], lw=1.3, zorder=5 if alone else 3, **style)
+        bars = [p for p in points if math.isfinite(p.least)]
+        across, up = (
+            [[middle - low for low, middle, _ in spread], [high - middle for _, middle, high in spread]]
+            for spread in ([(p.least, p.elapsed, p.most) for p in bars], [_seeds(p) for p in bars])
+        )
+        where = [p.elapsed for p in bars], [p.error for p in bars]
+        axes.errorbar(*where, xerr=across, yerr=up, fmt="none", ecolor=look(name).colour, elinewidth=0.9, zorder=2)
     axes.set_xscale("log")
     axes.set_yscale("log")
     low, high = axes.get_ylim()
@@ -59,6 +66,13 @@ def draw_work(axes: Axes, curves: Curves) -> None:
     title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
     label(axes, "CPU seconds per time unit of the scene", ERRORS[curves.task.measure], as_written(title))
     axes.title.set_fontsize(10.5)
+
+
+def _seeds(point: Point) -> tuple[float, float, float]:
+    """(least, median, most) of the errors over the seeds."""
+    if not math.isfinite(point.error_least):
+        return point.error, point.error, point.error
+    return point.error_least, point.error, point.error_most
 
 
 def _draw_win(axes: Axes, win: Win) -> None:
@@ -81,7 +95,8 @@ def _draw_advantages(axes: Axes, curves: Curves) -> None:
         _arrow(axes, (best.elapsed, best.error), (best.elapsed, best.error * nearest.error_ratio))
         middle = math.sqrt(best.error * best.error * nearest.error_ratio)
         text = f"equal time: the next\nerrs {amount(nearest.error_ratio)} x as much"
-        note(axes, text, (best.elapsed, middle), offset=(6, 0), va="center")
+        right = _is_right(axes, best.elapsed)
+        note(axes, text, (best.elapsed, middle), offset=(-6 if right else 6, 0), va="center", ha="right" if right else "left")
     axes.axhline(wanted, color=ARROW, lw=0.8, ls=(0, (4, 3)), zorder=1)
     note(axes, f"{wanted:g}", (1.0, wanted), ACROSS, (0, 3), ha="right")
     _draw_time(axes, curves, found, time_at(own, wanted), wanted)
@@ -97,7 +112,13 @@ def _draw_time(axes: Axes, curves: Curves, found: list[Advantage], mine: float, 
     else:
         longest = max(point.elapsed for name in stepped_labels(curves) for point in curves.of(name))
         text, place = f"no stepped engine comes to {wanted:g}", math.sqrt(mine * longest)
-    note(axes, text, (place, wanted), offset=(0, -4), ha="center", va="top")
+    note(axes, text, (place, wanted), offset=(0, -4), ha="right" if _is_right(axes, place) else "center", va="top")
+
+
+def _is_right(axes: Axes, elapsed: float) -> bool:
+    """Whether a place is so far to the right that words beside it would leave the panel."""
+    low, high = (math.log(value) for value in axes.get_xlim())
+    return math.log(elapsed) > low + 0.65 * (high - low)
 
 
 def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
