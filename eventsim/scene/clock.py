@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS
+from eventsim.formulas.walls.point import is_point
 from eventsim.scene.domain import Channel, Open, Periodic
 from eventsim.scene.scene import Scene
 
@@ -78,7 +79,7 @@ def clock_of(scene: Scene, wide: bool) -> SceneClock:
     disks, domain, gravity = scene.disks, scene.domain, scene.gravity
     n = len(disks)
     whole = _extent(scene)
-    usual = _distance(scene, n)
+    usual = _distance(scene, n, whole)
     length = usual
     if wide:
         length = math.frexp(2.0 * float(disks.radius.max()) / math.sqrt(n))[1]
@@ -101,15 +102,20 @@ def clock_of(scene: Scene, wide: bool) -> SceneClock:
     return SceneClock(math.ldexp(1.0, exponent), speed, pull, window_cap, idle_cap, paced)
 
 
-def _distance(scene: Scene, n: int) -> int:
-    """The exponent of the mean distance of disks."""
+def _distance(scene: Scene, n: int, whole: int) -> int:
+    """The exponent of the mean distance of disks; whole: of the way through the scene.
+
+    A disk as small as a point is one: else the clock of a lone one would turn over on its way to a wall, and round its place.
+    """
     disks, domain = scene.disks, scene.domain
+    radius = float(disks.radius.max())
+    radius = 0.0 if is_point(radius, math.ldexp(1.0, whole)) else radius
     if isinstance(domain, Open):
         width, height = np.ptp(disks.position, axis=0).tolist()
-        extent = max(math.sqrt(width) * math.sqrt(height), float(disks.radius.max()), width, height)
+        extent = max(math.sqrt(width) * math.sqrt(height), radius, width, height)
     else:
         width, height = domain.size
-        extent = max(math.sqrt(width) * math.sqrt(height), float(disks.radius.max()))
+        extent = max(math.sqrt(width) * math.sqrt(height), radius)
     return math.frexp(extent / math.sqrt(n) or 1.0)[1]
 
 

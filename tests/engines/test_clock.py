@@ -262,3 +262,19 @@ def test_a_log_of_the_clock_before_is_still_read() -> None:
     replay = Replay(old)
     assert isinstance(replay.windows, DoublingWindows) or replay.windows.start == [0]
     assert replay.state_at(164.0).position[0].tolist() == pytest.approx([9.220230471767364, 8.483998910860148], abs=1e-9)
+
+
+@pytest.mark.parametrize("radius", [0.0, 1e-18])
+def test_the_clock_of_a_disk_as_small_as_a_point_rounds_no_place_on_its_way_to_a_corner(radius):
+    """It comes to one wall 2.8e-16 beside the corner; a turnover on the way would take it to the other one."""
+    corners = [
+        (6.5483320433773455, 4.7077614707094675),
+        (5.609843816554238, 6.819058061324656),
+        (2.038444567568254, 5.107307737315054),
+        (0.563178924871413, 2.0642322019386796),
+        (2.3423207757602, 1.1895309554024958),
+        (4.145650456228476, 2.4994128109686127),
+    ]
+    disk = es.Disks([(3.3717947481987895, 2.5547652782780563)], [(1.1099247014273221, 2.1148079195151834)], radius)
+    run = es.simulate(es.Scene(disk, es.Open(), [es.Polygon(corners)]), events=1, engine="reference", log=True)
+    assert [run.log.vxa[0], run.log.vya[0]] == pytest.approx([-2.31358126664162, 0.59303212554435], rel=1e-14)

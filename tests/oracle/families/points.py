@@ -22,7 +22,7 @@ def radius(rng: np.random.Generator) -> float:
 
 def missed(rng: np.random.Generator, goal: Place) -> Place:
     """A goal, or a place beside it: at any distance from a last bit on."""
-    if rng.random() < 0.06:
+    if rng.random() < 0.04:
         return goal
     off, angle = 10.0 ** float(rng.uniform(-11, 0)), float(rng.uniform(0, 2 * math.pi))
     return goal[0] + off * math.cos(angle), goal[1] + off * math.sin(angle)
