@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eventsim.engines.base import Stop
-from eventsim.formulas.clock import FIRST_WINDOW, next_window, window_length
+from eventsim.errors import EventsimError
+from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, next_window, window_length
 from eventsim.record.events import Rows
 from eventsim.record.times import clock_times
 from eventsim.scene.pace import typical_speed
@@ -70,6 +71,9 @@ class StepClock:
 
     def _turn_to(self, time: float) -> None:
         stage = self._stage
+        if time >= MOST_EPOCHS * stage.epoch_length:
+            last = stage.start_time + MOST_EPOCHS * stage.epoch_length
+            raise EventsimError(f"a step of {self.dt:g} leads beyond t = {last:g}, where the clock of a scene so fast ends")
         while time >= self._window_end:
             self.epoch += 1 << self.window
             self.window = next_window(self.window, self.window_rows, stage.n, stage.clock.window_cap)

@@ -191,3 +191,6 @@ def test_a_clock_of_steps_passes_any_number_of_windows_without_a_row_at_once():
     epoch, remainder = clock.reading
     assert epoch * 2.0**-50 + remainder == 3.0
     assert 0.0 <= remainder < 2.0 ** (stage.clock.window_cap + 1 - 50)
+    clock.now = 3e5
+    with pytest.raises(es.EventsimError, match="where the clock of a scene so fast ends"):
+        _ = clock.reading
