@@ -71,7 +71,7 @@ class SceneClock(NamedTuple):
 
 
 def clock_of(scene: Scene, wide: bool) -> SceneClock:
-    """The clock of a scene; wide: places have low parts, and a crowd in a corner of the domain has the clock of a crowd.
+    """The clock of a scene; wide: it is so much wider than its disks that a crowd in a corner of it has the clock of a crowd.
 
     An epoch is about the time in which the fastest disk flies from one disk to the next.  Only exponents enter, so that a scene
     with all velocities times 2**k has an epoch of exactly 2**-k times the length.

@@ -176,8 +176,9 @@ def stage_of(scene: Scene) -> Stage:
     law = law_of(None if restitution is None else (restitution.pair, restitution.wall), scene.contact_duration)
     lightest, heaviest = _extreme_masses(disks.mass)
     diameter = 2.0 * float(disks.radius.max())
-    low_places = size is not None and scene.gravity is None and 0.0 < diameter < max(size) / WIDE
-    clock = clock_of(scene, low_places)
+    wide = scene.gravity is None and 0.0 < diameter < max(size or np.ptp(disks.position, axis=0).tolist()) / WIDE
+    low_places = wide and size is not None
+    clock = clock_of(scene, wide)
     return Stage(
         n=len(disks),
         x=x,

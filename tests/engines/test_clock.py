@@ -278,3 +278,15 @@ def test_the_clock_of_a_disk_as_small_as_a_point_rounds_no_place_on_its_way_to_a
     disk = es.Disks([(3.3717947481987895, 2.5547652782780563)], [(1.1099247014273221, 2.1148079195151834)], radius)
     run = es.simulate(es.Scene(disk, es.Open(), [es.Polygon(corners)]), events=1, engine="reference", log=True)
     assert [run.log.vxa[0], run.log.vya[0]] == pytest.approx([-2.31358126664162, 0.59303212554435], rel=1e-14)
+
+
+def test_a_disk_that_comes_from_afar_on_the_open_plane_is_met_with_all_digits():
+    """The clock is that of the disks, not of the way: an epoch is no longer than it takes to fly some thousand diameters."""
+    far = 2.0**40
+    scene = es.Scene(es.Disks([(0.0, 0.0), (far, 0.25)], [(0.0, 0.0), (-1.0, 0.0)], 0.5), es.Open())
+    run = es.simulate(scene, until=2.0 * far, engine="reference", log=True)
+    across, along = 0.25, math.sqrt(1.0 - 0.25**2)
+    assert len(run.log) == 1
+    assert run.log.time[0] == far - along
+    assert [run.log.vxa[0], run.log.vya[0]] == pytest.approx([-(along**2), -across * along], abs=1e-11)
+    assert stage_of(scene).epoch_length <= 2.0**12
