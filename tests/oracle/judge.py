@@ -249,6 +249,9 @@ class _Judge:
             i = disks[0]
             if ahead[0] and kind == REST and (rest := self._early_rest(i, wall, number)) is not None:
                 return rest
+            if ahead[0] and kind == REST and self._rests_again(ahead[0][0], wall, time, i, number):
+                self.judged += 1
+                return None
             if (
                 ahead[0] and kind == WALL and self._is_low(ahead[0][0], wall, time, i, number)
             ) or self._changes_nothing(number, disks):
@@ -322,6 +325,12 @@ class _Judge:
         if self.low[i] * (1.0 - float(self.story.table.wall_restitution)) > MOST_LOW:
             raise _MistakeError(f"disk {i} does not come to rest at {float(rest.time):.12g} but bounces on", number)
         return True
+
+    def _rests_again(self, rest: Row, wall: str, time: Decimal, i: int, number: int) -> bool:
+        """Whether a disk that rests on one wall does so again at once after a low bounce on another one."""
+        before = [row for row in self.seen.rows[:number] if i in (row["a"], row["b"])]
+        at_once = bool(before) and self._time(before[-1]) == time and self.seen.rows[number]["impulse"] == 0.0
+        return at_once and rest.kind == REST and wall not in rest.walls and time <= rest.time
 
     def _early_rest(self, i: int, wall: str, number: int) -> Row | None:
         """The rest at the end of the series of bounces that this disk is in, if the series may be ended here."""
