@@ -7,6 +7,7 @@ import bisect
 import numpy as np
 
 from eventsim.errors import LogError
+from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import Floats, State
 from eventsim.record.places import on_scene_axes
 
@@ -71,10 +72,13 @@ class Trajectory:
         lag = since - self._times[place]
         (x, y, vx, vy), (gx, gy) = self._flights[place], self._gravity
         columns = [
-            on_scene_axes(_inside(x + lag * (vx + 0.5 * gx * lag), self._period[0]), self._corner[0], self._period[0]),
-            on_scene_axes(_inside(y + lag * (vy + 0.5 * gy * lag), self._period[1]), self._corner[1], self._period[1]),
+            on_scene_axes(_inside(position(at, v, lag, g), length), corner, length)
+            for at, v, g, corner, length in (
+                (x, vx, gx, self._corner[0], self._period[0]),
+                (y, vy, gy, self._corner[1], self._period[1]),
+            )
         ]
-        return State(time, np.column_stack(columns), np.column_stack([vx + gx * lag, vy + gy * lag]))
+        return State(time, np.column_stack(columns), np.column_stack([velocity(vx, lag, gx), velocity(vy, lag, gy)]))
 
 
 def _inside(x: Floats, length: float | None) -> Floats:

@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import Floats, Kind, Rows, State
 from eventsim.replay.flight import start_flights
 from eventsim.replay.motion import Motion, pull_of
@@ -47,9 +48,7 @@ class FlightTable:
         parts = parts if self.pull.any() else 1
         share = np.linspace(0.0, 1.0, parts + 1)
         lag = self.duration[:, None] * share
-        place = self.place[:, None] + lag[..., None] * (
-            self.velocity[:, None] + 0.5 * lag[..., None] * self.pull[:, None]
-        )
+        place = position(self.place[:, None], self.velocity[:, None], lag[..., None], self.pull[:, None])
         time = self.time[:, None] + lag
         ends = np.stack([place[:, :-1], place[:, 1:]], axis=2).reshape(-1, 2, 2)
         return np.stack([time[:, :-1], time[:, 1:]], axis=2).reshape(-1, 2), ends, np.repeat(self.disk, parts)
@@ -65,7 +64,7 @@ class FlightTable:
     def lengths(self) -> Floats:
         """Return the length of each flight (F,); under gravity by Simpson's rule for the speed."""
         lag = self.duration[:, None]
-        speeds = [np.hypot(*(self.velocity + share * lag * self.pull).T) for share in (0.0, 0.5, 1.0)]
+        speeds = [np.hypot(*velocity(self.velocity, share * lag, self.pull).T) for share in (0.0, 0.5, 1.0)]
         lengths: Floats = self.duration * (speeds[0] + 4.0 * speeds[1] + speeds[2]) / 6.0
         return lengths
 

@@ -58,7 +58,7 @@ def _pull(m, i, g, classes, at, supports):
 def _pull_or_slope(m, i, g, at):
     flags = word(m.disks, i * WORDS + FLAGS)
     if flags & RESTING:
-        return real(m.supports, SUPPORT * (-2 - word(m.disks, i * WORDS + MET)) + at)
+        return real(m.supports, SUPPORT * (-1 - word(m.disks, i * WORDS + MET)) + at)
     return 0.0 if flags & IMMOVABLE else g
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from eventsim.engines.fast.cells import depth_of, slot_of
 from eventsim.engines.fast.compiled import inline, part
-from eventsim.engines.fast.event_order import is_contact
 from eventsim.engines.fast.layout import (
     COLUMN,
     COUNT,
@@ -22,6 +21,7 @@ from eventsim.engines.fast.layout import (
     REALS,
     ROW,
     WAITING,
+    WALL,
     WORDS,
 )
 from eventsim.engines.fast.levels import home_of
@@ -266,3 +266,22 @@ def fetch_coming(m, grid, day, look_ahead):
         j = word(m.disks, i * WORDS + PARTNER)
         if j >= 0:
             fetch_around(m, grid, j, True)
+
+
+@inline
+def is_contact(code):
+    """Whether an event is a contact, with a disk or with a wall."""
+    return code >= 0 or code <= WALL
+
+
+@inline
+def earlier(time, code, shared, new_time, new_code, screen):
+    """The earlier of two events; at one time wraps and crossings come first, and of these the one that is known already.
+
+    shared: whether another contact may come before the earlier one or with it, within the screen, so that it is not for kernels.
+    """
+    if new_time < time:
+        return new_time, new_code, 1 if time <= latest_tie(new_time, screen) else 0
+    if new_time == time and is_contact(code) and not is_contact(new_code):
+        return new_time, new_code, 1
+    return time, code, 1 if new_time <= latest_tie(time, screen) else shared

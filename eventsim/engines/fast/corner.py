@@ -27,13 +27,13 @@ def is_cornered(m, rules, i, wall, side, x, y, still):
 def _is_cornered(m, rules, i, wall, side, x, y):
     w = i * WORDS
     met = word(m.disks, w + MET)
-    if SEVERAL < met < NOBODY:
+    if NOBODY < met < 0:
         return _makes_corner(m, rules, i, wall, side, x, y, met, word(m.disks, w + MET_KX), word(m.disks, w + MET_KY))
     if met == SEVERAL:
         row = word(m.disks, w + MET_KX)
         while row >= 0:
             other, from_side, how = word(m.several, 4 * row), word(m.several, 4 * row + 1), word(m.several, 4 * row + 2)
-            if other <= -2 and _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
+            if NOBODY < other < 0 and _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
                 return True
             row = word(m.several, 4 * row + 3)
     return False
@@ -41,14 +41,14 @@ def _is_cornered(m, rules, i, wall, side, x, y):
 
 @inline
 def _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
-    if other == -2 - wall or how == LEFT:
+    if other == -1 - wall or how == LEFT:
         return False
-    if wall < rules.first_feature and other > -2 - rules.first_feature:  # two sides of the domain
+    if wall < rules.first_feature and other > -1 - rules.first_feature:  # two sides of the domain
         return False
-    if _is_one_line(m, wall, -2 - other, m.supports):
+    if _is_one_line(m, wall, -1 - other, m.supports):
         return False
     bx, by = wall_normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
-    ax, ay = wall_normal(m, rules, i, -2 - other, from_side, x, y, rules.wall_x, rules.wall_y, m.features)
+    ax, ay = wall_normal(m, rules, i, -1 - other, from_side, x, y, rules.wall_x, rules.wall_y, m.features)
     return holds(ax, ay, bx, by, rules.gx, rules.gy)
 
 
@@ -73,4 +73,5 @@ def _may_be_spent(m, rules, i, time):
     u, w = speed(m, rules, i, time)
     size = abs(x) + abs(y) + real(m.disks, i * REALS + RADIUS)
     little = kept_up_energy(rules.gx, rules.gy, size, rules.wall_restitution)
-    return word(m.disks, i * WORDS + MET) < NOBODY and 0.5 * (u * u + w * w) < WIDER * little
+    met = word(m.disks, i * WORDS + MET)
+    return met < 0 and met != NOBODY and 0.5 * (u * u + w * w) < WIDER * little

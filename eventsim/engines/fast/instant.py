@@ -25,8 +25,8 @@ from eventsim.engines.fast.levels import gather_near, home_of
 from eventsim.engines.fast.loop import pointers
 from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.pairs import images, pair_is_due
+from eventsim.engines.fast.predict import corner_slot
 from eventsim.engines.fast.rest import border_contact
-from eventsim.engines.fast.search import corner_slot
 from eventsim.engines.fast.single_disk_events import shape_time, wall_delay
 from eventsim.formulas.rest import STRUCK
 

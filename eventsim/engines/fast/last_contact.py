@@ -9,7 +9,7 @@ from eventsim.engines.fast.memory import store, word
 
 @inline
 def remember(m, i, partner, kx, ky):
-    """Let disk i remember a contact: a disk and its image, or -2 - place of a wall and the side."""
+    """Let disk i remember a contact: a disk and its image, or -1 - number of a surface and the side."""
     store(m.disks, i * WORDS + MET, partner)
     store(m.disks, i * WORDS + MET_KX, kx)
     store(m.disks, i * WORDS + MET_KY, ky)
@@ -26,7 +26,7 @@ def forget_shapes(m, rules, i, supports):
     met = word(m.disks, i * WORDS + MET)
     if met == SEVERAL:
         _forget_among_several(m, rules, i)
-    elif met <= -2 - rules.first_feature:
+    elif NOBODY < met <= -1 - rules.first_feature:
         store(m.disks, i * WORDS + MET, NOBODY)
 
 
@@ -34,7 +34,7 @@ def forget_shapes(m, rules, i, supports):
 def _forget_among_several(m, rules, i):
     row = word(m.disks, i * WORDS + MET_KX)
     while row >= 0:
-        if word(m.several, 4 * row) <= -2 - rules.first_feature:
+        if NOBODY < word(m.several, 4 * row) <= -1 - rules.first_feature:
             store(m.several, 4 * row, NOBODY)
         row = word(m.several, 4 * row + 3)
 
@@ -84,12 +84,12 @@ def just_met(m, i, j, kx, ky):
 def side_met(m, i, place):
     """The side of a wall that disk i met last, 0 if it met another one since."""
     met = word(m.disks, i * WORDS + MET)
-    if met == -2 - place:
+    if met == -1 - place:
         return word(m.disks, i * WORDS + MET_KX)
     if met == SEVERAL:
         row = word(m.disks, i * WORDS + MET_KX)
         while row >= 0:
-            if word(m.several, 4 * row) == -2 - place:
+            if word(m.several, 4 * row) == -1 - place:
                 return word(m.several, 4 * row + 1)
             row = word(m.several, 4 * row + 3)
     return 0

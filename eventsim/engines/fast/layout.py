@@ -34,8 +34,8 @@ of the disk's level."""
 
 CLASSES = IMMOVABLE | TRACER
 
-NOBODY, SEVERAL = -1, -(2**31)
-"""Values of MET besides a disk and -2 - place of a wall; SEVERAL: MET_KX is the first of a chain in the table `several`."""
+NOBODY, SEVERAL = 1 - 2**31, -(2**31)
+"""Values of MET besides a disk and -1 - number of a surface; SEVERAL: MET_KX is the first of a chain in the table `several`."""
 
 RIGHT, LEFT, UP, DOWN = -1, -2, -3, -4
 LOOK = -5

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eventsim.engines.base import Motion
+from eventsim.engines.base import Counters, Motion
 from eventsim.engines.fast import layout
 from eventsim.engines.fast.buffers import ROOM, Buffers
 from eventsim.engines.fast.grids import Grids
@@ -24,6 +24,16 @@ from eventsim.formulas.doubt import screen_in
 from eventsim.formulas.expansion import two_sum
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.scene.stage import Stage
+
+COUNTED = {
+    "events": layout.EVENTS,
+    "pair_contacts": layout.PAIRS,
+    "wall_contacts": layout.WALLS,
+    "wraps": layout.WRAPS,
+    "crossings": layout.CROSSINGS,
+    "stale": layout.STALE,
+}
+"""Counters of a run that kernels keep, and where."""
 
 FOREVER = 1 << 60
 FEW_STEPS = 256
@@ -76,6 +86,22 @@ class Machine:
                 self.schedule()
             self._days = self._steps = 0
         return status
+
+    def take_counters(self, counters: Counters) -> None:
+        """Let the kernels go on from what counters say."""
+        counts, sums = self.counts, self.sums
+        for name, place in COUNTED.items():
+            counts[place] = getattr(counters, name)
+        sums[layout.DEEPEST] = counters.deepest_overlap
+        sums[layout.OUTER_X], sums[layout.OUTER_Y] = counters.outer_momentum
+
+    def tell_counters(self, counters: Counters) -> None:
+        """Let counters say what the kernels have counted."""
+        counts, sums = self.counts, self.sums
+        for name, place in COUNTED.items():
+            setattr(counters, name, int(counts[place]))
+        counters.deepest_overlap = float(sums[layout.DEEPEST])
+        counters.outer_momentum = [float(sums[layout.OUTER_X]), float(sums[layout.OUTER_Y])]
 
     @property
     def memory(self) -> int:

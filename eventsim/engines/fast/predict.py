@@ -1,28 +1,47 @@
-"""Predictions: the earliest event that the present flight of a disk can lead to becomes its scheduled event."""
+"""Predictions: the earliest event that the present flight of a disk can lead to becomes its scheduled event.
+
+Contacts are looked for among those around: one by one, eight at a time, on levels of grids.
+"""
 
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, speed
-from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.calendar import earlier
+from eventsim.engines.fast.cells import depth_of, slot_of
+from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.corner import may_be_spent
-from eventsim.engines.fast.event_order import earlier
+from eventsim.engines.fast.last_contact import partner_just_met
 from eventsim.engines.fast.layout import (
+    COLUMN,
     COUNT,
     COUNTS,
     DUE,
     EDGE,
     FLAGS,
     LOOK,
+    MET,
+    NOBODY,
     PARTNER,
     PARTNER_COUNT,
+    RADIUS,
     REALS,
+    ROW,
+    SEVERAL,
+    USUAL_DEPTH,
+    VX,
+    VY,
     WORDS,
+    T,
+    X,
+    Y,
 )
-from eventsim.engines.fast.levels import home_of, look_delay
-from eventsim.engines.fast.memory import either, store, word
+from eventsim.engines.fast.levels import gather_near, home_of, look_delay
+from eventsim.engines.fast.memory import contact_of_eight, either, gather_disks, real, store, word
+from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.engines.fast.rest import is_for_rules
-from eventsim.engines.fast.search import contacts_in_cells, contacts_of_everyone
 from eventsim.engines.fast.single_disk_events import border_events, crossing, earliest_at_shapes
+from eventsim.formulas.doubt import may_tie
+from eventsim.formulas.real import NEVER
 
 
 @inline
@@ -63,3 +82,162 @@ def _look(m, grid, rules, i, now, u, w, time, code, shared, levels):
     if levels is None:
         return time, code, shared
     return earlier(time, code, shared, now + look_delay(m, grid, rules, i, u, w), LOOK, rules.tie_screen)
+
+
+@inline
+def contacts_in_cells(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The earliest contact with another disk in the cells around, if that is before the given event."""
+    in_one_grid = either(grid.lanes, _contacts_in_lanes, _contacts_one_by_one)
+    on_levels = either(grid.lanes, _contacts_on_levels_in_lanes, _contacts_on_levels_one_by_one)
+    contacts = either(grid.levels, on_levels, in_one_grid)
+    return contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
+
+
+@part
+def contacts_of_everyone(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The same where there are no cells: all disks, in all images."""
+    span_x = 0 if rules.length_x is None else 1
+    span_y = 0 if rules.length_y is None else 1
+    for j in range(grid.n):
+        if j == i:
+            continue
+        for kx in range(-span_x, span_x + 1):
+            for ky in range(-span_y, span_y + 1):
+                new = pair_is_due(m, rules, i, j, kx, ky)
+                if new >= floor:
+                    time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
+    return time, code, shared
+
+
+@part
+def _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The earliest contact with another disk in the nine cells around, if that is before the given event."""
+    depth = depth_of(grid, grid.deep)
+    start, width = corner_slot(m, grid, i), depth * (grid.columns + 2)
+    edge = word(m.disks, i * WORDS + FLAGS) & EDGE
+    for _ in range(3):
+        for k in range(3 * depth):
+            j = word(m.slots, start + k)
+            if j == grid.n or j == i:
+                continue
+            kx, ky = 0, 0
+            if edge:
+                kx, ky = images(m, rules, i, j, now, x, y)
+            new = pair_is_due(m, rules, i, j, kx, ky)
+            if new >= floor:
+                time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
+        start += width
+    return time, code, shared
+
+
+@inline
+def corner_slot(m, grid, i):
+    """The first slot of the lower left one of the nine cells around disk i."""
+    column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
+    return slot_of(grid, column - 1, row - 1)
+
+
+@inline
+def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The same as one by one, eight at a time."""
+    edge = word(m.disks, i * WORDS + FLAGS) & EDGE
+    if word(m.disks, i * WORDS + MET) == SEVERAL:
+        return _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    skip = _partner_to_skip(m, rules, i, now, x, y, edge)
+    start, width = corner_slot(m, grid, i), depth_of(grid, grid.deep) * (grid.columns + 2)
+    count = _gather(m, grid, start, 0, i, skip, grid.deep)
+    count = _gather(m, grid, start + width, count, i, skip, grid.deep)
+    count = _gather(m, grid, start + 2 * width, count, i, skip, grid.deep)
+    return _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, edge)
+
+
+@inline
+def _contacts_on_levels_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """The same where each class of radii has a grid of its own; what is far in its own class may be near in another."""
+    skip = _partner_to_skip(m, rules, i, now, x, y, True)
+    count = gather_near(m, grid, rules, i, x, y, skip)
+    if word(m.disks, i * WORDS + MET) == SEVERAL:
+        return _contacts_of_list(m, rules, i, now, floor, x, y, True, count, time, code, shared)
+    return _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, True)
+
+
+@inline
+def _contacts_on_levels_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    count = gather_near(m, grid, rules, i, x, y, NOBODY)
+    return _contacts_of_list(m, rules, i, now, floor, x, y, True, count, time, code, shared)
+
+
+@inline
+def _partner_to_skip(m, rules, i, now, x, y, edge):
+    """The disk that disk i has just met; SEVERAL, or another number that is no disk."""
+    skip = word(m.disks, i * WORDS + MET)
+    if skip >= 0:
+        kx, ky = 0, 0
+        if edge:
+            kx, ky = images(m, rules, i, skip, now, x, y)
+        skip = partner_just_met(m, rules, i, kx, ky)
+    return skip
+
+
+@inline
+def _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, edge):
+    """The earliest contact with a disk of the list; where two of them may be seen across a boundary, `edge` says so."""
+    f = i * REALS
+    x0, y0, u, w = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
+    t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
+    length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
+    periodic = rules.length_x is not None or rules.length_y is not None
+    flight = x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, rules.tie_screen
+    first = doubts = 0
+    while True:
+        if periodic and edge:
+            new, j, many, doubted = contact_of_eight(m.disks, m.near, first, *flight, 1.0, rules.gx, rules.gy)
+        else:
+            new, j, many, doubted = contact_of_eight(m.disks, m.near, first, *flight, 0, rules.gx, rules.gy)
+        sooner = new < time  # no branches: they could not be foreseen
+        also = may_tie(new, time, rules.tie_screen)
+        shared = (many if sooner else shared) | also
+        code = j if sooner else code
+        time = new if sooner else time
+        lane = first
+        while doubted:  # rare; a call here would cost the registers
+            if doubted & 1:
+                store(m.near, doubts, word(m.near, lane))
+                doubts += 1
+            doubted >>= 1
+            lane += 1
+        first += 8
+        if first >= count:
+            break
+    if doubts:
+        return _contacts_of_list(m, rules, i, now, floor, x, y, edge, doubts, time, code, shared)
+    return time, code, shared
+
+
+@part
+def _contacts_of_list(m, rules, i, now, floor, x, y, edge, count, time, code, shared):
+    """The same one by one: for pairs about which the lanes cannot tell, and where there are no lanes."""
+    for k in range(count):
+        j = word(m.near, k)
+        kx, ky = 0, 0
+        if edge:
+            kx, ky = images(m, rules, i, j, now, x, y)
+        new = pair_is_due(m, rules, i, j, kx, ky)
+        if new >= floor:
+            time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
+    return time, code, shared
+
+
+@inline
+def _gather(m, grid, start, count, i, skip, deep):
+    """Append the disks of three cells side by side to the list of neighbours; the new count."""
+    if deep is None:
+        return gather_disks(m.slots, start, 3 * USUAL_DEPTH, m.near, count, grid.n, i, skip)
+    for k in range(0, 3 * grid.depth, 16):
+        count = gather_disks(m.slots, start + k, 3 * grid.depth - k, m.near, count, grid.n, i, skip)
+    return count
+
+
+@inline
+def _or_never(length):
+    return NEVER if length is None else length

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.base import Counters, rows_from
-from eventsim.engines.fast import tally
 from eventsim.engines.fast.instant import contacts_between, due_at
 from eventsim.engines.fast.machine import Machine
 from eventsim.engines.reference.calendar import CONTACT, Event
@@ -128,7 +127,7 @@ class PythonResolver:
         machine = self._machine
         if self._resolver is None:
             self._resolver = Resolver(machine.stage, machine.state, self._counters, machine.keep_rows)
-        tally.tell(self._counters, machine.counts, machine.sums)
+        machine.tell_counters(self._counters)
         return self._resolver
 
     def _keep(self, resolver: Resolver) -> None:
@@ -136,4 +135,4 @@ class PythonResolver:
         machine, rows = self._machine, resolver.take_rows()
         if rows:
             machine.add_rows(rows_from(rows, machine.stage.epoch_length, machine.stage.start_time))
-        tally.take_from(self._counters, machine.counts, machine.sums)
+        machine.take_counters(self._counters)

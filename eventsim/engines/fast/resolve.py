@@ -101,7 +101,7 @@ def _is_series(m, i, place_, supports, still):
     """Whether disk i met that wall already last, and bounces on it are exact however low."""
     if still is None and not _ends(m, place_, supports):
         return False
-    return word(m.disks, i * WORDS + MET) == -2 - place_
+    return word(m.disks, i * WORDS + MET) == -1 - place_
 
 
 @inline
@@ -285,7 +285,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     u, w = _rebound(m, rules, i, place_, side, u0, w0, u, w, e, m.supports)
     keep_sides(m, rules, i, t, pulls(m, rules, i), x, y, u, w, place_, side, m.sides)
     anchor(m, i, t, x, y, u, w)
-    remember(m, i, -2 - place_, side, 0)
+    remember(m, i, -1 - place_, side, 0)
     _note_time(m, rules, i, t, u == u0 and w == w0, still, SERIES_AT_ONCE if ends else rules.instant)
     mass = mass_of(i, m.mass, rules.common_mass)
     if not math.isinf(mass):

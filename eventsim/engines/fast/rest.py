@@ -19,7 +19,6 @@ from eventsim.engines.fast.layout import (
     RADIUS,
     REALS,
     RESTING,
-    SEVERAL,
     SUPPORT,
     SUPPORT_FACE,
     SUPPORT_HIGH,
@@ -69,9 +68,9 @@ def _has_struck(m, i, place):
     if side_met(m, i, place) != 0:
         return True
     met = word(m.disks, i * WORDS + MET)
-    if not SEVERAL < met < NOBODY or word(m.disks, i * WORDS + MET_KY) != STRUCK:
+    if not NOBODY < met < 0 or word(m.disks, i * WORDS + MET_KY) != STRUCK:
         return False
-    return are_in_line(m, place, -2 - met)
+    return are_in_line(m, place, -1 - met)
 
 
 @inline
@@ -87,7 +86,7 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     """(time, how) of the next event of disk i at a wall of the domain, which keeps its coordinate x at `target`."""
     f = i * REALS
     t = real(m.disks, f + T)
-    if rests(m, i) and word(m.disks, i * WORDS + MET) == -2 - place:
+    if rests(m, i) and word(m.disks, i * WORDS + MET) == -1 - place:
         return NEVER, STRUCK
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
     restitution = _series(rules.wall_restitution, rules.duration)
@@ -109,10 +108,10 @@ def shape_rest(m, rules, i, k):
     ax, ay = pulls(m, rules, i)
     place = rules.first_feature + k
     met = word(m.disks, w + MET)
-    if SEVERAL < met < NOBODY and word(m.disks, w + MET_KY) != STRUCK:
-        how, on = word(m.disks, w + MET_KY), SUPPORT * (-2 - met)
+    if NOBODY < met < 0 and word(m.disks, w + MET_KY) != STRUCK:
+        how, on = word(m.disks, w + MET_KY), SUPPORT * (-1 - met)
         line = face_at(m.supports, on + SUPPORT_FACE)
-        if met == -2 - place and how == SUPPORTED:
+        if met == -1 - place and how == SUPPORTED:
             low, high = real(m.supports, on + SUPPORT_LOW), real(m.supports, on + SUPPORT_HIGH)
             return slide_delay(line, low, high, x, y, vx, vy, ax, ay), word(m.disks, w + MET_KX), LEFT
         if (how == SUPPORTED or is_straight(m, k)) and lies_on(m, k, line):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eventsim.engines.base import Motion, Snapshot, Stop
 from eventsim.engines.exact_session import ExactSession
-from eventsim.engines.fast import FastOptions, layout, tally
+from eventsim.engines.fast import FastOptions, layout
 from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
 from eventsim.engines.fast.machine import FOREVER, Machine
 from eventsim.engines.fast.python_resolver import PythonResolver
@@ -60,11 +60,11 @@ class FastSession(ExactSession):
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
-        tally.take_from(self.counters, self._machine.counts, self._machine.sums)
+        self._machine.take_counters(self.counters)
         try:
             return super().advance(stop, budget)
         finally:
-            tally.tell(self.counters, self._machine.counts, self._machine.sums)
+            self._machine.tell_counters(self.counters)
             machine = self._machine
             if machine.grid.deep != self._marked:  # the one thing in a kind that a run may change
                 mark_warm(kind_of(self.stage, machine.grids, machine.keep_rows))
@@ -239,7 +239,7 @@ class FastSession(ExactSession):
 
     def kick(self, i: int, vx: float, vy: float) -> None:
         """Set the velocity of disk i from outside, now."""
-        tally.take_from(self.counters, self._machine.counts, self._machine.sums)  # which a restored run has set back
+        self._machine.take_counters(self.counters)  # which a restored run has set back
         super().kick(i, vx, vy)
 
     def _kick(self, i: int, vx: float, vy: float) -> None:

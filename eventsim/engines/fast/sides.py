@@ -127,7 +127,7 @@ def _side_on_line(m, i, k, kind, supports):
 def _side_on_support(m, i, k, kind):
     if kind != FACE or not word(m.disks, i * WORDS + FLAGS) & RESTING:
         return 0
-    line = face_at(m.supports, SUPPORT * (-2 - word(m.disks, i * WORDS + MET)) + SUPPORT_FACE)
+    line = face_at(m.supports, SUPPORT * (-1 - word(m.disks, i * WORDS + MET)) + SUPPORT_FACE)
     if not lies_on(m, k, line):
         return 0
     held, s = word(m.disks, i * WORDS + MET_KX), WIDTH * k

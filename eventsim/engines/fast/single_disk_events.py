@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import pulls
+from eventsim.engines.fast.calendar import earlier
 from eventsim.engines.fast.compiled import inline, part
-from eventsim.engines.fast.event_order import earlier
 from eventsim.engines.fast.layout import (
     COLUMN,
     DOWN,

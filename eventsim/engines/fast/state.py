@@ -173,11 +173,11 @@ class MetColumn:
             record[MET], record[MET_KX] = SEVERAL, first
 
     def _entry(self, partner: int, kx: int, ky: int) -> tuple[int, int, int]:
-        return (int(self._state.labels[partner]) if partner >= 0 else partner + 1), kx, ky
+        return (int(self._state.labels[partner]) if partner >= 0 else partner), kx, ky
 
     def _coded(self, entry: tuple[int, int, int]) -> tuple[int, int, int]:
         other, kx, ky = entry
-        return (int(self._state.place_of[other]) if other >= 0 else other - 1), kx, ky
+        return (int(self._state.place_of[other]) if other >= 0 else other), kx, ky
 
 
 class FastState(ExactState):

@@ -21,6 +21,7 @@ from eventsim.engines.stepped.ground import ground_of
 from eventsim.engines.trajectory import Trajectory
 from eventsim.errors import EventsimError
 from eventsim.formulas.contact import FASTEST, SLOWEST
+from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import ROW, Kind, Rows, blank_rows
 from eventsim.scene.stage import Stage
 
@@ -135,10 +136,10 @@ class SteppedSession(Session):
         m, (gx, gy) = self.disks, self.stage.gravity or (0.0, 0.0)
         lag = self.clock_of_steps.now - self.clock_of_steps.steps * self.dt
         return Motion(
-            m.x + lag * (m.vx + 0.5 * gx * lag),
-            m.y + lag * (m.vy + 0.5 * gy * lag),
-            m.vx + gx * lag,
-            m.vy + gy * lag,
+            position(m.x, m.vx, lag, gx),
+            position(m.y, m.vy, lag, gy),
+            velocity(m.vx, lag, gx),
+            velocity(m.vy, lag, gy),
             m.wraps_x.copy(),
             m.wraps_y.copy(),
         )
