@@ -13,7 +13,7 @@ import numpy as np
 from eventsim.record.contacts import Key
 from eventsim.record.events import Floats, Kind
 from eventsim.scene.stage import Stage
-from eventsim.validation.judge.flights import Flights, Turn
+from eventsim.validation.judge.flights import Flights, Gained, Turn
 from eventsim.validation.judge.outcome import named, wrong_outcome
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import NEAR, Met
@@ -23,6 +23,9 @@ GRAZE = 0.02
 
 THROUGH = 3.0
 """Radii that a disk flies after a missed contact with a wall, while it is looked at whether it gets through."""
+
+SURE = 6.0
+"""Standard errors by which a drift has to be above the noise of positions."""
 
 DRIFT = 1e-3
 """Of the energy: what free flights may gain or lose in all."""
@@ -150,12 +153,12 @@ class Witness:
         said = f"turn: disk {turn.disk} turns at t = {turn.time:.6g}, where nothing is near"
         return Fault(turn.time, "turn", said, (turn.disk,))
 
-    def drift(self, gained: Floats, energy: float) -> Fault | None:
-        """The fault of energy that free flights gain or lose: gained (T,) until each sample, of `energy` at the start."""
+    def drift(self, gained: Gained, energy: float) -> Fault | None:
+        """The fault of energy that free flights gain or lose, of `energy` at the start."""
         if not energy > 0.0:
             return None
-        share = gained / energy
-        over = np.flatnonzero(np.abs(share) > DRIFT)
+        share = gained.energy / energy
+        over = np.flatnonzero(np.abs(share) > np.maximum(DRIFT, SURE * gained.error / energy))
         if not len(over):
             return None
         times = self._flights.times

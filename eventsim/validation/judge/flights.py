@@ -6,9 +6,10 @@ turn, with the flight before it and the flight after it.  Velocities are differe
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,12 @@ LEAST_TURN = 1e-3
 
 ABOVE_NOISE = 8.0
 """A turn is so many times larger than the change that half of all disks show at a sample, which is noise or drift."""
+
+SHORTEST = 8
+"""Samples of a flight whose halves are compared."""
+
+BLURRED_BY = 6.0**0.5
+"""Steps of noise of positions in the difference of two mean velocities: x2 - 2 x1 + x0."""
 
 UNLIKE = 0.02
 """Of the typical speed: told velocities that differ more from the motion of the positions (the median) are not used."""
@@ -61,6 +68,7 @@ class Flights:
         before, after: (T, n, 2) velocities of the flights that end and that begin at a sample.
         turned: whether a disk turns there, (T, n); or on the way to the next sample, (T - 1, n), where velocities are told.
         least: the smallest change of velocity that is seen as a turn.
+        usual: the change that half of all disks show from one sample to the next by positions: noise, or drift.
         told: whether velocities are those that were told.
         pull: (n, 2) gravity on each disk.
     """
@@ -71,8 +79,14 @@ class Flights:
     after: Floats
     turned: Mask
     least: float
+    usual: float
     told: bool
     pull: Floats
+
+    @property
+    def blur(self) -> float:
+        """About the noise of positions, length."""
+        return self.usual * float(np.median(np.diff(self.times))) / BLURRED_BY
 
     def turns(self) -> Iterator[Turn]:
         """All turns, disk by disk."""
@@ -139,19 +153,41 @@ def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | No
     usual = float(np.median(moving)) if moving.size else 0.0
     blurred = 0.0 if told else 4.0 * step / float(dt.min())
     least = max(LEAST_TURN * speed, ABOVE_NOISE * usual, blurred)
-    return Flights(times, place, before, after, size > least, least, told, pull)
+    bends = np.diff(mean, axis=0) - 0.5 * pull * (dt[1:] + dt[:-1])
+    noise = float(np.median(np.hypot(bends[..., 0], bends[..., 1]))) if len(bends) else 0.0
+    return Flights(times, place, before, after, size > least, least, noise, told, pull)
 
 
-def energy_on_the_way(flights: Flights, mass: Floats) -> Floats:
-    """(T,) the energy that free flights have been given until each sample: 0 where flights are free."""
-    ways = np.zeros(len(flights.times))
-    quiet = ~flights.turned
-    if flights.told:
-        v = flights.after
-        gain = 0.5 * np.sum(v[1:] ** 2 - v[:-1] ** 2, axis=-1)
-        gain -= np.sum(flights.pull * 0.5 * (v[1:] + v[:-1]), axis=-1) * np.diff(flights.times)[:, None]
-        ways[1:] = np.sum(np.where(quiet, gain, 0.0) * mass, axis=1)
-    else:
-        gain = 0.5 * np.sum(flights.after**2 - flights.before**2, axis=-1)
-        ways[:] = np.sum(np.where(quiet, gain, 0.0) * mass, axis=1)
-    return np.cumsum(ways)
+class Gained(NamedTuple):
+    """The energy that free flights have been given until each sample, (T,), and the standard error of that, (T,)."""
+
+    energy: Floats
+    error: Floats
+
+
+def energy_on_the_way(flights: Flights, mass: Floats) -> Gained:
+    """What free flights gain: the second half of each against the first, by positions alone; mass: (n,), 0 where it is infinite.
+
+    Flights of less than SHORTEST samples are left out.
+    """
+    count, n = flights.place.shape[:2]
+    energy, variance = np.zeros(count), np.zeros(count)
+    blur = flights.blur
+    ends: dict[int, list[tuple[int, int]]] = {disk: [] for disk in range(n)}
+    for turn in flights.turns():
+        ends[turn.disk].append((turn.first, turn.last))
+    for disk in np.flatnonzero(mass > 0.0).tolist():
+        begin = 0
+        for first, last in [*ends[disk], (count, count)]:
+            end = first - 1
+            if end - begin >= SHORTEST:
+                middle = (begin + end) // 2
+                at = [begin, middle, end]
+                (t0, t1, t2), (x0, x1, x2) = flights.times[at], flights.place[at, disk]
+                one, other = (x1 - x0) / (t1 - t0), (x2 - x1) / (t2 - t1)
+                push = 2.0 * (other - one - 0.5 * flights.pull[disk] * (t2 - t0))
+                speed = 0.5 * (one + other)
+                energy[end] += mass[disk] * float(speed @ push)
+                variance[end] += (mass[disk] * math.hypot(*speed) * 8.0 * blur / (t2 - t0)) ** 2
+            begin = last + 1
+    return Gained(np.cumsum(energy), np.sqrt(np.cumsum(variance)))

@@ -35,6 +35,9 @@ STEPS_LATE, FLOWN = 2.0, 0.1
 SMALLEST = 1e-9
 """In radii: an overlap of paths below is rounding."""
 
+SMOOTHED = 5
+"""Samples."""
+
 SAME_START = 0.01
 """In diameters: how far positions at the start may be from those of the scene."""
 
@@ -131,7 +134,7 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
         tolerance = STEPS_LATE * step + 2.0 * FLOWN * truth.radius / truth.speed
     seen = np.searchsorted(times, looks)
     apart = distances(stage, samples.position[seen], truth.run.position[: len(looks)]) / (2.0 * truth.radius)
-    resolution = max(SMALLEST * truth.radius, 4.0 * samples.step)
+    resolution = max(SMALLEST * truth.radius, 4.0 * samples.step, 4.0 * flights.blur)
     witness = Witness(flights, around, mass, max(tolerance, step), resolution)
     window = Window(tolerance, 0.0 if contacts is not None else step, _lost_from(truth, apart), float(looks[-1]))
     charge = Charge()
@@ -151,7 +154,7 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
         charge=charge,
         looks=looks,
         errors=np.sqrt(np.mean(apart**2, axis=1)),
-        energy=energy / energy[0] - 1.0 if energy[0] > 0.0 else None,
+        energy=_smooth(energy / energy[0] - 1.0, flights.told) if energy[0] > 0.0 else None,
         momentum=_momentum(velocity, stage, mass),
         deepest=_deepest(scene, samples, looks, seen),
         faults=sorted((fault for fault in seen_here if fault is not None), key=lambda fault: fault.time),
@@ -228,6 +231,16 @@ def _energy(flights: Flights, velocity: Floats, weight: Floats) -> Floats:
     height = np.sum(weight * np.sum(flights.pull * flights.place, axis=-1), axis=1)
     kinetic = 0.5 * np.sum(weight * np.sum(velocity**2, axis=-1), axis=1)
     return np.asarray(kinetic - (height - height[0]))
+
+
+def _smooth(energy: Floats, told: bool) -> Floats:
+    """Medians of SMOOTHED samples: where velocities are differences, two disks that meet do not turn in the same one."""
+    if told or len(energy) < SMOOTHED:
+        return energy
+    windows = np.lib.stride_tricks.sliding_window_view(energy, SMOOTHED)
+    inner = np.array([np.median(known) if len(known := one[np.isfinite(one)]) else np.nan for one in windows])
+    side = SMOOTHED // 2
+    return np.concatenate([energy[:side], inner, np.full(side, inner[-1])])
 
 
 def _momentum(velocity: Floats, stage: Stage, mass: Floats) -> float | None:

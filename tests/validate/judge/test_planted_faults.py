@@ -61,6 +61,13 @@ def test_on_many_scenes(seed, tmp_path):
         assert (found.first_fault.kind if found.first_fault else "none") == fault
 
 
+@pytest.mark.parametrize("fault", ["none", "missed", "drift"])
+def test_positions_of_five_digits_are_judged_alike(fault):
+    """What rounding adds to velocities is neither a drift nor a turn."""
+    times, places, _, _ = motion(SCENE, fault)
+    assert_is_named(judge(SCENE, checked(Samples("rounded", times, places.round(5)))), fault)
+
+
 def test_the_time_and_the_disks_of_a_fault_are_told(tmp_path):
     times, places, _, contacts = motion(SCENE, "missed", at=5)
     fault = judge(SCENE, checked(Samples("motion", times, places))).first_fault
