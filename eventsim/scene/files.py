@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
+from eventsim.reading import reading
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import Domain, Open
 from eventsim.scene.overrides import apply_overrides, is_shallow
@@ -32,6 +33,10 @@ __all__ = [
 
 DISKS_IN_PIECE = 256
 DISKS_BESIDE = "disks.npz"
+
+
+MOST_BYTES = 1 << 30
+"""Of a scene file: some ten million disks."""
 
 
 def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
@@ -182,12 +187,11 @@ def scene_to_toml(scene: Scene) -> str:
 
 def _read(path: Path) -> dict[str, Any]:
     """The tables of a file."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: is not a text file (UTF-8)") from None
-    except OSError as error:
-        raise SceneError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    with reading(path, SceneError, "is not a scene file", MOST_BYTES) as file:
+        try:
+            text = file.read().decode("utf-8").replace("\r\n", "\n")
+        except UnicodeDecodeError:
+            raise SceneError(f"{path}: is not a text file (UTF-8)") from None
     try:
         data = json.loads(text, object_pairs_hook=_once) if path.suffix.lower() == ".json" else tomllib.loads(text)
     except _TwiceError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -10,6 +11,7 @@ from pathlib import Path
 
 from eventsim import suffixes
 from eventsim.errors import EventsimError
+from eventsim.reading import reading
 from eventsim.record.files.atomic import atomic_write
 from eventsim.sweep.task import Cell, Row
 
@@ -49,12 +51,9 @@ def write_table(path: Path, rows: Sequence[Row], provenance: Mapping[str, object
 
 def load_table(path: str | Path) -> list[Row]:
     """The rows of a table that was written as .csv; missing entries are None."""
-    try:
-        with Path(path).open(newline="", encoding="utf-8") as file:
-            lines = (line for line in file if not line.startswith("# "))
-            return [{key: _cell(text) for key, text in row.items()} for row in csv.DictReader(lines)]
-    except OSError as error:
-        raise EventsimError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    with reading(Path(path), EventsimError, "is not the table of a sweep") as file:
+        lines = (line for line in io.TextIOWrapper(file, encoding="utf-8", newline="") if not line.startswith("# "))
+        return [{key: _cell(text) for key, text in row.items()} for row in csv.DictReader(lines)]
 
 
 def _text(value: Cell) -> str:

@@ -24,8 +24,8 @@ from typing import Any
 from tests.live.running import MENU, header_of
 from tests.live.serving import serving, worlds_alive
 
-PATIENCE = 60.0
-"""Seconds within which a message is answered, on a machine that does other things, too."""
+PATIENCE = 300.0
+"""Seconds within which a message is answered on a busy machine, where the first comparison compiles its engine."""
 
 BORDERS = (
     0, 1, -1, 0.5, 1e-9, 5e-324, -5e-324, 1e-300, 50.0, 1e4, 1e15, -1e15, 1.0000001e15, 1e308, 2**31, 2**53, 2**53 + 1, 10**30,

@@ -20,6 +20,7 @@ from eventsim.record.files import open_sink
 from eventsim.scene import disks_file
 from eventsim.scene.files import scene_from_dict
 from eventsim.simulation import resume
+from eventsim.sweep import load_table
 from tests.record.logs import provenance, random_log, random_rows
 
 TABLES = {
@@ -82,6 +83,22 @@ def test_disks_come_from_ordinary_files_only(tmp_path, name):
     os.mkfifo(tmp_path / "pipe.npz")
     with pytest.raises(es.SceneError, match="not an ordinary file"):
         scene_from_dict({"domain": {"kind": "open"}, "disks_file": [{"path": name}]}, tmp_path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such files")
+@pytest.mark.parametrize("name", ["pipe.toml", "pipe.json"])
+def test_scenes_come_from_ordinary_files_only(tmp_path, name):
+    """A pipe that nobody writes to was waited for."""
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(es.SceneError, match="not an ordinary file"):
+        es.load_scene(tmp_path / name)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such files")
+def test_tables_come_from_ordinary_files_only(tmp_path):
+    os.mkfifo(tmp_path / "table.csv")
+    with pytest.raises(es.EventsimError, match="not an ordinary file"):
+        load_table(tmp_path / "table.csv")
 
 
 def test_a_file_of_disks_beyond_all_measure_is_told(tmp_path, monkeypatch):
