@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from eventsim.compiler import is_interpreted
+
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # Whoever starts tests in the background makes them ignore interrupts, and all programs that they start to interrupt them.
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -30,3 +32,19 @@ def no_process_is_left(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         if process.poll() is None:
             process.kill()
             process.wait()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let tests of the fast engine run its kernels as plain Python, in a run of their own: compiling takes longer than they do.
+
+    Such tests have the marker `kernels`, or the parameter engine = "fast".  Compiled they are slow, but for those that
+    are marked `compiled`.
+    """
+    for item in items:
+        call = getattr(item, "callspec", None)
+        asked = item.get_closest_marker("kernels") or (call is not None and call.params.get("engine") == "fast")
+        if asked and not item.get_closest_marker("compiled"):
+            item.add_marker("kernels")
+            if not is_interpreted():
+                item.add_marker("slow")

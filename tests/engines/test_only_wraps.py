@@ -81,6 +81,7 @@ def apart(n):
 
 
 @pytest.mark.parametrize("n", [3, 20, 300])
+@pytest.mark.kernels
 def test_what_flies_apart_ends_at_its_last_contact_in_every_engine(n):
     pytest.importorskip("numba")
     slow, fast = (es.simulate(apart(n), events=10**6, engine=engine, log=True) for engine in ("reference", "fast"))
@@ -94,6 +95,7 @@ def test_what_flies_apart_ends_at_its_last_contact_in_every_engine(n):
     assert slow.state.position.tobytes() == es.simulate(apart(n), events=len(slow.log), engine="fast").state.position.tobytes()
 
 
+@pytest.mark.kernels
 def test_what_flies_together_over_the_plane_ends_where_it_began():
     pytest.importorskip("numba")
     together = es.Disks(apart(300).disks.position, np.full((300, 2), 0.3), 0.5)
@@ -103,6 +105,7 @@ def test_what_flies_together_over_the_plane_ends_where_it_began():
 
 
 @pytest.mark.parametrize("name", NEVER)
+@pytest.mark.kernels
 def test_what_drifts_ends_at_one_time_in_every_engine(name):
     slow, proven = (run(engine, *NEVER[name]) for engine in ("reference", "certified"))
     fast = run("fast", *NEVER[name])
@@ -110,6 +113,7 @@ def test_what_drifts_ends_at_one_time_in_every_engine(name):
     assert slow.state.position.tobytes() == fast.state.position.tobytes()
 
 
+@pytest.mark.kernels
 def test_time_does_not_go_back_where_nothing_is_ahead():
     pytest.importorskip("numba")
     digests = []

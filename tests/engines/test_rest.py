@@ -213,6 +213,7 @@ def test_random_pits_end_in_order_and_replay_to_the_same_bits(seed):
 
 
 @pytest.mark.skipif(not has_compiler(), reason="needs numba")
+@pytest.mark.kernels
 def test_engines_agree_on_what_comes_to_rest():
     """Six pits of one kind, so that kernels are compiled once."""
     pits = [scene for seed in range(60) if (scene := random_pit(seed)) is not None]

@@ -118,6 +118,7 @@ KERNELS = [
 
 
 @pytest.mark.parametrize("name", KERNELS)
+@pytest.mark.kernels
 def test_kernels_expand_a_compact_log_to_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     log = run_of(name).log
@@ -129,6 +130,7 @@ def test_kernels_expand_a_compact_log_to_the_same_bits(name: str, monkeypatch: p
 
 @pytest.mark.slow
 @pytest.mark.parametrize("uneven", [False, True], ids=["equal", "uneven"])
+@pytest.mark.kernels
 def test_kernels_expand_a_log_with_kicks(uneven: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     log = kicked(uneven).log
@@ -137,6 +139,7 @@ def test_kernels_expand_a_log_with_kicks(uneven: bool, monkeypatch: pytest.Monke
     assert compact.expand().rows.tobytes() == log.rows.tobytes()
 
 
+@pytest.mark.kernels
 def test_kernels_refuse_rows_that_do_not_follow(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     log = run_of("periodic").log

@@ -21,6 +21,8 @@ from tests.engines.fast.crowds import crowd
 from tests.engines.fast.test_same_log import assert_same, rows_of
 from tests.gallery.test_gallery_digests import DIGESTS, stored
 
+pytestmark = pytest.mark.kernels
+
 FEW, MANY = (3, 5), range(200)
 EVENTS, MOST_EVENTS = 1000, 100_000
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Stop
 from eventsim.engines.fast import FastOptions
 from eventsim.engines.fast.plan import Sizes, classes_of, levels_of
@@ -16,7 +17,9 @@ from eventsim.scene.stage import Stage, stage_of
 from tests.engines.fast.test_same_log import assert_same, rows_of
 from tests.engines.scenes import lattice_gas, wide_mixture
 
-STOP = Stop(until=100.0, events=3000)
+pytestmark = pytest.mark.kernels
+
+STOP, SEEDS = (Stop(until=100.0, events=200), 1) if is_interpreted() else (Stop(until=100.0, events=3000), 4)
 slow = pytest.mark.slow
 
 
@@ -32,7 +35,7 @@ slow = pytest.mark.slow
     ],
 )
 def test_a_wide_mixture_has_one_log(domain: type, gravity: tuple[float, float] | None) -> None:
-    for seed in range(4):
+    for seed in range(SEEDS):
         stage = stage_of(wide_mixture(250, seed, domain, gravity=gravity))
         assert len(classes_of(stage)) > 1
         assert_same(stage, STOP)

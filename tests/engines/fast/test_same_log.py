@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import eventsim as es
+from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Session, Stop
 from eventsim.engines.fast import FastOptions, grids, plan
 from eventsim.engines.fast.plan import Sizes
@@ -23,6 +24,7 @@ from eventsim.scene.gallery import gallery, names
 from eventsim.scene.stage import Stage, stage_of
 
 pytest.importorskip("numba")
+pytestmark = pytest.mark.kernels
 
 BUDGET = 3000
 COUNTERS = (
@@ -35,7 +37,6 @@ COUNTERS = (
     "deepest_overlap",
     "outer_momentum",
 )
-QUICK = ("two-disks", "break", "newton-cradle", "corner", "collapse", "gas", "periodic-fluid", "obstacle")
 
 
 def rows_of(session: Session, stop: Stop) -> tuple[Rows, str]:
@@ -65,14 +66,14 @@ def assert_same(stage: Stage, stop: Stop, **options: object) -> None:
         assert np.array_equal(one, other)
 
 
-SLOW = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in names()]
-"""Most scenes need kernels of their own, which take seconds to compile."""
+MOST = 200 if is_interpreted() else None
+"""Events of a run that is to be quick."""
 
 
-@pytest.mark.parametrize("name", SLOW)
+@pytest.mark.parametrize("name", names())
 def test_a_gallery_scene_has_one_log(name: str) -> None:
     scene = gallery(name)
-    assert_same(stage_of(scene), Stop(scene.until, scene.events))
+    assert_same(stage_of(scene), Stop(scene.until, MOST or scene.events))
 
 
 def lattice_gas(
@@ -111,6 +112,7 @@ def test_a_random_gas_has_one_log(
     assert_same(stage_of(scene), Stop(until=30.0, events=1000))
 
 
+@pytest.mark.compiled
 def test_scalar_kernel_and_lanes_and_two_cell_sizes_agree() -> None:
     stage = stage_of(lattice_gas(12, 12, 1.25, np.random.default_rng(5), "periodic", False, 0.0))
     stop = Stop(events=3000)
@@ -134,6 +136,7 @@ def test_disks_that_fall_alike_meet_in_lanes_as_one_by_one(domain: str) -> None:
     assert_same(stage, Stop(events=3000), lanes=False)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("domain", "quantised"), [("periodic", False), ("box", True)])
 def test_what_is_done_for_many_disks_changes_no_bit(
     domain: str, quantised: bool, monkeypatch: pytest.MonkeyPatch
@@ -212,6 +215,7 @@ def test_a_kick_is_logged_alike() -> None:
     assert logs[0] == logs[1]
 
 
+@pytest.mark.compiled
 def test_golden_digests_hold() -> None:
     golden = Path(__file__).parents[2] / "gallery" / "golden"
     known = json.loads((golden / "digests.json").read_text())
