@@ -13,7 +13,12 @@ SPENT = 8.0
 
 
 def holds(ax: Real, ay: Real, bx: Real, by: Real, gx: Real, gy: Real) -> bool:
-    """Whether gravity presses a disk onto two walls at once: -g lies between their normals a and b."""
+    """Whether gravity presses a disk onto two walls at once: -g lies between their normals a and b.
+
+    Walls along the axes do not: places on these are exact, and bounces on one do not feel the other.
+    """
+    if (ax == 0.0 or ay == 0.0) and (bx == 0.0 or by == 0.0):
+        return False
     turn = ax * by - ay * bx
     return bool(turn * (gy * bx - gx * by) > 0.0 and turn * (gx * ay - gy * ax) > 0.0)
 

@@ -25,10 +25,9 @@ def corners_of(
 ) -> Iterator[Corner]:
     """The corners that a wall, met from a side, makes with others that a disk at (x, y) met last; none where nothing settles.
 
-    Two sides of the domain make none: places there are exact, and bounces on one do not feel the other.  Nor do walls in line.
+    Walls in line make none.
     """
-    sides = len(stage.boundaries) if place < len(stage.boundaries) else 0
-    others = [last for last in met if last[0] < -sides and last[2] != LEFT and not _is_one(stage, place, -1 - last[0])]
+    others = [last for last in met if last[0] < 0 and last[2] != LEFT and not _is_one(stage, place, -1 - last[0])]
     if not others or not stage.settles or not is_float(x):
         return
     assert stage.gravity is not None

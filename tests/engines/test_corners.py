@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -64,12 +65,30 @@ def test_a_disk_that_bends_off_on_its_way_down_is_not_held(engine):
     assert run.state.position[0, 0] > 3.0
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_bounces_on_one_of_two_walls_along_the_axes_do_not_feel_the_other(engine):
+    """On the floor it rests and slides, whatever the side does: each contact with that is e times as fast as the one before."""
+    made = es.Scene(
+        disks=es.Disks([(2.0, 0.25)], [(1.0, 0.0)], 0.25, 1.0),
+        domain=es.Box((4.0, 4.0)),
+        walls=(es.Segment((0.0, 0.0), (4.0, 0.0), name="floor"),),
+        gravity=(1.0, -1.0),
+        restitution=0.5,
+    )
+    run = es.simulate(made, until=30.0, events=3000, engine=engine, log=True)
+    right = [row for row in run.log.rows if run.log.provenance.wall_names[row["wall"]] == "right" and row["kind"] == 1]
+    speeds = [-float(row["vxa"]) for row in right]
+    assert [after / before for before, after in pairwise(speeds[:21])] == pytest.approx([0.5] * 20, rel=1e-9)
+    assert run.stopped == "collapse"
+
+
 def test_a_corner_holds_where_gravity_lies_between_its_walls():
     assert holds(1.0, 1.0, -1.0, 2.0, 0.0, -1.0)
     assert holds(-1.0, 2.0, 1.0, 1.0, 0.0, -1.0)
     assert not holds(1.0, 1.0, 1.0, 2.0, 0.0, -1.0)
     assert not holds(1.0, -1.0, -1.0, -1.0, 0.0, -1.0)
     assert holds(1.0, 0.0, -0.1, 1.0, 0.0, -1.0)
+    assert not holds(1.0, 0.0, 0.0, 1.0, -0.5, -1.0)
 
 
 def test_the_energy_left_in_a_corner_counts_from_its_lowest_place():

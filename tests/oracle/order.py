@@ -34,7 +34,15 @@ def first_of(run: State) -> Meeting | None:
     for meeting in run.rest_due.values():
         if first is None or meeting.time <= first.time:
             first = meeting
-    return first
+    return first if first is None or not first.at_end else _leaving(run, first)
+
+
+def _leaving(run: State, first: Meeting) -> Meeting:
+    """A point that slides to the end of its wall leaves it there: only then it is beside what else ends there."""
+    if run.flights[first.a].held is None:
+        return first
+    leaves = [other for other in meetings_of(run, {first.a}) if other.how == LEAVE and may_tie(run, other, first)]
+    return leaves[0] if leaves else first
 
 
 def meetings_of(run: State, disks: set[int]) -> list[Meeting]:

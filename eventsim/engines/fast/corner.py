@@ -43,8 +43,6 @@ def _is_cornered(m, rules, i, wall, side, x, y):
 def _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
     if other == -1 - wall or how == LEFT:
         return False
-    if wall < rules.first_feature and other > -1 - rules.first_feature:  # two sides of the domain
-        return False
     if _is_one_line(m, wall, -1 - other, m.supports):
         return False
     bx, by = wall_normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
