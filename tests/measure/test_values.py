@@ -97,10 +97,27 @@ TABLES = {
 }
 
 
+def oval():
+    """(Area, perimeter) of an ellipse of semi-axes 1.9 and 1.2; evenly spread points integrate what is periodic to all digits."""
+    angle = 2.0 * math.pi * np.arange(4096) / 4096
+    return math.pi * 1.9 * 1.2, 2.0 * math.pi * float(np.hypot(1.9 * np.sin(angle), 1.2 * np.cos(angle)).mean())
+
+
+TABLES["ellipse"] = (
+    lambda x, y: math.hypot(x / 1.9, y / 1.2) < 1.0 - 1e-6,
+    es.Open(),
+    [es.Ellipse((0.0, 0.0), (1.9, 1.2))],
+    (),
+    oval(),
+)
+STARTS = {"ellipse": 16_000}
+"""Ways in an ellipse keep what they begin with, so many of them are needed."""
+
+
 @pytest.mark.parametrize("name", TABLES)
 def test_free_paths_of_points_from_random_starts(name):
     inside, domain, walls, post, (area, perimeter) = TABLES[name]
-    place, velocity = starts(inside, 200, seed=7)
+    place, velocity = starts(inside, STARTS.get(name, 200), seed=7)
     radius, mass = np.zeros(len(place)), np.zeros(len(place))
     if post:
         place, velocity = np.vstack([place, [post[0]]]), np.vstack([velocity, [[0.0, 0.0]]])
@@ -139,9 +156,8 @@ def test_a_round_container_with_rotation(omega):
     pytest.importorskip("numba")
     scene = jar(omega)
     measures = es.simulate(scene, events=500_000, engine="fast", measure=20.0).measures
-    squares = RadialHeat(scene, 0.5).sample(20.0, 600)
-    bar = block_average(squares)
-    assert bar.error < 0.01 * bar.mean
+    bar = block_average(RadialHeat(scene, 0.5).sample(20.0, 2400))
+    assert bar.error < 3e-3 * bar.mean
     assert abs(measures["temperature"].value - bar.mean) < 3.0 * bar.error
     if omega == 0.0:
         assert abs(measures["Z_walls"].deviation) < 3.0
