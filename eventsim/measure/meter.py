@@ -47,6 +47,9 @@ SAMPLES_PER_FLIGHT = 4
 MOST_SAMPLED = 1 << 18
 """Disks times samples that are kept before they are added; where one block of rows fills that, samples become half as many."""
 
+MORE_SAMPLES = 1.25
+"""Times the samples of the first block that another may have: a gas that slows down has more time in a block, at no more cost."""
+
 MOST_WALLS = 64
 """More walls than this are measured together only."""
 
@@ -100,6 +103,7 @@ class Meter:
         self._block = np.empty(BLOCK, dtype=ROW)
         self._filled, self._rows = 0, 0
         self._correlator: Correlator | None = None
+        self._most_samples = len(self._sums.way)
         self._time = 0.0
 
     def write(self, rows: Rows) -> None:
@@ -186,13 +190,15 @@ class Meter:
             flight = (end if end > 0.0 else 1.0) * movers / max(2 * rows, 1)
             self._correlator = Correlator(flight / SAMPLES_PER_FLIGHT)
             numbers[sums.INTERVAL] = self._correlator.interval
+            usual = MORE_SAMPLES * span / self._correlator.interval
+            self._most_samples = int(min(max(usual, 4.0), float(len(self._sums.way))))
             self._hold(kernels(rows))
         return self._correlator
 
     def _make_room(self, end: float) -> None:
         """Take samples half as often until those that are due up to a time fit into the buffer."""
         numbers, counts = self._sums.numbers, self._sums.counts
-        while (end - numbers[sums.ORIGIN]) / numbers[sums.INTERVAL] - counts[sums.SAMPLED] > len(self._sums.way):
+        while (end - numbers[sums.ORIGIN]) / numbers[sums.INTERVAL] - counts[sums.SAMPLED] > self._most_samples:
             self._drain(coarsen=True)
 
     def _drain(self, coarsen: bool = False) -> None:

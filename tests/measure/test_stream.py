@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 
 import eventsim as es
@@ -44,3 +47,36 @@ def test_three_million_rows_are_measured_within_400_megabytes(tmp_path, suffix):
     """All of them would be 384 MB, and as much again while they are read."""
     long_log.write(tmp_path / f"log{suffix}", millions=3)
     assert long_log.megabytes("measure", str(tmp_path / f"log{suffix}")) < 400
+
+
+COOLING = """
+import resource, time, numpy as np, eventsim as es
+from eventsim.measure import Meter
+scene = es.gallery("cooling", n=1000)
+meter, spent = Meter(scene), [(0, 0.0)]
+
+def write(rows):
+    begun = time.thread_time()
+    meter.write(rows)
+    spent.append((int(rows["event"][-1]) + 1, spent[-1][1] + time.thread_time() - begun))
+
+run = es.simulate(scene, events=1_000_000, engine="fast", on_event=write)
+measures = meter.finish(run.time)
+events, seconds = np.array(spent).T
+parts = np.diff(np.interp(np.arange(0, run.counters.events + 1, 100_000), events, seconds))
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, measures.series.energy[0] / measures.series.energy[-1], *parts)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1200)
+def test_a_gas_that_cools_by_many_decades_is_measured_at_one_pace_in_constant_memory():
+    """A million contacts: below 300 MB with the engine, and each 1e5 cost the meter what the first did, times 1.5."""
+    pytest.importorskip("numba")
+    for _ in range(2):  # the first one compiles, in the time of its first part
+        done = subprocess.run([sys.executable, "-c", COOLING], check=True, capture_output=True, text=True)
+    kilobytes, fall, first, *parts = map(float, done.stdout.split())
+    assert kilobytes < 300_000
+    assert fall > 1e12
+    assert len(parts) == 9
+    assert max(parts) < 1.5 * first

@@ -32,7 +32,11 @@ class Family(NamedTuple):
 
 FAMILIES = (
     Family("temperature (kT); where there is none: energy_start, energy_end; kinetic_energy", temperature.measures),
-    Family("Z (P V / N kT from the virial), Z_walls, pressure, contact_value or contact_value_I_J", pressure.measures),
+    Family(
+        "Z (1 + virial of the pairs / 2 N kT; periodic: P V / N kT), Z_walls (the same from walls), pressure (periodic: from\n"
+        "  the virial; else mean force on a length of wall), contact_value or contact_value_I_J",
+        pressure.measures,
+    ),
     Family(
         "collision_rate (contacts of a disk with others per time), wall_contact_rate (of all disks)", rates.measures
     ),
@@ -42,7 +46,7 @@ FAMILIES = (
     Family(
         "temperature_I, mean_speed_I, collision_rate_I, collision_rate_I_J (of a disk of species I)", species.measures
     ),
-    Family("diffusion (d <r^2> / d 4t, with its lags)", diffusion.measures),
+    Family("diffusion (d <r^2> / d 4t about the common motion; its lags; D against lag)", diffusion.measures),
     Family("cooling_exponent (-d ln T per contact of a disk)", cooling.measures),
 )
 """The table of families, in the order of the page."""
