@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines import STEPPED
 from eventsim.errors import EventsimError
 from eventsim.measure import sums
 from eventsim.measure.compiled import Kernels, kernels
@@ -66,6 +68,7 @@ class Meter:
         discard: float | None = None,
         kicks: tuple[Kick, ...] = (),
         profile: str | None = None,
+        engine: str | None = None,
     ) -> None:
         """Begin to measure a scene; very fast and very slow runs are measured at their pace (`scene.pace`).
 
@@ -74,12 +77,14 @@ class Meter:
             discard: time from the start that is left out; None: the scene's `equilibration`, or else found from the pressure.
             kicks: velocities that are set from outside.
             profile: "x" or "y" for profiles along that axis as well.
+            engine: the name of the one whose rows these are; those of an engine of steps are told to be no exact contacts.
 
         Raises:
             EventsimError: for a negative or infinite time, and for a scene in which nothing can be deflected.
         """
         if discard is not None and not 0.0 <= discard < math.inf:
             raise EventsimError(f"discard = {discard!r}: must be a finite time, at least 0")
+        self._steps = engine if engine in STEPPED else None
         self._pace = pace_of_scene(scene, kicks)
         self._epoch_length = math.ldexp(stage_of(scene).epoch_length, self._pace)
         self.scene = scene = slowed_scene(scene, self._pace)
@@ -152,6 +157,9 @@ class Meter:
             groups=self._groups.count,
         )
         measures = measures_of(records)
+        if self._steps is not None:
+            rows = f"contacts are as the engine {self._steps} found them, at the ends of its steps"
+            measures = replace(measures, doubts=(*measures.doubts, rows))
         return at_full_pace(measures, self._pace) if self._pace else measures
 
     def _take(self, rows: Rows) -> None:
@@ -304,7 +312,7 @@ def measure_file(
 
 
 def _measured(provenance: Provenance, blocks: Iterable[Rows], discard: float | None, profile: str | None) -> Measures:
-    meter = Meter(provenance.scene, discard, provenance.kicks, profile)
+    meter = Meter(provenance.scene, discard, provenance.kicks, profile, provenance.engine)
     length, latest = provenance.epoch_length, 0.0
     for rows in blocks:
         if len(rows):

@@ -96,6 +96,8 @@ def test_walls_know_their_side_though_steps_find_contacts_late(engine):
     for k, name in enumerate(("left", "right", "bottom", "top")):
         given = float(rows["impulse"][rows["wall"] == k].sum())
         assert measures[f"pressure_{name}"].value == pytest.approx(given / 30.0 / gas.domain.size[0], rel=1e-9)
+    assert engine in measures.doubts[-1]
+    assert not measures.equilibrated
 
 
 def test_both_sides_and_the_ends_of_an_arc_are_told_apart():
