@@ -43,7 +43,7 @@ class FiledLog:
         if self._held is not None:
             yield from self._held
             return
-        held: list[Rows] | None = []
+        held: list[Rows] | None = None if (self._rows or 0) > MOST_HELD else []
         count = 0
         for rows in stream_log(self._file, verify=not self._verified)[1]:
             count += len(rows)
