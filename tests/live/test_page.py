@@ -272,6 +272,7 @@ def test_a_page_whose_server_is_gone_says_so_and_takes_no_other_for_it(chromium)
         assert "lost" in page.js("return live.part('notice').textContent")
     with live_server(port=port) as (another, _):
         assert another != address
+        page.wait("live.part('notice').textContent.includes('started anew')")
         time.sleep(2.0)  # more than one try of the page
         assert not page.js("return live.link.open")
         assert not page.js("return live.part('notice').hidden")
