@@ -6,9 +6,10 @@ import numpy as np
 
 from eventsim.engines.base import Motion
 from eventsim.engines.fast import levels
+from eventsim.engines.fast.columns import Integers
 from eventsim.engines.fast.layout import USUAL_DEPTH, Grid
 from eventsim.engines.fast.plan import LOOK_AHEAD, MANY_DISKS, Sizes, cell_sizes, classes_of, days_of, levels_of
-from eventsim.engines.fast.state import Integers, aligned
+from eventsim.engines.fast.state import aligned
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
