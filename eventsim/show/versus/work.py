@@ -51,7 +51,7 @@ def draw_work(axes: Axes, curves: Curves) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     low, high = axes.get_ylim()
-    axes.set_ylim(low / 3.0, high * 2.0)
+    axes.set_ylim(min(low, WANTED[curves.task.measure]) / 3.0, high * 2.0)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(numticks=8))
         axis.set_minor_formatter(NullFormatter())
