@@ -40,7 +40,7 @@ def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> None:
         note(angles, f"{EXACT_ANGLE:g} or less", (0.0, EXACT_ANGLE), ACROSS, (4, 6))
     _panel(pressure, comparison, lambda line: 100.0 * line.pressure, "against event-driven [%]", "Bias of the pressure (virial)")
     pressure.axhline(0.0, color=LIGHT.ink, lw=0.9)
-    _panel(times, comparison, lambda line: line.elapsed, "CPU seconds per time unit of the scene", "Computing time, least to most", log=True)
+    _panel(times, comparison, lambda line: line.elapsed, "CPU seconds per time unit of the scene", "Computing time", log=True)
     for line in comparison.lines:
         spread = [[line.timing.median - line.timing.least], [line.timing.most - line.timing.median]]
         times.errorbar([line.step], [line.elapsed], yerr=spread, fmt="none", ecolor=look(line.label).colour, elinewidth=0.9)

@@ -17,6 +17,9 @@ from eventsim.validation.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
 
 STEP = "step: radii that a typical disk flies in it"
 
+MOST_NAMES = 2
+"""Engines that a note names: more would leave its panel."""
+
 NONE = 0.2
 """Per cent: where runs that miss no contact are drawn, at most; half a contact may be more, and would lie above real losses."""
 
@@ -42,9 +45,10 @@ def draw_energy(axes: Axes, comparison: Comparison) -> None:
     blind = blindest(comparison)
     text = "energy looks perfect here"
     if blind:
-        labels = dict.fromkeys(line.label for line in blind)
+        labels = list(dict.fromkeys(line.label for line in blind))
+        named = ", ".join(labels[:MOST_NAMES]) + (f" and {len(labels) - MOST_NAMES} more" if len(labels) > MOST_NAMES else "")
         share = blind[0].census.share(blind[0].census.missed)
-        text += f",\nwith up to {share:.0%} of the contacts missed\n({', '.join(labels)})"
+        text += f",\nwith up to {share:.0%} of the contacts missed\n({named})"
     note(axes, text, (0.03, 3e-10), ACROSS, va="top", bbox=None)
     label(axes, STEP, "relative change of energy", "What does energy hide? The losses on the left")
 

@@ -15,7 +15,7 @@ def note(
     axes: Axes, text: str, at: tuple[float, float], coords: Any = "data", offset: tuple[float, float] = (0, 0), **style: Any
 ) -> None:
     """Write `text` at a place, moved by `offset` points."""
-    style = {"fontsize": 9, "color": LIGHT.ink, "bbox": BACK, **style}
+    style = {"fontsize": 9, "zorder": 6, "color": LIGHT.ink, "bbox": BACK, **style}
     axes.annotate(text, at, xycoords=coords, xytext=offset, textcoords="offset points", **style).set_in_layout(False)
 
 
