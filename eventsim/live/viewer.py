@@ -127,10 +127,11 @@ class Viewer:
         world = self._worlds.get(message.world)
         if world is None or world.scene is None:
             raise EventsimError("that world is gone: it lives as long as somebody looks at it")
-        self.world.leave(self)
-        self.world = world
-        others = max(world.viewers, key=lambda viewer: viewer.time, default=None)
+        others = max(world.viewers - {self}, key=lambda viewer: viewer.time, default=None)
         world.viewers.add(self)
+        if world is not self.world:  # who joins its own world begins it anew; left by all it would be gone
+            self.world.leave(self)
+            self.world = world
         self.begin(world.speed)
         if others is not None:
             self._controls = [Control(others.time, others.speed or world.speed, 1, False)]

@@ -1,6 +1,7 @@
 """What the server refuses, and bounds: garbage, strangers, pages that do not read, events without end."""
 
 import asyncio
+import gc
 import json
 import signal
 import sys
@@ -123,6 +124,27 @@ def test_events_that_are_kept_are_bounded(monkeypatch):
             if rows["ended"] is not None:
                 break
         assert "as many as are kept" in rows["ended"]
+
+    run(story)
+
+
+def test_a_page_that_joins_its_own_world_stays_in_it():
+    """The world was given up as left by all, and its page with it."""
+
+    async def story(connect, session, address):
+        client = await connect()
+        await client.tell(menu())
+        world = (await client.hear("opened"))["world"]
+        for _ in range(2):
+            await client.tell({"type": "join", "world": world})
+            assert (await client.hear("opened"))["world"] == world
+        await client.tell({"type": "throw", "time": 0.0, "disk": 0, "velocity": [1.0, 0.0]})
+        await client.hear("cut")
+        assert len(worlds_alive()) == 1
+        await client.socket.close()
+        await asyncio.sleep(0.5)
+        gc.collect()
+        assert worlds_alive() == []
 
     run(story)
 
