@@ -12,5 +12,5 @@ It shares no line with `eventsim` beyond reading scenes; what it knows of physic
 To add a wall shape: a class in `table`, its gap as a polynomial in `search`, its normal and bend in `state`.
 
 `python -m tests.oracle --list` names the families; `--family NAME --scenes N --seed S` judges; `--first K --scenes 1 --show`
-tells one scene row by row.
+tells one scene row by row; `--scene FILE ...` judges the scenes of files.
 """
