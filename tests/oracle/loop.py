@@ -70,7 +70,8 @@ def follow(run: State) -> Story:
         ending, why = "collapse", str(collapse)
     except SqueezedError:
         ending, why = "collapse", "squeezed"
-    return Story(run.table, run.rows, ending, why, run.now, free_times(run), run.parts)
+    glides = any(flight.skip and flight.held is None for flight in run.flights)
+    return Story(run.table, run.rows, ending, why, run.now, free_times(run), run.parts, glides)
 
 
 def pass_time(run: State) -> str:

@@ -65,6 +65,7 @@ class Story:
     ending: `until`, `events`, `quiet` (nothing ahead), `collapse` (no answer from `time` on: the run must stop with a
     reason there), or `beyond` (floats do not determine what comes next).  why: a word on that.  free_times: between
     two contacts of a disk, median and mean. state(time): places and velocities at a time after the last row.
+    glides: a disk moves along a wall, but for the last bits of its velocity, which may take it there some day.
     """
 
     table: Table
@@ -74,6 +75,7 @@ class Story:
     time: Decimal
     free_times: tuple[float, float]
     state: Callable[[Decimal], list[Part]]
+    glides: bool = False
 
 
 class BeyondError(Exception):
