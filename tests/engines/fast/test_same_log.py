@@ -225,6 +225,7 @@ def test_golden_digests_hold() -> None:
         assert run.log.digest() == known[name]["digest"]
 
 
+@pytest.mark.compiled
 def test_auto_hands_over_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None:
     from eventsim.engines import auto
 
