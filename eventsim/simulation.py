@@ -17,7 +17,6 @@ from eventsim.errors import CheckpointError, CollapseError, EventsimError, Scene
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, State, unchangeable
 from eventsim.record.provenance import Ending
-from eventsim.replay.expand import expand_rows
 from eventsim.replay.log import EventLog
 from eventsim.run import Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
@@ -163,7 +162,6 @@ def resume(
         every=saved.every if every is None else interval(every),
         resumed=saved,
         interrupt=interrupt,
-        expanded=expand_rows,
     )
     chosen = engine_named(provenance.engine if engine is None else engine)
     return Run.of(run_scene(chosen, provenance.scene, stop, wanted))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.output import say
+from eventsim.suffixes import LOGS, PART
 
 
 @click.command()
@@ -14,7 +17,7 @@ from eventsim.cli.output import say
 @json_option
 @quiet_option
 def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bool, as_json: bool, quiet: bool) -> None:
-    """Validate SCENE, and explain what it has and which machinery it gets for that.
+    """Validate SCENE, and explain what it has and which machinery it gets for that; or check all of a log file.
 
     A scene with problems is answered with all of them at once, each naming the key or the disks, the value
     and the rule.  A warning tells where its outcome hangs on the last bits of its numbers.
@@ -25,6 +28,7 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
       eventsim check gas --set n=50
       eventsim check gas --horizon         until which contact its trajectory can be believed
       eventsim check my.toml --quiet       says nothing; the exit code tells
+      eventsim check break.csv             a log: its scene, every row, every digest; a compact one is run again
 
     \b
     Keys of --json:
@@ -59,8 +63,19 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
                                   once), {events, until} compared
       explanation                 topic -> words, as the text prints them
 
-    Exit codes: 0 valid; 2 bad usage, scene or file.
+    
+    Keys of --json of a log:
+      log, rows, compact          the file; the number of its rows; whether they had to be made full
+      engine, version, bits       what wrote it, by which version of the rules
+      begin, end, stopped         times on the scene's clock; why the run ended (null: it goes on, or was killed)
+      digest                      of the full rows
+      notes                       what it does not vouch for
+
+    Exit codes: 0 valid; 2 bad usage, scene or file, or a log that is not what its run wrote.
     """
+    if settings == () and seed is None and not horizon and is_log(scene):
+        check_log(scene, as_json, quiet)
+        return
     from dataclasses import asdict
 
     from eventsim.cli.explain import explanation, page
@@ -87,3 +102,29 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
             from eventsim.cli.summary import horizon_words
 
             say(f"  horizon: {horizon_words(estimate)}")
+
+
+def is_log(name: str) -> bool:
+    """Whether a name is that of a log file, whole or in the making."""
+    return Path(name.removesuffix(PART)).suffix.lower() in LOGS
+
+
+def check_log(path: str, as_json: bool, quiet: bool) -> None:
+    """Check all of a log file, and say what it is."""
+    from dataclasses import asdict
+
+    from eventsim.cli.words import as_json_text
+    from eventsim.replay.audit import audit
+    from eventsim.scene.names import plural
+
+    found = audit(path)
+    if as_json:
+        say(as_json_text({"log": path, **asdict(found)}))
+    elif not quiet:
+        form = "compact, run again and the same" if found.compact else "as its run stored them"
+        ended = "not closed" if found.stopped is None else f"stopped: {found.stopped}"
+        say(f"{path}: {plural(found.rows, 'row')}, {form}, from t = {found.begin!r} to {found.end!r} ({ended})")
+        say(f"  written by {found.engine}, eventsim {found.version}, bits {found.bits}")
+        say(f"  digest {found.digest}")
+        for note in found.notes:
+            say(f"  note: {note}")

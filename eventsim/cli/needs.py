@@ -17,7 +17,7 @@ from eventsim.scene.overlaps import pair_overlaps
 from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
 from eventsim.scene.scene import touching_by_rounding
 from eventsim.scene.stage import stage_of
-from eventsim.scene.walls import wall_names
+from eventsim.scene.walls import parts_of, wall_names
 from eventsim.validation.near_ties import NearTie, near_ties
 
 if TYPE_CHECKING:
@@ -189,7 +189,7 @@ def _touching_pairs(scene: Scene) -> int:
     """Pairs that would overlap if all disks were wider by a few units in the last place."""
     disks = scene.disks
     wider = Disks(disks.position, disks.velocity, disks.radius * WIDER, disks.mass)
-    return len(pair_overlaps(wider, scene.domain))
+    return len(pair_overlaps(wider, scene.domain, parts_of(scene.walls)))
 
 
 def _search(stage: Stage) -> Search:

@@ -19,6 +19,11 @@ def command(as_json: bool, quiet: bool) -> None:
     not compiled by then are left to the next call. A report of a fault should contain what it prints.
 
     \b
+    Examples:
+      eventsim selftest                     what this machine computes, and a verdict
+      eventsim selftest --json > report     the same for a report of a fault
+
+    \b
     Keys of --json:
       verdict               "well" or "wrong"
       findings              a list of {question, answer, words}; answer: well, wrong, open

@@ -30,6 +30,7 @@ from eventsim.measure.walls import described_walls
 from eventsim.record.events import ROW, Floats, Kind, Rows
 from eventsim.record.provenance import Kick, Provenance
 from eventsim.replay.log import Told, stream_log
+from eventsim.scene.numbers import Point
 from eventsim.scene.pace import later, pace_of_scene, slowed_scene
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
@@ -69,6 +70,7 @@ class Meter:
         kicks: tuple[Kick, ...] = (),
         profile: str | None = None,
         engine: str | None = None,
+        corner: Point | None = None,
     ) -> None:
         """Begin to measure a scene; very fast and very slow runs are measured at their pace (`scene.pace`).
 
@@ -78,6 +80,7 @@ class Meter:
             kicks: velocities that are set from outside.
             profile: "x" or "y" for profiles along that axis as well.
             engine: the name of the one whose rows these are; those of an engine of steps are told to be no exact contacts.
+            corner: what places in rows are relative to; None: as engines have it now.
 
         Raises:
             EventsimError: for a negative or infinite time, and for a scene in which nothing can be deflected.
@@ -92,7 +95,7 @@ class Meter:
         if not ensemble.movers.any():
             raise EventsimError("there is nothing to measure: no disk can be deflected (all have mass inf)")
         self.discard = scene.equilibration if discard is None else later(discard, self._pace)
-        self._stage = stage = stage_of(scene)
+        self._stage = stage = stage_of(scene, corner)
         movers = np.flatnonzero(ensemble.movers)
         watched = movers[np.linspace(0, len(movers) - 1, min(WATCHED, len(movers))).astype(np.int64)]
         self._profiler = None if profile is None else Profiler(scene, ensemble, profile)
@@ -312,7 +315,7 @@ def measure_file(
 
 
 def _measured(provenance: Provenance, blocks: Iterable[Rows], discard: float | None, profile: str | None) -> Measures:
-    meter = Meter(provenance.scene, discard, provenance.kicks, profile, provenance.engine)
+    meter = Meter(provenance.scene, discard, provenance.kicks, profile, provenance.engine, provenance.corner)
     length, latest = provenance.epoch_length, 0.0
     for rows in blocks:
         if len(rows):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 from collections.abc import Mapping
@@ -9,13 +10,22 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from eventsim.errors import LogError, SceneError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Kind, Rows
 from eventsim.scene import Scene
-from eventsim.scene.files import listed_scene, scene_to_json
+from eventsim.scene.corner import least_starting_place
+from eventsim.scene.files import listed_scene, scene_beside_disks, scene_to_json
+from eventsim.scene.numbers import Point, point
 
-FORMAT = 1
-"""Version of the file format; a reader refuses versions it does not know."""
+FORMAT = 2
+"""Version of the file format; format 1, of eventsim 0.1, is read as well."""
+
+BITS = 2
+"""Version of the rules that make the bits of a log; it goes up when a rule changes what any scene writes.  Version 0.1 had 1."""
+
+UNCHECKED = "a log of format 1 does not vouch for its scene: nothing tells whether a mass, a start or a row was changed since"
 
 BEFORE_SCENE = '{"scene": '
 
@@ -27,14 +37,16 @@ Kick = tuple[int, float, float]
 class Ending:
     """Where a run ended: the exact clock (epoch, remainder) and the reason in one word.
 
-    digest: of its full rows (`record.digest`), by which a reader notices that they were changed; None where nobody computed it.
-    It follows from the rows, so endings that differ in nothing else are equal.
+    digest: of its full rows (`record.digest`); None where nobody computed it.  stored: of its rows as the file has them, by which
+    a reader notices that they were changed; None in format 1.  Both follow from the rows, so endings that differ in nothing else
+    are equal.
     """
 
     epoch: int
     remainder: float
     reason: str
     digest: str | None = field(default=None, compare=False)
+    stored: str | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +55,8 @@ class Provenance:
 
     scene: the realised scene, every disk listed. epoch_length: a power of two, time. wall_names: what the column
     `wall` counts. command: the command line or call that ran it, where known. kicks: velocities that were set from outside,
-    which a compact log cannot compute. ending: None while the run goes on. rows: their number, None while it grows.
+    which a compact log cannot compute. ending: None while the run goes on. rows: their number, None while it grows. bits: the
+    version of the rules that made them. corner: what places in rows are relative to; None: what the scene has by these rules.
     """
 
     scene: Scene
@@ -56,6 +69,8 @@ class Provenance:
     kicks: tuple[Kick, ...] = ()
     ending: Ending | None = None
     rows: int | None = None
+    bits: int = BITS
+    corner: Point | None = None
 
     def finished(self, ending: Ending | None, kicks: tuple[Kick, ...], rows: int) -> Provenance:
         """Return the provenance of the whole log."""
@@ -96,8 +111,11 @@ def text_after_scene(provenance: Provenance) -> str:
         "version": provenance.version,
         "engine": provenance.engine,
         "command": provenance.command,
+        "bits": provenance.bits,
         "epoch_length": provenance.epoch_length,
+        "corner": provenance.corner,
         "wall_names": list(provenance.wall_names),
+        "scene_digest": scene_digest(provenance),
         "compact": provenance.compact,
         "kicks": [list(kick) for kick in provenance.kicks],
         "ending": None
@@ -107,6 +125,7 @@ def text_after_scene(provenance: Provenance) -> str:
             "remainder": ending.remainder,
             "reason": ending.reason,
             "digest": ending.digest,
+            "stored": ending.stored,
         },
         "rows": provenance.rows,
     }
@@ -130,16 +149,22 @@ def provenance_from_text(text: str, source: str, folder: Path | None = None) -> 
         raise LogError(f"{source}: not an event log: its metadata is not JSON ({error})") from None
     if not isinstance(data, dict) or "scene" not in data or "format" not in data:
         raise LogError(f"{source}: not an event log: no metadata with the keys scene and format")
-    if data["format"] != FORMAT:
+    if data["format"] not in (1, FORMAT):
         raise LogError(
-            f"{source}: written in log format {data['format']!r}; this version of eventsim reads format {FORMAT}"
+            f"{source}: written in log format {data['format']!r}; this version of eventsim reads the formats 1 and {FORMAT}"
         )
     try:
         scene = listed_scene(data["scene"], folder)
     except SceneError as error:
         raise LogError(f"{source}: the scene inside the log is damaged: {error}") from None
     try:
-        return _provenance(data, scene)
+        provenance = _provenance(data, scene)
+        if data["format"] == FORMAT and data["scene_digest"] != scene_digest(provenance):
+            raise LogError(
+                f"{source}: its scene is not the one of its run: a disk, a wall, a rule or the frame of the clock was changed "
+                "since. Take the file as it was written, or run the scene again"
+            )
+        return provenance
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         why = f" ({error})" if isinstance(error, ValueError) else ""
         raise LogError(f"{source}: the metadata of the log are damaged{why}") from None
@@ -159,16 +184,37 @@ def _provenance(data: Mapping[str, Any], scene: Scene) -> Provenance:
         command=None if data["command"] is None else str(data["command"]),
         compact=bool(data["compact"]),
         kicks=tuple((int(event), float(vx), float(vy)) for event, vx, vy in data["kicks"]),
-        ending=None if ending is None else _ending(ending),
+        ending=None if ending is None else _ending(ending, data["format"]),
         rows=None if data["rows"] is None else int(data["rows"]),
+        **_rules(data, scene),
     )
 
 
-def _ending(data: Mapping[str, Any]) -> Ending:
-    digest = data.get("digest")  # older logs have none
+def _rules(data: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
+    """The rules that made the bits, and the corner that places are relative to; format 1 had one of each."""
+    if data["format"] == 1:
+        return {"bits": 1, "corner": least_starting_place(scene.disks, scene.domain)}
+    corner = data["corner"]
+    return {"bits": int(data["bits"]), "corner": None if corner is None else point(corner, "corner")}
+
+
+def scene_digest(provenance: Provenance) -> str:
+    """Return the SHA-256 of all that rows are read by: scene, frame of the clock, corner, walls, version of the rules."""
+    scene, frame = provenance.scene, provenance
+    disks = scene.disks
+    sha = hashlib.sha256(scene_beside_disks(scene).encode())
+    for column in (disks.position, disks.velocity, disks.radius, disks.mass):
+        sha.update(np.ascontiguousarray(column, "<f8").data)
+    sha.update(json.dumps([frame.bits, frame.epoch_length, frame.corner, list(frame.wall_names)]).encode())
+    return sha.hexdigest()
+
+
+def _ending(data: Mapping[str, Any], form: int) -> Ending:
+    digest = data["digest"] if form == FORMAT else None  # that of format 1 was another sum
     return Ending(
         epoch=int(data["epoch"]),
         remainder=float(data["remainder"]),
         reason=str(data["reason"]),
         digest=None if digest is None else str(digest),
+        stored=None if data.get("stored") is None else str(data["stored"]),
     )

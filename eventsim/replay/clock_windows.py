@@ -233,8 +233,8 @@ def windows_of(provenance: Provenance, stage: Stage, runs: Runs, begin: Callable
 
 
 def stage_of_log(provenance: Provenance) -> Stage:
-    """Return the stage of a log: that of its scene, with the epoch that its clock had."""
-    stage = stage_of(provenance.scene)
+    """Return the stage of a log: that of its scene, with the epoch that its clock had, and its corner."""
+    stage = stage_of(provenance.scene, provenance.corner)
     if stage.epoch_length == provenance.epoch_length:
         return stage
     return replace(stage, clock=stage.clock._replace(epoch_length=provenance.epoch_length))

@@ -10,13 +10,12 @@ from itertools import chain
 
 import numpy as np
 
-from eventsim import __version__
 from eventsim.engines import TABLE, engine_named
 from eventsim.engines.auto import first_engine
 from eventsim.engines.base import Session, Stop
 from eventsim.errors import LogError
 from eventsim.record.events import COMPACT_COLUMNS, ROW, Kind, Rows, blank_rows
-from eventsim.record.provenance import Ending, Provenance
+from eventsim.record.provenance import BITS, Ending, Provenance
 from eventsim.record.times import clock_times
 from eventsim.replay.clock_windows import MOST_WINDOWS, stage_of_log
 from eventsim.runner.recording import Writer
@@ -180,10 +179,13 @@ class Expansion:
             raise self._unfit(row, f"more than {MOST_WINDOWS} turns of the clock after the row before")
 
     def _unfit(self, row: np.void, why: str) -> LogError:
-        made_by = self._provenance.version
+        made_by = self._provenance
         advice = "the rows or the scene were changed after they were written"
-        if made_by != __version__:
-            advice = f"it was made by version {made_by} under other rules, or changed since: read it with that version"
+        if made_by.bits != BITS:
+            advice = (
+                f"it was made by version {made_by.version} under other rules (bits {made_by.bits}, here {BITS}), "
+                "or changed since: read it with that version"
+            )
         return LogError(
             f"the log does not fit its scene at event {row['event']}: it has {self._words(row)}, {why}; {advice}, "
             "or run the scene again"

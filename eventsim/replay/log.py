@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Generator
-from contextlib import closing
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
@@ -13,8 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from eventsim.errors import LogWarning
-from eventsim.record.digest import Digester, digest_of
+from eventsim.record.digest import digest_of
 from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, unchangeable
 from eventsim.record.files import open_log, open_sink, read_log
 from eventsim.record.provenance import Provenance
@@ -117,16 +114,6 @@ class EventLog(Columns):
         full.path = self.path
         return full
 
-    def verify(self, name: str) -> None:
-        """Warn (LogWarning) where full rows are not those that the run closed the log with; `name` is how to call it.
-
-        Nothing is known of a log without the digest of its run.  A compact one needs none: each of its rows is compared with
-        what an engine finds.
-        """
-        ending = self.provenance.ending
-        if ending is not None and ending.digest is not None and not self.compact and ending.digest != self.digest():
-            _warn_of_changes(name)
-
     def digest(self) -> str:
         """Return the SHA-256 of the log (see `eventsim.record.digest`); a compact log is expanded first."""
         return digest_of(self.expand().rows)
@@ -162,7 +149,6 @@ def load_log(path: str | PathLike[str]) -> EventLog:
     """
     file = Path(path)
     log = EventLog(*read_log(file))
-    log.verify(str(file))
     log.path = file
     return log
 
@@ -177,24 +163,9 @@ def stream_log(path: str | PathLike[str], verify: bool = True) -> tuple[Provenan
         LogError: where it is no log; also while its blocks are read.
     """
     file = Path(path)
-    provenance, blocks = open_log(file)
+    provenance, blocks = open_log(file, verify)
     if provenance.compact:
         from eventsim.replay.expand import expand_blocks  # only who has a compact log pays for it
 
         return replace(provenance, compact=False), expand_blocks(provenance, blocks)
-    return provenance, _verified(provenance, blocks, file) if verify else blocks
-
-
-def _verified(provenance: Provenance, blocks: Generator[Rows], file: Path) -> Generator[Rows]:
-    ending, digester = provenance.ending, Digester()
-    with closing(blocks):
-        for rows in blocks:
-            digester.update(rows)
-            yield rows
-    if ending is not None and ending.digest is not None and ending.digest != digester.hexdigest():
-        _warn_of_changes(str(file))
-
-
-def _warn_of_changes(name: str) -> None:
-    words = f"{name} is not what its run wrote: its rows have another digest than the one it was closed with"
-    warnings.warn(words, LogWarning, stacklevel=3)
+    return provenance, blocks

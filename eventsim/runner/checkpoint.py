@@ -21,19 +21,25 @@ from eventsim import __version__
 from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.errors import CheckpointError, LogError
 from eventsim.reading import Npz, reading
+from eventsim.record.digest import CHUNK, RECORD, Progress
 from eventsim.record.events import ROW, Kind, Rows
 from eventsim.record.files import Mark
-from eventsim.record.provenance import Provenance, provenance_from_text
+from eventsim.record.provenance import BITS, Provenance, provenance_from_text
 from eventsim.runner.snapshots import Arrays, demand_fit, packed, unpacked
 from eventsim.scene.stage import stage_of
 
-FORMAT = 1
+FORMAT = 2
 """Version of the file format."""
 
 METADATA, LAST_ROWS = "eventsim", "last_rows"
+CHUNKS, RECORDS = "digest_chunks", "digest_records"
+"""Arrays of a run with a compact log: how far its digest has come."""
 
 TEMPORARY = ".part~"
 """After the name of a checkpoint in the making; NAME.part is what its run claims."""
+
+HASH = 32
+"""Bytes of a SHA-256."""
 
 SECONDS = {"min": 60.0, "s": 1.0, "h": 3600.0}
 """Units of time in which an interval can be given."""
@@ -78,7 +84,7 @@ class Checkpoint:
 
     provenance: of its rows, with the engine that was asked for.  stop: where it is to stop.  every: how often checkpoints were
     written.  log: None where none is kept.  last_rows: what a diagnosis of a collapse looks at, an array of ROW.  elapsed_s,
-    write_s: seconds so far.
+    write_s: seconds so far.  digest: of all rows, where the log is compact.
     """
 
     provenance: Provenance
@@ -90,6 +96,7 @@ class Checkpoint:
     last_rows: Rows
     elapsed_s: float
     write_s: float
+    digest: Progress | None = None
 
 
 def save_checkpoint(path: Path, checkpoint: Checkpoint, provenance: str) -> None:
@@ -99,6 +106,9 @@ def save_checkpoint(path: Path, checkpoint: Checkpoint, provenance: str) -> None
     """
     arrays: Arrays = {LAST_ROWS: checkpoint.last_rows}
     saved = checkpoint.snapshot
+    if checkpoint.digest is not None:
+        arrays[CHUNKS] = np.frombuffer(checkpoint.digest.chunks, np.uint8)
+        arrays[RECORDS] = checkpoint.digest.records.view(np.uint8)
     data = {
         "checkpoint": FORMAT,
         "stop": asdict(checkpoint.stop),
@@ -185,11 +195,10 @@ def _contents(arrays: Npz, path: Path) -> tuple[dict[str, Any], Arrays]:
 
 def _checkpoint(data: dict[str, Any], arrays: Arrays, path: Path) -> Checkpoint:
     provenance = data["provenance"]
-    written_by = provenance["version"]
-    if written_by != __version__:
+    if provenance["version"] != __version__ or provenance["bits"] != BITS:
         raise CheckpointError(
-            f"{path}: written by eventsim {written_by}; this is eventsim {__version__}, which may differ in the last bits, so "
-            "the run has to be begun anew or continued with that version"
+            f"{path}: written by eventsim {provenance['version']} (bits {provenance['bits']}); this is eventsim {__version__} "
+            f"(bits {BITS}), which may differ in the last bits, so the run has to be begun anew or continued with that version"
         )
     return Checkpoint(
         provenance=(kept := provenance_from_text(json.dumps(provenance), str(path))),
@@ -201,7 +210,21 @@ def _checkpoint(data: dict[str, Any], arrays: Arrays, path: Path) -> Checkpoint:
         last_rows=_last_rows(arrays[LAST_ROWS], kept),
         elapsed_s=_seconds(data["elapsed_s"]),
         write_s=_seconds(data["write_s"]),
+        digest=_progress(arrays, data),
     )
+
+
+def _progress(arrays: Arrays, data: dict[str, Any]) -> Progress | None:
+    """How far the digest of a compact log has come; it is of as many rows as the log has."""
+    if data["log"] is None or not data["log"]["compact"]:
+        return None
+    chunks, records = arrays[CHUNKS], arrays[RECORDS]
+    if chunks.dtype != np.uint8 or records.dtype != np.uint8 or chunks.ndim != 1 or records.ndim != 1 or len(chunks) % HASH:
+        raise ValueError("its digest is none")
+    progress = Progress(chunks.tobytes(), np.frombuffer(records.tobytes(), RECORD))
+    if len(chunks) // HASH * CHUNK + len(progress.records) != data["log"]["rows"] or len(progress.records) >= CHUNK:
+        raise ValueError("its digest is that of another number of rows")
+    return progress
 
 
 def _stop(until: float | None, events: int | None) -> Stop:

@@ -8,6 +8,7 @@ from time import perf_counter
 
 from eventsim.engines.base import Session, Stop
 from eventsim.errors import CheckpointError
+from eventsim.record.digest import Progress
 from eventsim.record.events import Rows
 from eventsim.record.files import FileSink
 from eventsim.record.files.claim import Claim
@@ -62,8 +63,10 @@ class CheckpointWriter:
             return True
         return self._every.seconds is not None and perf_counter() - self._time >= self._every.seconds
 
-    def save(self, session: Session, last_rows: Rows, elapsed: float, written: float) -> None:
-        """Write a checkpoint; all rows so far have been written.  elapsed, written: seconds so far.
+    def save(
+        self, session: Session, last_rows: Rows, elapsed: float, written: float, digest: Progress | None = None
+    ) -> None:
+        """Write a checkpoint; all rows so far have been written.  elapsed, written: seconds so far.  digest: of a compact log.
 
         Raises CheckpointError where the first one cannot be written.  Later a full disk is no reason to give up a long run: that
         is told on stderr, and the checkpoint before stays.
@@ -71,7 +74,7 @@ class CheckpointWriter:
         log = None if self._log is None else KeptLog(self._log.path, self._log.provenance.compact, self._log.sync())
         counters = session.counters.copy()
         checkpoint = Checkpoint(
-            self._provenance, self._stop, self._every, session.snapshot(), counters, log, last_rows, elapsed, written
+            self._provenance, self._stop, self._every, session.snapshot(), counters, log, last_rows, elapsed, written, digest
         )
         try:
             save_checkpoint(self._path, checkpoint, self._text)

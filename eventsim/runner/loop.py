@@ -197,7 +197,9 @@ class Loop:
         if self.checkpoints is not None and self.checkpoints.is_due(self.session.counters.events, stopped):
             self.recording.settle()
             began = perf_counter()
-            self.checkpoints.save(self.session, self.last_rows, self.elapsed, self.recording.waited_s + self.saving)
+            written = self.recording.waited_s + self.saving
+            digest = self.recording.digest_so_far
+            self.checkpoints.save(self.session, self.last_rows, self.elapsed, written, digest)
             self.saving += perf_counter() - began
 
 

@@ -12,7 +12,6 @@ from typing import TypeAlias
 from eventsim.engines.base import BrokenOffError, Session, Stop
 from eventsim.errors import SceneError
 from eventsim.record.events import Rows
-from eventsim.record.provenance import Provenance
 from eventsim.runner.checkpoint import Checkpoint, Every
 from eventsim.runner.checkpoint_writer import USUALLY
 from eventsim.scene import Scene
@@ -40,7 +39,6 @@ class RunOptions:
         checkpoint: the file that is replaced again and again, `every` so often.
         resumed: the checkpoint that the run goes on from.
         interrupt: asks the run to end early.
-        expanded: makes the rows of a compact log full, for the digest of one that is gone on with.
     """
 
     log: bool | str | PathLike[str] = False
@@ -54,7 +52,6 @@ class RunOptions:
     every: Every = USUALLY
     resumed: Checkpoint | None = None
     interrupt: Interrupt | None = None
-    expanded: Callable[[Provenance, Rows], Rows] | None = None
 
     @property
     def rows(self) -> bool:

@@ -78,6 +78,7 @@ def provenance_of(session: Session, engine: str, scene: Scene, command: str | No
         epoch_length=stage.epoch_length,
         wall_names=stage.wall_names,
         command=command,
+        corner=stage.corner,
     )
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from queue import Queue
 from threading import Thread
@@ -11,7 +10,7 @@ from time import perf_counter
 
 import numpy as np
 
-from eventsim.record.digest import Digester
+from eventsim.record.digest import Digester, Progress
 from eventsim.record.events import Rows, blank_rows
 from eventsim.record.files import FileSink, continued_sink, open_log, open_sink
 from eventsim.record.provenance import Ending, Provenance, Recorded, kicks_of
@@ -37,10 +36,21 @@ class Recording:
         self.write, self.settle = self._writer.write, self._writer.settle
 
     def go_on(self, wanted: RunOptions) -> None:
-        """Take into the digest what the log file holds already.  Raises LogError where it does not follow from its scene."""
-        if self.file is not None and self._digester is not None:
-            for rows in _rows_before(self.file, wanted):
-                self._digester.update(rows)
+        """Take into the digest what the log file holds already: a compact one lacks it, and the checkpoint has it."""
+        if self.file is None or self._digester is None:
+            return
+        assert wanted.resumed is not None
+        if wanted.resumed.digest is not None:
+            self._digester.go_on(wanted.resumed.digest)
+            return
+        for rows in open_log(self.file.part).blocks:
+            self._digester.update(rows)
+
+    @property
+    def digest_so_far(self) -> Progress | None:
+        """How far the digest has come, of a compact log, from which it could not be computed again."""
+        compact = self.file is not None and self.file.provenance.compact
+        return self._digester.progress() if compact and self._digester is not None else None
 
     @property
     def waited_s(self) -> float:
@@ -71,16 +81,6 @@ def _file_sink(wanted: RunOptions, provenance: Provenance) -> FileSink | None:
         return open_sink(path, provenance, compact=wanted.compact)
     assert wanted.resumed.log is not None, "only a run that kept a log goes on with one"
     return continued_sink(path, provenance, wanted.compact, wanted.resumed.log.mark)
-
-
-def _rows_before(file: FileSink, wanted: RunOptions) -> Iterator[Rows]:
-    """The full rows of the log that a run goes on with."""
-    provenance, blocks = open_log(file.part)
-    if not provenance.compact:
-        return blocks
-    assert wanted.expanded is not None, "who goes on with a compact log says how it is expanded"
-    provenance = replace(provenance, kicks=file.sync().kicks)
-    return iter([wanted.expanded(provenance, np.concatenate([blank_rows(0), *blocks]))])
 
 
 class MemorySink:

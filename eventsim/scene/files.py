@@ -135,6 +135,11 @@ def scene_beside(scene: Scene, folder: Path) -> str:
     return json.dumps({**tables, "disks_file": [{"path": DISKS_BESIDE}]})
 
 
+def scene_beside_disks(scene: Scene) -> str:
+    """All of a scene but its disks, as JSON."""
+    return json.dumps(_tables(scene))
+
+
 def listed_scene(data: Mapping[str, Any], folder: Path | None = None) -> Scene:
     """The scene of a log or checkpoint, which lists its disks: no other file is opened for it, and no gas is made.
 

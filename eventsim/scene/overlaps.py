@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 
 from eventsim.scene.cells import Cells, Indices
+from eventsim.scene.corner import corner_of
 from eventsim.scene.disks import Disks, Floats
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
 from eventsim.scene.numbers import Point
@@ -59,13 +60,14 @@ def period_of(domain: Domain) -> Point:
     return math.inf if along_x is None else along_x, math.inf if along_y is None else along_y
 
 
-def pair_overlaps(disks: Disks, domain: Domain) -> Found:
+def pair_overlaps(disks: Disks, domain: Domain, parts: Sequence[Part]) -> Found:
     """Pairs of disks that overlap, disk < other; all positions inside the domain.
 
     Near O(N), also where radii differ widely; the search ends when ENOUGH have been found.
     """
-    position = disks.position - np.array(_corner(disks, domain))
-    scale = coordinate_scale(disks, domain)
+    corner = corner_of(disks, domain, parts)
+    position = disks.position - np.array(corner)
+    scale = coordinate_scale(disks, corner)
     chunks: list[Found] = []
     count = 0
     for found in Cells(position, disks.radius, disks.mass, period_of(domain)).pairs():
@@ -81,12 +83,13 @@ def pair_overlaps(disks: Disks, domain: Domain) -> Found:
 
 def feature_overlaps(disks: Disks, domain: Domain, parts: Sequence[Part]) -> Found:
     """Disks that lie across a wall or reach out of a container; `other` counts the pieces."""
-    scale = coordinate_scale(disks, domain)
+    corner = corner_of(disks, domain, parts)
+    scale = coordinate_scale(disks, corner)
     chunks: list[Found] = []
     for index, near, deep in wall_overlaps(
         parts, disks.position, disks.radius, domain.origin, period_of(domain)
     ):
-        size = parts[index].scale(_corner(disks, domain))
+        size = parts[index].scale(corner)
         rounding = touching_depth(np.maximum(scale[near], size))
         chunks.append(Found(near, np.full(len(near), index), deep, rounding))
     return _gather(chunks)
@@ -96,7 +99,7 @@ def boundary_overlaps(disks: Disks, domain: Domain) -> Found:
     """Disks that reach out of the hard sides of the domain; `other` counts BOUNDARY_NAMES."""
     if isinstance(domain, Open):
         return _gather([])
-    rounding = touching_depth(np.maximum(coordinate_scale(disks, domain), max(domain.size)))
+    rounding = touching_depth(np.maximum(coordinate_scale(disks, domain.origin), max(domain.size)))
     chunks: list[Found] = []
     for side in range(len(BOUNDARY_NAMES)):
         axis, upper = divmod(side, 2)
@@ -115,13 +118,13 @@ def touching_depth(scale: Floats) -> Floats:
     return depth
 
 
-def coordinate_scale(disks: Disks, domain: Domain) -> Floats:
+def coordinate_scale(disks: Disks, corner: Point) -> Floats:
     """The largest length that the place of each disk is rounded to, (N,).
 
     That is its coordinate as given, its coordinate from the corner, or its radius.
     """
     given = np.abs(disks.position).max(axis=1)
-    relative = np.abs(disks.position - np.array(_corner(disks, domain))).max(axis=1)
+    relative = np.abs(disks.position - np.array(corner)).max(axis=1)
     scale: Floats = np.maximum(np.maximum(given, relative), disks.radius)
     return scale
 
@@ -166,14 +169,6 @@ def _by_x(members: Indices, position: Floats) -> tuple[Indices, Floats]:
     """The members sorted by x, and their x."""
     order = members[np.argsort(position[members, 0])]
     return order, position[order, 0]
-
-
-def _corner(disks: Disks, domain: Domain) -> Point:
-    """Where positions are counted from: the corner of the domain, in the open the least x and y of the disks."""
-    if isinstance(domain, Open) and len(disks):
-        x, y = disks.position.min(axis=0)
-        return float(x), float(y)
-    return domain.origin
 
 
 def _gather(chunks: list[Found]) -> Found:

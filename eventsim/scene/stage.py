@@ -22,8 +22,8 @@ from eventsim.formulas.walls.point import is_point
 from eventsim.formulas.walls.post import is_post_to
 from eventsim.formulas.walls.shape import Closed, Thin, seen
 from eventsim.scene.clock import SceneClock, clock_of
+from eventsim.scene.corner import corner_of
 from eventsim.scene.disks import Floats
-from eventsim.scene.domain import Open
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of
@@ -163,10 +163,10 @@ class Stage:
         return confined and moves and not self.law.loses_energy()
 
 
-def stage_of(scene: Scene) -> Stage:
-    """The stage of a scene."""
+def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
+    """The stage of a scene; corner: None, or that of an older log."""
     disks, domain = scene.disks, scene.domain
-    corner = _corner(scene)
+    corner = corner_of(disks, domain, parts_of(scene.walls)) if corner is None else corner
     x, y = disks.position[:, 0] - corner[0], disks.position[:, 1] - corner[1]
     vx, vy = disks.velocity[:, 0].copy(), disks.velocity[:, 1].copy()
     size = domain.size
@@ -232,13 +232,6 @@ def _slowest(vx: Floats, vy: Floats) -> float:
 
 def _has_points(features: tuple[Feature, ...], least: float) -> bool:
     return any(isinstance(one.shape, Thin | Closed) and is_point(least, one.shape.size) for one in features)
-
-
-def _corner(scene: Scene) -> Point:
-    if isinstance(scene.domain, Open):
-        least = scene.disks.position.min(axis=0)
-        return float(least[0]), float(least[1])
-    return scene.domain.origin
 
 
 def _all_equal(mass: Floats) -> bool:

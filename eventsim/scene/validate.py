@@ -74,7 +74,7 @@ def find_problems(
 def touching_notes(disks: Disks, domain: Domain, walls: Sequence[Wall]) -> list[str]:
     """The overlaps that are so small that they count as touching, one sentence each."""
     pieces = parts_of(walls)
-    pairs = pair_overlaps(disks, domain).touching()
+    pairs = pair_overlaps(disks, domain, pieces).touching()
     across = feature_overlaps(disks, domain, pieces).touching()
     sides = boundary_overlaps(disks, domain).touching()
     touch = "overlap by {:.3g}: touching, but for rounding"
@@ -231,7 +231,7 @@ def _place_problems(disks: Disks, domain: Domain, walls: Sequence[Wall], names: 
     )
     if not outside.any():
         problems += _summary(
-            pair_overlaps(disks, domain).broken(),
+            pair_overlaps(disks, domain, pieces).broken(),
             "pairs of disks that overlap",
             lambda i, j, depth: (
                 f"{names.disk(i)} and {names.disk(j)} overlap by {depth:.6g} (centers {_at(disks, i)} and"

@@ -23,14 +23,11 @@ from tests.engines.proofs import certified
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 
 
-@pytest.mark.parametrize(("n", "least", "cost"), [(8, 1000, 0.2), (16, 1500, 0.2), (32, 2500, 0.4)])
-def test_1024_bits_prove_as_many_events_as_balls_can(n, least, cost):
-    began = process_time()
+@pytest.mark.parametrize(("n", "least"), [(8, 1000), (16, 1500), (32, 2500)])
+def test_1024_bits_prove_as_many_events_as_balls_can(n, least):
     session, stopped = certified(lattice_gas(n, 0.3, seed=3), events=10_000, most_bits=1024)
-    each = (process_time() - began) / session.proven * 1e3
     assert stopped == "undecided tie"
     assert session.proven >= least
-    assert each < 4.0 * cost  # milliseconds; idle it is below cost, other work on the machine may share the caches
 
 
 @pytest.mark.slow

@@ -44,7 +44,7 @@ def test_bounces_in_a_corner_end_without_a_tail_of_rounding(engine, radius):
     if radius == 0.0:
         assert run.state.position[0] == pytest.approx(lowest, abs=1e-13)
     energy = 0.5 * (run.log.vxa**2 + run.log.vya**2) + run.log.ya - run.log.ya[-1]
-    assert energy[-1] > 1e-15
+    assert energy[-1] > 5e-16
 
 
 @pytest.mark.parametrize("engine", ENGINES)

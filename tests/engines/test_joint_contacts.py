@@ -59,6 +59,7 @@ def test_three_disks_at_120_degrees_onto_one_do_not_depend_on_labels(order):
     ring = np.column_stack([np.cos(angles), np.sin(angles)])
     ring[2] = ring[1] * [1.0, -1.0]  # symmetric in floats too
     position, velocity = np.vstack([[[0.0, 0.0]], 3.0 * ring]), np.vstack([[[0.0, 0.0]], -ring])
+    position -= position.min(axis=0)  # what is rounded there is an exact tie
     base, _ = run_of(on_plane(position, velocity), until=4.0)
     other, _ = run_of(on_plane(position[list(order)], velocity[list(order)]), until=4.0)
     assert other.counters.events == base.counters.events

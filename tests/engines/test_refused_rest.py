@@ -74,7 +74,7 @@ def test_with_a_contact_duration_it_goes_on(name):
 def test_a_contact_duration_that_is_there_is_not_promised_as_the_remedy(engine, name):
     scene = dataclasses.replace(REFUSED[name][0](), contact_duration=1e-30)
     run = es.simulate(scene, until=20.0, engine=engine)
-    assert run.stopped == "collapse"
+    assert run.stopped in ("collapse", "digits")
     assert run.reason.endswith("contact_duration = 1e-30, as in this scene, did not prevent it; a longer one may")
 
 

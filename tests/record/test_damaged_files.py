@@ -40,6 +40,7 @@ def test_a_changed_number_in_a_log_is_told(tmp_path: Path) -> None:
         load_log(path)
 
 
+@pytest.mark.filterwarnings("ignore::eventsim.errors.LogWarning")
 def test_a_changed_number_in_a_compact_log_does_not_replay(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     simulate(gallery("two-disks"), log=path, compact=True)
@@ -87,7 +88,7 @@ def test_a_log_cut_at_the_end_of_a_line_is_refused(tmp_path: Path) -> None:
         ("pair,0,3", "pair,0,99999999999", "line .*too large"),
         ("\n0,", "\n1,", "row 0: events are not numbered"),
         ("event,time", "event,tim", "columns are not those"),
-        ('"format": 1', '"format": 2', "format 2; this version of eventsim reads format 1"),
+        ('"format": 2', '"format": 3', "format 3; this version of eventsim reads the formats 1 and 2"),
         ('"epoch_length": 1.0', '"epoch_length": 0.3', "not a power of two"),
         ('"radius": 1', '"radius": -1', "scene inside the log"),
     ],

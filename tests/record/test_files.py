@@ -112,7 +112,7 @@ def test_jsonl_begins_with_scene_and_format_and_has_one_object_per_row(tmp_path:
     log.save(tmp_path / "log.jsonl")
     head, *rows = (json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines())
     assert list(head)[:2] == ["scene", "format"]
-    assert head["format"] == 1
+    assert head["format"] == 2
     assert [row["event"] for row in rows] == list(range(20))
     assert all(tuple(row) == COLUMNS for row in rows)
     assert [row["xb"] is None for row in rows] == np.isnan(log.xb).tolist()

@@ -97,9 +97,9 @@ def odd_row(name, value):
 @pytest.mark.parametrize(
     ("change_data", "change_arrays", "words"),
     [
-        (lambda data: data.update(checkpoint=2), None, "format 1"),
-        (lambda data: data["provenance"].update(version="0.0.9"), None, "written by eventsim 0.0.9; this is eventsim"),
-        (lambda data: data["provenance"]["scene"]["disk"].pop(), None, "entries for"),
+        (lambda data: data.update(checkpoint=1), None, "format 2"),
+        (lambda data: data["provenance"].update(version="0.0.9"), None, r"eventsim 0.0.9 \(bits 2\); this is eventsim"),
+        (lambda data: data["provenance"]["scene"]["disk"].pop(), None, "its scene is not the one of its run"),
         (lambda data: data["snapshot"].pop("wraps_x"), None, "other fields: wraps_x"),
         (lambda data: data["counters"].update(events=-1), None, "counter events"),
         (lambda data: data["counters"].update(events=1.5), None, "counter events"),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.replay.passage import Passage
 from eventsim.replay.replay import Replay
 from eventsim.scene.files import scene_from_dict
 from eventsim.show.frames import frames_at
@@ -98,7 +99,7 @@ def test_a_kick_is_no_contact(opened):
     count = "player.seek(arguments[0]); return [0, 1].map((i) => player.world.contactsUntil(i, player.view.time))"
     assert driver.execute_script(count, 1.5) == [0, 0]
     assert driver.execute_script(count, 3.0) == [1, 1]
-    (frame,) = frames_at(Replay(simulation.log), np.array([3.0]), 0.1)
+    (frame,) = frames_at(Passage(simulation.log), np.array([3.0]), 0.1)
     assert frame.contacts.tolist() == [1, 1]
 
 

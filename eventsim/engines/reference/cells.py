@@ -69,8 +69,8 @@ def _extent(stage: Stage) -> tuple[tuple[float, float], tuple[float, float]]:
     """(lower corner, size) of what the cells cover: the domain; on the open plane three times what the disks take up."""
     if stage.size is not None:
         return (0.0, 0.0), stage.size
-    width, height = float(stage.x.max()), float(stage.y.max())
-    return (-width, -height), (3.0 * width, 3.0 * height)
+    width, height = float(np.ptp(stage.x)), float(np.ptp(stage.y))
+    return (float(stage.x.min()) - width, float(stage.y.min()) - height), (3.0 * width, 3.0 * height)
 
 
 def _giants(stage: Stage) -> tuple[int, ...]:

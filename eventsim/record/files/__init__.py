@@ -17,7 +17,7 @@ from eventsim.errors import LogError
 from eventsim.record.events import Rows, blank_rows
 from eventsim.record.files import csv, jsonl, npz
 from eventsim.record.files.sink import FileSink, Format, Mark, Opened, demand_same, part_of
-from eventsim.record.files.table import checked
+from eventsim.record.files.table import checked, verified
 from eventsim.record.provenance import Provenance
 from eventsim.suffixes import PART
 
@@ -77,7 +77,10 @@ def continued_sink(path: Path, provenance: Provenance, compact: bool, mark: Mark
     reasons = []
     if part.exists():
         try:
-            return _format_of(path).sink(path, kept, None, mark)
+            sink = _format_of(path).sink(path, kept, None, mark)
+            for rows in open_log(part).blocks:
+                sink.remember(rows)
+            return sink
         except LogError as error:
             reasons.append(str(error))
     if path.exists():
@@ -93,10 +96,12 @@ def continued_sink(path: Path, provenance: Provenance, compact: bool, mark: Mark
     raise LogError(f"the log of {mark.rows} rows cannot be continued: {'; '.join(reasons)}")
 
 
-def open_log(path: Path) -> Opened:
+def open_log(path: Path, verify: bool = True) -> Opened:
     """Return the provenance of a log file and its rows block by block, each checked as it comes.
 
     `NAME.part`, a log that grows or was cut short, is read by the format of NAME, up to its last whole row.
+
+    Warns (LogWarning) after the last block where rows are not as the run stored them; verify: False where that is known.
 
     Raises:
         LogError: with a sentence where the file is no log; also while its blocks are read.
@@ -112,7 +117,8 @@ def open_log(path: Path) -> Opened:
             raise LogError(f"{path}: not a file")
         _demand_magic(path)
     provenance, blocks = (form.open_part if growing else form.open_whole)(path)
-    return Opened(provenance, checked(provenance, blocks, path))
+    sound = checked(provenance, blocks, path)
+    return Opened(provenance, verified(provenance, sound, path) if verify else sound)
 
 
 def read_log(path: Path) -> tuple[Provenance, Rows]:

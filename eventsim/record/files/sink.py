@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from eventsim.errors import LogError
+from eventsim.record.digest import StoredDigester
 from eventsim.record.events import Rows
 from eventsim.record.files.claim import Claim
 from eventsim.record.provenance import Ending, Kick, Provenance, columns_kept, kicks_of
@@ -45,6 +46,7 @@ class FileSink(ABC):
         self._kicks_come_with_rows = kicks is None
         self._kicks = list(kicks or ()) if mark is None else list(mark.kicks)
         self._count = 0 if mark is None else mark.rows
+        self._stored = StoredDigester(self.columns)
         if path.is_dir():
             raise LogError(f"{path}: is a directory, so no log can be written there")
         if not path.parent.is_dir():
@@ -71,8 +73,13 @@ class FileSink(ABC):
             self._append(rows)
         except OSError as error:
             raise self._unwritable(error) from None
+        self._stored.update(rows)
         self._kicks += kicks
         self._count += len(rows)
+
+    def remember(self, rows: Rows) -> None:
+        """Take into the digest a block of rows that the part has already."""
+        self._stored.update(rows)
 
     def sync(self) -> Mark:
         """Have all rows so far on the disk, whatever happens to the machine; how far the log has come."""
@@ -84,6 +91,8 @@ class FileSink(ABC):
 
     def close(self, ending: Ending | None = None) -> None:
         """Complete the metadata and give the file its name. ending: where the run ended."""
+        if ending is not None:
+            ending = replace(ending, stored=self._stored.hexdigest())
         try:
             whole = self._finish(self.provenance.finished(ending, tuple(self._kicks), self._count))
             os.replace(whole, self.path)

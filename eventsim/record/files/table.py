@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
@@ -9,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from eventsim.errors import LogError
+from eventsim.errors import LogError, LogWarning
+from eventsim.record.digest import StoredDigester
 from eventsim.record.events import COLUMNS, FIELDS, LABELS, ROW, Column, Kind, Rows, blank_rows
-from eventsim.record.provenance import Provenance, columns_kept
+from eventsim.record.provenance import UNCHECKED, Provenance, columns_kept
 
 BLOCK = 1 << 12
 """Rows that are filled in, or looked at, at a time: they stay in a core's own cache."""
@@ -90,6 +92,25 @@ def checked(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Gene
             yield rows
     if provenance.rows not in (None, count):
         raise LogError(f"{path}: holds {count} rows where {provenance.rows} were written; the file was cut off")
+
+
+def verified(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Generator[Rows]:
+    """Yield rows block by block; warn (LogWarning) after the last one where they are not as the run stored them.
+
+    Also where nothing vouches for their scene, as in format 1.
+    """
+    if provenance.bits == 1:
+        warnings.warn(f"{path}: {UNCHECKED}", LogWarning, stacklevel=2)
+    stored = None if provenance.ending is None else provenance.ending.stored
+    digester = StoredDigester(columns_kept(provenance))
+    with closing(blocks):
+        for rows in blocks:
+            if stored is not None:
+                digester.update(rows)
+            yield rows
+    if stored not in (None, digester.hexdigest()):
+        words = f"{path} is not what its run wrote: its rows have another digest than the one it was closed with"
+        warnings.warn(words, LogWarning, stacklevel=2)
 
 
 def _rules(rows: Rows, first: int, epoch: int, count: int) -> dict[str, Column]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import ClassVar
 
 from eventsim.formulas.walls.container import Container
@@ -53,6 +54,11 @@ class Circle(Part):
         """The square around it."""
         (x, y), r = self.center, self.radius
         return (x - r, y - r), (x + r, y + r)
+
+    def span(self, axis: int) -> tuple[Fraction, Fraction]:
+        """Where the circle begins and ends along an axis, exactly."""
+        middle, radius = Fraction(self.center[axis]), Fraction(self.radius)
+        return middle - radius, middle + radius
 
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
         """How far disks at `position` (M, 2) of a `radius` reach out of it, (M,)."""

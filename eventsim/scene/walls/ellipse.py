@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import ClassVar
 
 import numpy as np
@@ -69,6 +70,11 @@ class Ellipse(Part):
         norm = math.hypot(ex, ey)
         wide, high = math.hypot(a * ex, b * ey) / norm, math.hypot(a * ey, b * ex) / norm
         return (x - wide, y - high), (x + wide, y + high)
+
+    def span(self, axis: int) -> tuple[Fraction, Fraction]:
+        """Where the circle around it begins and ends along an axis, exactly."""
+        middle, reach = Fraction(self.center[axis]), Fraction(max(self.semi_axes))
+        return middle - reach, middle + reach
 
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
         """How deep disks at `position` (M, 2) of a `radius` reach into it, (M,)."""

@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
+from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, TypeAlias
 
@@ -114,6 +115,11 @@ class Part(Wall):
     @abstractmethod
     def bounds(self) -> Bounds:
         """A rectangle that the piece lies in."""
+
+    def span(self, axis: int) -> tuple[Fraction, Fraction]:
+        """Where its points, as they are given, begin and end along an axis, exactly."""
+        places = [Fraction(getattr(self, key)[axis]) for key, kind in keys_of(type(self)).items() if kind == POINT]
+        return min(places), max(places)
 
     @abstractmethod
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
