@@ -44,7 +44,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         call = getattr(item, "callspec", None)
         asked = item.get_closest_marker("kernels") or (call is not None and call.params.get("engine") == "fast")
-        if asked and not item.get_closest_marker("compiled"):
+        if asked and bool(item.get_closest_marker("compiled")) == is_interpreted():
+            item.add_marker("slow")
+        if asked:
             item.add_marker("kernels")
-            if not is_interpreted():
-                item.add_marker("slow")
