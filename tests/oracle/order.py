@@ -124,8 +124,9 @@ def demand_calls(run: State, time: Decimal) -> None:
 
 def demand_before(run: State, first: Meeting, stop: Decimal) -> None:
     """Stop the judging where a meeting may be before or after a stop."""
-    terms = time_terms(run, first)
-    if terms and SAFE * run.doubt.spread(terms) > abs(float(stop - first.time)):
+    terms, apart = time_terms(run, first), abs(float(stop - first.time))
+    bound = sum((abs(hx) + abs(hy)) * run.doubt.error(i, t) for i, t, hx, hy in terms)
+    if SAFE * bound > apart and SAFE * run.doubt.spread(terms) > apart:
         raise BeyondError("a contact at the very time of a stop")
 
 

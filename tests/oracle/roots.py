@@ -131,14 +131,11 @@ def _bound(p: Polynomial) -> Decimal:
 
 
 def _power(x: Decimal, n: int) -> Decimal:
-    """x to the power 1/n, n from 1 to 4, to a few digits upwards."""
+    """x to the power 1/n, n from 1 to 4, to a few digits."""
     if n == 1:
         return x
-    if n == 2:
-        return root(x)
-    if n == 4:
-        return root(root(x))
-    return (x.ln() / 3).exp()
+    tens = x.adjusted() // n
+    return Decimal(float(x.scaleb(-n * tens)) ** (1.0 / n)).scaleb(tens)
 
 
 def _root_between(p: Polynomial, low: Decimal, high: Decimal, before: int) -> Decimal:

@@ -55,6 +55,14 @@ class State:
 
     def normal(self, m: Meeting) -> Vector:
         """The unit normal of a meeting, pointing to disk a."""
+        if m.b < 0 and isinstance(shape := self.table.shapes[m.shape], Line):
+            return m.side * shape.normal[0] / shape.norm, m.side * shape.normal[1] / shape.norm
+        dx, dy = self.towards(m)
+        length = root(dx * dx + dy * dy)
+        return dx / length, dy / length
+
+    def towards(self, m: Meeting) -> Vector:
+        """The same of any length."""
         x, y, _, _ = self.flights[m.a].at(m.time)
         px, py = self.search.shift(m.image)
         if m.b >= 0:
@@ -63,13 +71,12 @@ class State:
         else:
             shape = self.table.shapes[m.shape]
             if isinstance(shape, Line):
-                return m.side * shape.normal[0] / shape.norm, m.side * shape.normal[1] / shape.norm
+                return m.side * shape.normal[0], m.side * shape.normal[1]
             centre = shape.place if isinstance(shape, Tip) else shape.centre
             dx, dy = m.side * (x - px - centre[0]), m.side * (y - py - centre[1])
             if isinstance(shape, Oval):
                 dx, dy = shape.gradient(shape.scaled((dx, dy)))
-        length = root(dx * dx + dy * dy)
-        return dx / length, dy / length
+        return dx, dy
 
     def bend(self, m: Meeting) -> float:
         """How the normal turns with the place: 1 over the distance from the centre, negative inside; 0 on a line."""
@@ -91,12 +98,14 @@ class State:
 
     def closing(self, m: Meeting) -> tuple[float, float, float]:
         """The normal at a meeting, in floats, and the rate at which the gap closes (negative)."""
-        nx, ny = self.normal(m)
+        nx, ny = self.towards(m)
         _, _, u, w = self.flights[m.a].at(m.time)
         if m.b >= 0:
             _, _, ub, wb = self.flights[m.b].at(m.time)
             u, w = u - ub, w - wb
-        return float(nx), float(ny), float(nx * u + ny * w)
+        x, y = float(nx), float(ny)
+        length = math.hypot(x, y)
+        return x / length, y / length, float(nx * u + ny * w) / length
 
     def closing_rate(self, m: Meeting, normal: Vector, velocity: dict[int, Vector]) -> Decimal:
         u, w = velocity[m.a]

@@ -248,3 +248,15 @@ def test_a_notebook_shows_the_player_and_a_long_log_as_text(broken, monkeypatch)
 def test_the_description_is_strict_json(broken):
     found = re.search(r'id="description">(.*?)</script>', page(broken))
     assert json.loads(found[1])["scene"]["count"] == 16
+
+
+def test_it_says_from_which_event_on_places_are_beyond_the_digits(opened):
+    log = es.simulate(es.gallery("gas", n=16), events=600, log=True).log
+    driver = opened(log)
+
+    def said(share):
+        driver.execute_script("player.seek(player.duration * arguments[0])", share)
+        return driver.execute_script("return player.part('trust').textContent")
+
+    assert re.fullmatch(r"positions hold until event \d+", said(0.1))
+    assert re.fullmatch(r"beyond the digits since event \d+: statistics hold", said(1.0))

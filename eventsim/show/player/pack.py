@@ -14,7 +14,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from matplotlib.colors import to_hex
 
+from eventsim.engines import engine_named
 from eventsim.errors import EventsimError
+from eventsim.measure.trust import UNASKED, TrustLine
 from eventsim.record.events import Column, Rows, blank_rows
 from eventsim.replay.log import EventLog, Told
 from eventsim.replay.motion import Motion
@@ -67,6 +69,7 @@ def packed(log: Told, color: str | None = None, seconds: float | None = None) ->
     description = {
         "startTime": first,
         "duration": last - first,
+        "trusted": trusted(replay.full),
         "seconds": seconds or SECONDS,
         "colour": mode_named(color) or default_mode(log.scene.disks),
         "columns": described_columns(columns),
@@ -74,6 +77,16 @@ def packed(log: Told, color: str | None = None, seconds: float | None = None) ->
         "stage": stage_description(replay, last),
     }
     return description, base64.b64encode(column_bytes(columns)).decode("ascii")
+
+
+def trusted(log: EventLog) -> dict[str, float] | None:
+    """Return the event, and its time, from which on places are beyond the digits; None where that is not known to come."""
+    if not engine_named(log.provenance.engine).replays:
+        return None
+    line = TrustLine(log.scene, UNASKED)
+    line.write(log.rows[: UNASKED + 1])
+    found = line.found()
+    return None if found.event is None or found.time is None else {"event": found.event, "time": found.time}
 
 
 def start_columns(motion: Motion) -> list[PackedColumn]:

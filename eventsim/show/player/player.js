@@ -24,6 +24,7 @@ class Player {
     this.stage = description.stage;
     this.start = description.startTime;
     this.duration = description.duration;
+    this.trusted = description.trusted;
     this.usualSpeed = description.duration / description.seconds;
     Object.assign(this.view, { time: 0, speed: this.usualSpeed, marked: -1 });
     this.direction = 1;
@@ -107,7 +108,16 @@ class Player {
     this.part("scrub").value = String(this.view.time);
     this.part("clock").textContent = `t = ${digits(this.start + this.view.time, this.duration)}`;
     this.part("events").textContent = `${events.toLocaleString("en")} of ${all.toLocaleString("en")} event${all === 1 ? "" : "s"}`;
+    if (this.trusted) this._trust();
     if (this.view.marked >= 0) this._tell();
+  }
+
+  /* Say whether the places that are shown are those of the scene, or only their statistics are. */
+  _trust() {
+    const { event, time } = this.trusted, lost = this.start + this.view.time >= time;
+    this.part("trust").textContent = lost
+      ? `beyond the digits since event ${event.toLocaleString("en")}: statistics hold`
+      : `positions hold until event ${event.toLocaleString("en")}`;
   }
 
   _label() {
