@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeAlias
 from eventsim.formulas.tangent import after, meeting
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.shape import Shape
+from eventsim.measure.sums import nearest
 from eventsim.record.events import Kind, Rows
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
@@ -62,7 +63,7 @@ class Tangent:
         self.off = off
         self._rounding = rounding
         self._stage = stage
-        self._periods = tuple(length or math.inf for length in stage.period)
+        self._periods = tuple(length or 0.0 for length in stage.period)
         gravity = stage.gravity or (0.0, 0.0)
         self._fall = [(0.0, 0.0) if math.isinf(mass) else gravity for mass in scene.disks.mass.tolist()]
         self._pull: list[Vector] = list(self._fall)
@@ -87,7 +88,7 @@ class Tangent:
             before, lag = self._arrive(a, epoch, remainder, xa, ya)
             if kind == Kind.PAIR:
                 other, lag_b = self._arrive(b, epoch, remainder, xb, yb)
-                between = _shortest(xa - xb, self._periods[0]), _shortest(ya - yb, self._periods[1])
+                between = nearest(xa - xb, self._periods[0]), nearest(ya - yb, self._periods[1])
                 shift = self._pass_pair(a, b, between, (before, (vxa, vya)), (other, (vxb, vyb)))
                 self._velocity[b] = vxb, vyb
                 self._pull[b] = self._fall[b]
@@ -188,10 +189,6 @@ def _pieces_of(stage: Stage) -> dict[int, list[Shape]]:
         if not isinstance(surface, Boundary):
             pieces[surface.wall].append(surface.shape)
     return pieces
-
-
-def _shortest(d: float, period: float) -> float:
-    return d if math.isinf(period) else d - period * round(d / period)
 
 
 def _pushed(dx: float, dy: float, vx: float, vy: float) -> Vector | None:
