@@ -135,7 +135,9 @@ def _walls_between(m, grid, rules, i, span, found, times, count):
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     home = home_of(m, grid, i)
     across = m, rules, i, span, found, times
-    count = _walls_across(*across, 0, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count, m.supports)
+    count = _walls_across(
+        *across, 0, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count, m.supports
+    )
     return _walls_across(*across, 1, y, w, t, r, gy, rules.height, row, home.rows, rules.wall_y, count, m.supports)
 
 

@@ -137,17 +137,20 @@ def _widened(kind: Any) -> Any:
     return types.unliteral(kind)
 
 
-inline = partial(_once, njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True))
+_PART: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
+"""For what kernels alone call, and what allocates nothing: without these, machine code that nobody uses is made, too."""
+
+inline = partial(_once, njit(forceinline=True, **_PART))
 """A part of a kernel; without force a small helper stays a real call, which costs a fifth of the rate."""
 
 
-part = partial(_once, njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True))
+part = partial(_once, njit(**_PART))
 """A part that is rarely reached, and stays a call of its own."""
 
 
 def kernel(function: Callable[..., Any]) -> Any:
     """A compiled function that Python calls; kept on disk where that is possible.  Other threads go on meanwhile."""
-    return _kept(partial(njit, nogil=True), function)
+    return _kept(partial(njit, nogil=True, _nrt=False), function)
 
 
 def _kept(compiler: Callable[..., Any], function: Callable[..., Any], *signature: Any) -> Any:
@@ -179,22 +182,28 @@ def name_apart(kept: Any) -> None:
 _FOLDER = cache_folder()
 _THIS_PROCESS = uuid4().hex[:8]
 
-_CAREFUL = types.float64(*[types.float64] * 15)
-_careful = types.ExternalFunction("eventsim_careful_pair_delay", _CAREFUL)
-_HAND = types.float64(*[types.float64] * 8)
-_hand = types.ExternalFunction("eventsim_exact_hand", _HAND)
+_careful = types.ExternalFunction("eventsim_careful_pair_delay", types.float64(*[types.float64] * 15))
+_hand = types.ExternalFunction("eventsim_exact_hand", types.float64(*[types.float64] * 8))
 LINKED = digits.careful_pair_delay, point.exact_hand
 """Formulas that kernels call by their names."""
 
 
+def link(has_walls: bool) -> None:
+    """Give kernels what they call by its name: compiled once, and not once more in every kernel.
+
+    has_walls: whether the scene has walls besides the sides of its domain; no other kernel asks for the side of a point.
+    """
+    _linked(_careful, digits.careful_pair_delay)
+    if has_walls:
+        _linked(_hand, point.exact_hand)
+
+
 @cache
-def link() -> Any:
-    """Give kernels what they call by its name: compiled once, and not once more in every kernel; the owner of its memory."""
-    careful = _kept(cfunc, digits.careful_pair_delay, _CAREFUL)
-    hand = _kept(cfunc, point.exact_hand, _HAND)
-    binding.add_symbol(_careful.symbol, careful.address)
-    binding.add_symbol(_hand.symbol, hand.address)
-    return careful, hand
+def _linked(name: Any, formula: Callable[..., float]) -> Any:
+    """The owner of the memory of a formula that kernels call by this name."""
+    compiled = _kept(cfunc, formula, name.sig)
+    binding.add_symbol(name.symbol, compiled.address)
+    return compiled
 
 
 @overload(digits.careful_pair_delay)
@@ -209,12 +218,12 @@ def _exact_hand(x, y, vx, vy, gx, gy, px, py):
     return lambda x, y, vx, vy, gx, gy, px, py: _hand(x, y, vx, vy, gx, gy, px, py)
 
 
-@overload(real.is_float, jit_options={"forceinline": True})
+@overload(real.is_float, jit_options={"forceinline": True, **_PART})
 def _is_float(x):
     return lambda x: True
 
 
-@overload(real.sqrt, jit_options={"forceinline": True})
+@overload(real.sqrt, jit_options={"forceinline": True, **_PART})
 def _sqrt(x):  # without annotations: numba compares them with those of the lambda
     if isinstance(x, types.Float):
         return lambda x: math.sqrt(x)
@@ -229,7 +238,19 @@ def _register(module: ModuleType, **options: Any) -> None:
 
 
 for _module in (motion, contact, doubt, impulse):
-    _register(_module, forceinline=True, error_model="numpy")
+    _register(_module, forceinline=True, **_PART)
 _shapes = [sys.modules[shape.__module__] for shape in SHAPES]
-for _module in (careful_impulse, corner, crossing, digits, expansion, low_place, parabola, point, rest, slide, *_shapes):
-    _register(_module, error_model="numpy")
+for _module in (
+    careful_impulse,
+    corner,
+    crossing,
+    digits,
+    expansion,
+    low_place,
+    parabola,
+    point,
+    rest,
+    slide,
+    *_shapes,
+):
+    _register(_module, **{**_PART, "_nrt": True})  # expansions are lists

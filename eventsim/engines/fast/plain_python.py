@@ -35,7 +35,7 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     return silent
 
 
-def link() -> None:
+def link(has_walls: bool) -> None:
     """Nothing is called by its name here."""
 
 

@@ -91,7 +91,9 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
     restitution = _series(rules.wall_restitution, rules.duration)
     delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, _since_met(m, i, place))
-    if how == SUPPORTED and is_cornered(m, rules, i, place, side, real(m.disks, f + X), real(m.disks, f + Y), rules.still):
+    if how == SUPPORTED and is_cornered(
+        m, rules, i, place, side, real(m.disks, f + X), real(m.disks, f + Y), rules.still
+    ):
         return t + crossing_delay(x, v, g, target, side), STRUCK
     return t + delay, how
 

@@ -49,7 +49,7 @@ class FastSession(ExactSession):
         self.state = self._machine.state
         self._resolver = PythonResolver(self._machine, self.counters)
         with timed_compiling(self._note_compiling):
-            link()
+            link(bool(stage.features))
             if saved is None:
                 self._machine.set_epoch(0)
                 self._machine.set_now(0.0)
@@ -136,7 +136,9 @@ class FastSession(ExactSession):
                         machine.give_up_cells()
                     elif (stopped := self._end_window(for_ever)) is not None:
                         return stopped
-                elif state.opened and not empty and (near := self._contact_near(until)) is not None and self._jump(near):
+                elif (
+                    state.opened and not empty and (near := self._contact_near(until)) is not None and self._jump(near)
+                ):
                     pass
                 elif empty or not machine.renew_stale():
                     self._pass_to(until)

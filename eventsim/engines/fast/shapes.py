@@ -141,7 +141,9 @@ def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     touches = _touches(m, i, place, rules.still)
     faces, posts, containers, arcs, ellipses = rules.shapes
     close = beside(m, rules, i, k, m.sides)
-    return _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, ellipses, touches, close)
+    return _delay(
+        m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, ellipses, touches, close
+    )
 
 
 @inline

@@ -111,7 +111,9 @@ def _side_after(m, rules, i, k, kind, remembered, flight, radius, x, y, u, w):
         if before == 0:  # from afar: it comes from behind
             before = -_moved_to(m, s, kind, -_side(m, s, kind, x0, y0, vx, vy), x, y, u, w)
     if kind == FACE:
-        return face_side_after(face_at(m.features, s + 2), before, remembered, x0, y0, vx, vy, gx, gy, radius, x, y, u, w)
+        return face_side_after(
+            face_at(m.features, s + 2), before, remembered, x0, y0, vx, vy, gx, gy, radius, x, y, u, w
+        )
     return arc_side_after(arc_at(m.features, s + 2), before, remembered, x0, y0, vx, vy, gx, gy, radius, x, y, u, w)
 
 

@@ -115,7 +115,9 @@ def _towards(m, rules, i, now, floor, to_cell, to_wrap, size, side, anchor, v0, 
         new = now + crossing_delay(x, v, g, edge - side * slack(size, rules.gx), side)
         return earlier(time, code, shared, new, code_there, rules.tie_screen)
     border, length, wall, wrap_code, second, axis = to_wrap
-    new, what = _border_event(m, rules, i, anchor, v0, g, border, side, length, wall, wrap_code, second, axis, m.supports)
+    new, what = _border_event(
+        m, rules, i, anchor, v0, g, border, side, length, wall, wrap_code, second, axis, m.supports
+    )
     if not new < floor:
         time, code, shared = earlier(time, code, shared, new, what, rules.tie_screen)
     return time, code, shared

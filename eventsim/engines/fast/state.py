@@ -54,7 +54,6 @@ LOW_COLUMNS, LOW_PLACES = ("low_vx", "low_vy"), ("low_x", "low_y")
 """The same, where velocities or places have low parts."""
 
 
-
 def aligned(count: int, kind: Any) -> NDArray[Any]:
     """Zeros that begin with a page, and some to spare behind them: the lanes read a little past the end."""
     size = count * np.dtype(kind).itemsize
