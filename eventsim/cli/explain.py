@@ -27,8 +27,8 @@ MANY = 10
 SHAPE_WORDS = {kind.__name__.lower(): kind.word() for kind in SHAPES}
 
 POINTS = (
-    "a point stays on its side of a wall, to the last bit; one that hits a vertex or a free end exactly turns round"
-    " (the limit of a central hit)"
+    "a point (any radius below a 2^42th of a wall's coordinates is 0 there) stays on its side of a wall, to the last bit; one"
+    " that hits a vertex or a free end exactly turns round (the limit of a central hit)"
 )
 """What disks without a radius do at walls."""
 

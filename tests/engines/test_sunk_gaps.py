@@ -77,3 +77,24 @@ def test_a_disk_that_is_kicked_back_into_what_it_has_just_met_meets_it_again(eng
         sim.advance_to(sim.time + 1.0)
         assert [row["kind"] for row in sim.log.rows] == [Kind.PAIR, Kind.KICK, Kind.PAIR]
         assert sim.log.time[2] == pytest.approx(sim.log.time[0], abs=1e-14)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_in_a_corner_meets_both_walls_however_small_the_gap(engine):
+    """It flies along the bisector but for the last bits; which wall comes first is exact, and then it is in the corner."""
+    seen = 0
+    for k in range(40):
+        turn, half = 0.37 * k, 0.5
+        ends = [(5.0 * math.cos(turn + s * half), 5.0 * math.sin(turn + s * half)) for s in (-1, 1)]
+        start = 3.0 * math.cos(turn), 3.0 * math.sin(turn)
+        disks = es.Disks([start], [(-start[0], -start[1])], 0.3)
+        scene = es.Scene(
+            disks, es.Open(), [es.Polyline((ends[0], (0.0, 0.0), ends[1]), name="corner")], restitution=0.8
+        )
+        run = es.simulate(scene, until=2.0, engine=engine, log=True)
+        assert run.stopped in ("until", "quiet")
+        assert {run.log.wall_name[row] for row in run.log.wall[:2].tolist()} == {"corner.0", "corner.1"}
+        first, second = run.log.time[:2].tolist()
+        seen += first < second
+        assert second - first < 2.0**-48
+    assert seen > 5

@@ -242,3 +242,22 @@ def test_a_disk_is_laid_onto_a_nearly_flat_arc_as_exactly_as_onto_a_line(sagitta
         reach = mpf(shape.radius) + mpf(shape.low) + mpf(side) * mpf(0.25)
         gap = mp.hypot((mpf(x) - mpf(shape.x)) - mpf(shape.ux), (mpf(y) - mpf(shape.y)) - mpf(shape.uy)) - reach
     assert abs(gap) < 2.0**-51
+
+
+@pytest.mark.parametrize("sagitta", [1e-2, 5e-4, 1e-5, 1e-7, -5e-4])
+@pytest.mark.parametrize(("height", "side"), [(0.5, 1), (-0.5, -1)])
+def test_the_time_of_a_nearly_flat_arc_is_known_as_well_as_places(sagitta, height, side):
+    """Not as well as distances from its centre, which have ten digits more to lose."""
+    shape = arc(1.0, 1.0, 2.0, 1.0 + sagitta, 3.0, 1.0)
+    for k in range(20):
+        x, y, u, w, r = 1.3 + 0.05 * k, 1.0 + height, 0.3 - 0.02 * k, -height - 0.03 * k * height, 0.05
+        delay, met = arc_delay(shape, x, y, u, w, None, None, r, 0)
+        with mp.workdps(50):
+            circle = mpf(shape.radius) + mpf(shape.low)
+            dx, dy = mpf(x) - shape.x - mpf(shape.ux), mpf(y) - shape.y - mpf(shape.uy)
+            outside = met if sagitta > 0 else -met
+            reach = circle + met * mpf(r)
+            a, b, c = mpf(u) ** 2 + mpf(w) ** 2, dx * u + dy * w, dx * dx + dy * dy - reach**2
+            true = (-b - met * mp.sqrt(b * b - a * c)) / a
+        assert outside == side
+        assert abs(delay - true) < 2.0**-52

@@ -32,6 +32,7 @@ from tests.oracle.judge import (
 )
 from tests.oracle.loop import story
 from tests.oracle.story import Story
+from tests.oracle.table import table_of
 
 ENGINES = {"reference": ("reference",), "fast": ("fast",), "both": ("reference", "fast")}
 
@@ -48,6 +49,12 @@ LOOSE = 1e-3
 """What is right for contacts that floats do not determine, where they must be told all the same: their order, roughly when."""
 
 WORDS = (RIGHT, REFUSED, WRONG, UNJUDGED)
+
+BY_GRAVITY = (RIGHT, UNJUDGED, REFUSED, WRONG)
+"""The same, the worst last."""
+
+POINT = 2.0**-42
+"""A radius below this part of the scene's size may count as 0 at walls: what scenes promise."""
 
 
 @dataclass
@@ -85,7 +92,10 @@ HEAD = (
 def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
     """The oracle's verdict on one case: the worst that it gives to one of the engines."""
     try:
-        told = story(case.scene, events=case.scene.events + SPARE, kicks=case.kicks)
+        told, *as_points = (
+            story(scene, events=case.scene.events + SPARE, kicks=case.kicks)
+            for scene in (case.scene, *_with_points(case.scene))
+        )
         whole = whole_story(case) if case.to_the_end else None
     except (ArithmeticError, AssertionError, NotImplementedError) as error:
         return Verdict(UNJUDGED, f"the oracle failed: {error!r}", -1, 0, 0)
@@ -98,7 +108,7 @@ def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
             verdicts.append(Verdict(REFUSED, str(error), -1, 0, 0))
             continue
         seen.append(one)
-        verdict = judge(told, one, case.close)
+        verdict = min((judge(one_told, one, case.close) for one_told in (told, *as_points)), key=_gravity)
         if verdict.word != WRONG and case.inside is not None:
             verdict = _kept_inside(case.inside, one, verdict)
         if whole is not None and verdict.word in (RIGHT, UNJUDGED) and one.stopped not in STOPS:
@@ -106,7 +116,21 @@ def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
         verdicts.append(verdict)
     if len(seen) == 2 and not is_same(*seen):
         verdicts.append(Verdict(WRONG, "the engines differ", -1, 0, 0))
-    return max(verdicts, key=lambda v: (RIGHT, UNJUDGED, REFUSED, WRONG).index(v.word))
+    return max(verdicts, key=_gravity)
+
+
+def _gravity(verdict: Verdict) -> int:
+    return BY_GRAVITY.index(verdict.word)
+
+
+def _with_points(scene: Any) -> list[Any]:
+    """The scene with disks below the digits as points, which is as right, if there are any and walls for which they are."""
+    radius = scene.disks.radius
+    tiny = (radius > 0) & (radius <= POINT * table_of(scene).largest)
+    if not (scene.walls and tiny.any()):
+        return []
+    disks = scene.disks
+    return [replace(scene, disks=es.Disks(disks.position, disks.velocity, np.where(tiny, 0.0, radius), disks.mass))]
 
 
 def is_same(one: Seen, other: Seen) -> bool:

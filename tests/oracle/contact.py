@@ -16,7 +16,10 @@ from tests.oracle.rest import settle
 from tests.oracle.search import Meeting, pair_key, wall_key
 from tests.oracle.state import State, floats, size
 from tests.oracle.story import PAIR, WALL, BeyondError
-from tests.oracle.table import Bow, Line, Tip, Vector, names_of
+from tests.oracle.table import Bow, Line, Tip, Vector, across, names_of
+
+ASIDE = 1e-6
+"""A point that slides is so far beside its wall, as an angle seen from the end of that, to tell on which side."""
 
 NONE = Decimal("1e-40")
 """What is below this part of a velocity, in the digits of the first round, is nothing where the reason is known."""
@@ -217,9 +220,17 @@ def is_convex(run: State, i: int, cluster: list[Meeting], velocity: Vector) -> b
     ]
     if not tips:
         return True
-    u, w = velocity
-    back = math.atan2(-float(w), -float(u))
-    turns = sorted((math.atan2(float(ty), float(tx)) - back) % math.tau for tx, ty in tips[0].arms)
+    u, w = floats(velocity)
+    if (held := run.flights[i].held) is not None:  # it comes along a wall, on one side of it
+        nx, ny = floats(run.table.shapes[held[0]].normal)
+        aside = held[1] * ASIDE * math.hypot(u, w) / math.hypot(nx, ny)
+        u, w = u - aside * nx, w - aside * ny
+    back = math.atan2(-w, -u)
+    arms = list(tips[0].arms)
+    for side in run.table.shapes:
+        if isinstance(side, Line) and side.length2 is None and across(side, tips[0].place) == 0:
+            arms += [side.along, (-side.along[0], -side.along[1])]
+    turns = sorted((math.atan2(float(ty), float(tx)) - back) % math.tau for tx, ty in arms)
     return turns[0] + math.tau - turns[-1] > math.pi + 1e-12
 
 

@@ -39,7 +39,7 @@ def first_of(run: State) -> Meeting | None:
 
 def _leaving(run: State, first: Meeting) -> Meeting:
     """A point that slides to the end of its wall leaves it there: only then it is beside what else ends there."""
-    if run.flights[first.a].held is None:
+    if run.flights[first.a].held is None or run.is_in_corner(first):
         return first
     leaves = [other for other in meetings_of(run, {first.a}) if other.how == LEAVE and may_tie(run, other, first)]
     return leaves[0] if leaves else first
@@ -231,7 +231,7 @@ def demand_order(run: State, first: Meeting, disks: set[int], cluster: list[Meet
     """Stop the judging where another contact of these disks may come first, or a tie may be none."""
     mine = time_terms(run, first)
     for other in meetings_of(run, disks):
-        if other is first or is_same(run, other, [first]):
+        if other is first or is_same(run, other, [first]) or is_shut_in(run, other, first):
             continue
         later = float(other.time - first.time)
         theirs = time_terms(run, other)
@@ -245,6 +245,13 @@ def demand_order(run: State, first: Meeting, disks: set[int], cluster: list[Meet
                 raise BeyondError("a tie of what has been rounded")
         elif SAFE * spread > later and spread > 0.0:
             raise BeyondError("order")
+
+
+def is_shut_in(run: State, other: Meeting, first: Meeting) -> bool:
+    """Whether a point slides to an end of its wall that is exactly on what it meets there: it does not leave it."""
+    if other.how != LEAVE or first.how == LEAVE or run.flights[other.a].held is None or run.table.radius[other.a] > 0:
+        return False
+    return may_tie(run, other, first) and sign(other.time - first.time, abs(first.time)) == 0
 
 
 def at_right_angles(run: State, one: Meeting, other: Meeting) -> bool:

@@ -23,6 +23,12 @@ from tests.oracle.table import Bow, Line, Oval, Ring, Shape, Table, Tip, Vector,
 NEAR = 1e-2
 """A miss by more than this part of the scene's size is no close call: errors as large end the judging before."""
 
+NONE = 1e-14
+"""A smaller component of a vector of length 1 is rounding."""
+
+CORNER = 1e-4
+"""A flight that begins so much nearer still to the end of an arc begins in the corner there."""
+
 FAR = 1.001
 """So many times as far as that a miss is seen by floats."""
 
@@ -300,6 +306,7 @@ class Search:
         width = radius * one.norm
         touched = next((side for side in one.sides if wall_key(k, image, side) in touch), 0)
         own = touched or self._own_side(one, s, place, radius)
+        shut = self.shut_ends(k, one, place, touch, image) if radius == 0 and touch else []
         best: tuple[Decimal, int, str, bool] | None = None
         calls: list[Call] = []
         for side in one.sides:
@@ -310,14 +317,14 @@ class Search:
                 still = touch[wall_key(k, image, touched)]
                 rate = 0 if still else sign(b, _rate_size(one, speed))
                 if side == touched and rate <= 0 and (rate < 0 or q < 0):
-                    at_end = self._foot(one, place, speed, pull, ZERO, radius, now, calls)
+                    at_end = self._foot(one, place, speed, pull, ZERO, radius, now, calls, shut)
                     if at_end is not None:
                         return [
                             Found(Meeting(now, a, -1, k, image, side, IMPACT if rate < 0 else PRESSED, at_end), calls)
                         ]
                 gap = (q,) if rate == 0 else (b, q)
             elif side == own and c <= 0 and radius > 0 and b < 0:
-                at_end = self._foot(one, place, speed, pull, ZERO, radius, now, calls)
+                at_end = self._foot(one, place, speed, pull, ZERO, radius, now, calls, shut)
                 if at_end is not None:
                     return [Found(Meeting(now, a, -1, k, image, side, IMPACT, at_end), calls)]
             crossings, turns = survey(gap)
@@ -331,7 +338,7 @@ class Search:
             for crossing in crossings:
                 if not crossing.falls or (best is not None and crossing.time >= best[0]):
                     continue
-                at_end = self._foot(one, place, speed, pull, crossing.time, radius, now, calls)
+                at_end = self._foot(one, place, speed, pull, crossing.time, radius, now, calls, shut)
                 if at_end is not None:
                     best = crossing.time, side, IMPACT, at_end
                     break
@@ -339,6 +346,37 @@ class Search:
             return [Found(None, calls)] if calls else []
         t, side, how, at_end = best
         return [Found(Meeting(now + t, a, -1, k, image, side, how, at_end), calls)]
+
+    def shut_ends(
+        self, k: int, shape: Line | Bow, place: Vector, touch: dict[tuple[int, ...], bool], image: tuple[int, int]
+    ) -> list[Vector]:
+        """The ends of a wall that a point cannot pass, since its flight begins on what makes a corner with it there.
+
+        In a corner of less than half a turn it meets the wall, wherever its flight begins, or not at all.  place: where that
+        is; on an arc it must be next to the end.
+        """
+        shut = []
+        for end, arm in ends_of(shape):
+            for j, *at, side in touch:
+                if j < 0 or j == k or tuple(at) != image:
+                    continue
+                normal = self._normal_at(self.table.shapes[j], end, place)
+                if normal is not None and side * (normal[0] * arm[0] + normal[1] * arm[1]) > 0:
+                    shut.append(end)
+        return shut
+
+    def _normal_at(self, shape: Shape, end: Vector, place: Vector) -> Vector | None:
+        """The normal of a wall at a point, if that is an end of it, or on a side of the domain."""
+        if isinstance(shape, Line):
+            is_there = across(shape, end) == 0 and (shape.length2 is None or end in (shape.start, shape.end))
+            return shape.normal if is_there else None
+        if (
+            not isinstance(shape, Bow)
+            or end not in (shape.start, shape.end)
+            or _distance(place, end) > CORNER * self.near
+        ):
+            return None
+        return end[0] - shape.centre[0], end[1] - shape.centre[1]
 
     def _own_side(self, one: Line, s: tuple[Decimal, Decimal, Decimal], place: Vector, radius: Decimal) -> int:
         """The side of a line that a disk is on; a point exactly on it is on the side that it moves to."""
@@ -365,9 +403,12 @@ class Search:
         radius: Decimal,
         now: Decimal,
         calls: list[Call],
+        shut: list[Vector],
     ) -> bool | None:
         """Whether a contact after the delay t is on the line: None if it is not, True if a point meets its very end,
         else False.
+
+        shut: the ends that are no close calls.
         """
         if one.length2 is None:
             return False
@@ -382,13 +423,13 @@ class Search:
         size = abs(ex) * (abs(x) + abs(one.start[0])) + abs(ey) * (abs(y) + abs(one.start[1]))
         ends = sign(foot, size), sign(rest, size)
         margin = float(min(abs(foot), abs(rest))) / n
-        if margin < self.near:
+        if margin < self.near and (one.start if abs(foot) < abs(rest) else one.end) not in shut:
             # the foot is where the point is when its distance is 0: it moves along while the distance closes
             u, w = float(speed[0] + t * pull[0]), float(speed[1] + t * pull[1])
             fx, fy, mx, my = float(ex) / n, float(ey) / n, float(one.normal[0]) / n, float(one.normal[1]) / n
             rate = mx * u + my * w
             share = (fx * u + fy * w) / rate if rate != 0.0 else 0.0
-            calls.append(Call(now + t, margin, (fx - share * mx, fy - share * my)))
+            calls.append(Call(now + t, margin, _cleaned(fx - share * mx, fy - share * my)))
         return None if min(ends) < 0 else min(ends) == 0
 
     def _bow(
@@ -406,6 +447,8 @@ class Search:
     ) -> list[Found]:
         """Contacts with an arc from both of its sides."""
         touched = next((side for side in (1, -1) if wall_key(k, image, side) in touch), 0)
+        place = d[0] + shape.centre[0], d[1] + shape.centre[1]
+        shut = self.shut_ends(k, shape, place, touch, image) if radius == 0 and touch else []
         best: Meeting | None = None
         calls: list[Call] = []
         for side in (1, -1):
@@ -424,7 +467,7 @@ class Search:
             for t in times:
                 if best is not None and now + t >= best.time:
                     break
-                at_end = self._on_bow(shape, d, speed, pull, t, radius, now, calls)
+                at_end = self._on_bow(shape, d, speed, pull, t, radius, now, calls, shut)
                 if at_end is not None:
                     best = Meeting(now + t, a, -1, k, image, side, how, at_end)
                     break
@@ -470,6 +513,7 @@ class Search:
         radius: Decimal,
         now: Decimal,
         calls: list[Call],
+        shut: list[Vector],
     ) -> bool | None:
         """As _foot, for an arc: its foot on the circle is beyond the chord."""
         x = d[0] + t * (speed[0] + t * pull[0] / 2)
@@ -487,14 +531,15 @@ class Search:
         size = abs(cx) * (abs(fy) + abs(cy)) + abs(cy) * (abs(fx) + abs(cx))
         side = sign(beyond, size)
         # how far the foot may move along the circle before it passes an end
-        away = min(_distance((fx, fy), (ZERO, ZERO)), _distance((fx, fy), shape.chord))
-        if away < self.near:
+        at_start, at_end = _distance((fx, fy), (ZERO, ZERO)), _distance((fx, fy), shape.chord)
+        away = min(at_start, at_end)
+        if away < self.near and (shape.start if at_start < at_end else shape.end) not in shut:
             u, w = float(speed[0] + t * pull[0]), float(speed[1] + t * pull[1])
             r = float(square.sqrt())
             mx, my = float(x) / r, float(y) / r
             rate = mx * u + my * w
             share = (-my * u + mx * w) / rate if rate != 0.0 else 0.0
-            calls.append(Call(now + t, away, (-my - share * mx, mx - share * my)))
+            calls.append(Call(now + t, away, _cleaned(-my - share * mx, mx - share * my)))
         return None if side < 0 else side == 0
 
 
@@ -589,6 +634,11 @@ def _found(
 ) -> Found:
     times, how, calls = one
     return Found(Meeting(now + times[0], a, b, shape, image, side, how) if times else None, calls)
+
+
+def _cleaned(x: float, y: float) -> tuple[float, float]:
+    """A vector of length 1 or more without what rounding left of a component that is 0."""
+    return (0.0 if abs(x) < NONE else x, 0.0 if abs(y) < NONE else y)
 
 
 def _centre(shape: Shape) -> Vector:

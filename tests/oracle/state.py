@@ -9,7 +9,7 @@ from typing import Any
 
 from tests.oracle.digits import UNIT, ZERO, exact, is_float, root
 from tests.oracle.doubt import Doubt, NoDoubt, last_bits
-from tests.oracle.search import Flight, Found, Meeting, Search
+from tests.oracle.search import Flight, Found, Meeting, Search, wall_key
 from tests.oracle.story import Kick, Part, Row
 from tests.oracle.table import Bow, Line, Oval, Ring, Tip, Vector, names_of, table_of
 
@@ -204,6 +204,14 @@ class State:
         """Tell a row."""
         parts = tuple(self.part(i, self.now) for i in disks)
         self.rows.append(Row(self.group, self.now, kind, parts, walls, time_error, **more))
+
+    def is_in_corner(self, m: Meeting) -> bool:
+        """Whether a point meets, at the end of what it slides on, what makes a corner of less than half a turn with it there."""
+        f, shape = self.flights[m.a], self.table.shapes[m.shape]
+        if f.held is None or not isinstance(shape, Line | Bow):
+            return False
+        along = {wall_key(f.held[0], (0, 0), f.held[1]): True}
+        return bool(self.search.shut_ends(m.shape, shape, (f.x, f.y), along, m.image))
 
     def kin(self, shape: int) -> set[int]:
         """The shapes that continue a shape: its ends, and what is in line with it."""

@@ -13,6 +13,7 @@ from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
 from eventsim.formulas.doubt import is_sunk
+from eventsim.formulas.rest import AT_ONCE
 from eventsim.scene.stage import Stage
 
 
@@ -39,7 +40,8 @@ class Sunk:
         """The gap that a contact closes, as it was when the later of the flights began; None where it is known.
 
         It is known where no contact has taken energy from the later flight, and where both places are still those of the start.
-        So it is where two disks met when that flight began, and one was kicked back into the other.
+        So it is where two disks met when that flight began, and one was kicked back into the other; and where a disk in a corner
+        meets one wall at the instant at which it has met the other one.
         """
         state, disks = self._state, disks_of(event)
         begin = max(state.t[i] for i in disks)
@@ -49,8 +51,10 @@ class Sunk:
             return None
         if event.b >= 0 and all(state.t[i] == begin for i in disks) and self._have_just_met(event):
             return None
-        approach, size = self._of_pair(event) if event.b >= 0 else self._of_wall(event)
         lag = event.time - begin
+        if event.b < 0 and lag <= AT_ONCE * event.time and all(met[0] < 0 for met in state.met[event.a]):
+            return None  # it is in a corner: it meets what it approaches, and whatever the gap, at this instant
+        approach, size = self._of_pair(event) if event.b >= 0 else self._of_wall(event)
         return approach * lag if is_sunk(approach, lag, size) else None
 
     def _have_just_met(self, event: Event) -> bool:

@@ -32,6 +32,10 @@ from eventsim.formulas.walls.point import (
     side_known,
 )
 
+FLAT = 8.0
+"""An arc with a radius of more than so many times its coordinates is nearly flat: floats know less of a distance from its centre
+than of places."""
+
 
 class Arc(NamedTuple):
     """The part of a circle through (x, y) that lies beyond its chord.  Outside of the circle is the side +1, inside -1.
@@ -363,11 +367,12 @@ def _outer_delay(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real)
     dx, dy, reach = x - (shape.x + shape.ux), y - (shape.y + shape.uy), shape.radius + radius
     if not is_float(x):
         return pair_delay(dx, dy, vx, vy, reach + shape.low)
-    delay = screened_pair_delay(dx, dy, vx, vy, reach)
-    if delay != delay:
-        delay = rescaled_pair_delay(dx, dy, vx, vy, reach)
-    if delay == delay:
-        return delay
+    if shape.radius <= FLAT * shape.size:
+        delay = screened_pair_delay(dx, dy, vx, vy, reach)
+        if delay != delay:
+            delay = rescaled_pair_delay(dx, dy, vx, vy, reach)
+        if delay == delay:
+            return delay
     more = radius + shape.low
     return careful_pair_delay(
         x, y, vx, vy, 0.0, more, shape.x, shape.y, 0.0, 0.0, 0.0, shape.radius, shape.ux, shape.uy
@@ -379,11 +384,12 @@ def _inner_delay(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real)
     dx, dy, inner = x - (shape.x + shape.ux), y - (shape.y + shape.uy), shape.radius - radius
     if not is_float(x):
         return inner_delay(dx, dy, vx, vy, inner + shape.low)
-    delay = screened_inner_delay(dx, dy, vx, vy, inner)
-    if delay != delay:
-        delay = rescaled_inner_delay(dx, dy, vx, vy, inner)
-    if delay == delay:
-        return delay
+    if shape.radius <= FLAT * shape.size:
+        delay = screened_inner_delay(dx, dy, vx, vy, inner)
+        if delay != delay:
+            delay = rescaled_inner_delay(dx, dy, vx, vy, inner)
+        if delay == delay:
+            return delay
     less = shape.low - radius
     return careful_pair_delay(
         x, y, vx, vy, 0.0, less, shape.x, shape.y, 0.0, 0.0, 0.0, shape.radius, shape.ux, shape.uy, -1.0
