@@ -47,6 +47,8 @@ def settle(run: State, m: Meeting, e: Decimal) -> bool:
     run.rows[-1].flight, run.rows[-1].floor = float(flight), floor
     if float(flight) > ENDED * floor:
         run.series.pop(i, None)
+    elif rate == 0:  # e = 0: the one contact is the series
+        run.series[i] = run.rows[-1].time_error
     elif i not in run.series:
         run.series[i] = end_error(run, i, (float(nx), float(ny)), float(rate), float(-fall), float(e))
     if float(flight) > FLOOR * floor:
@@ -54,6 +56,9 @@ def settle(run: State, m: Meeting, e: Decimal) -> bool:
     if not isinstance(one, Line):
         run.now += flight / (1 - e)
         raise CollapseError("bounces on something round that end in rest")
+    for (k, *_, side), along_it in f.touch.items():
+        if along_it and k not in (-1, m.shape) and isinstance(run.table.shapes[k], Line):
+            demand_single(run, i, m, (k, side), run.now + flight / (1 - e))
     lie(run, i, m.shape, m.side, run.now + (flight / (1 - e)))
     return True
 
@@ -104,23 +109,22 @@ def press(run: State, m: Meeting) -> None:
     i = m.a
     held = run.flights[i].held
     if held is not None and held[0] != m.shape:
-        demand_single(run, i, m)
+        demand_single(run, i, m, held, run.now)
     place, velocity = run.fly_to_now(i, run.tick())
     run.begin_flight(i, place, velocity, {})
     lie(run, i, m.shape, m.side, run.now)
     predict(run, [i])
 
 
-def demand_single(run: State, i: int, m: Meeting) -> None:
-    """Stop where a disk would rest on two walls."""
-    held = run.flights[i].held
-    assert held is not None
+def demand_single(run: State, i: int, m: Meeting, held: tuple[int, int], time: Decimal) -> None:
+    """Stop where a disk that rests on one wall would, at that time, rest on another one as well."""
     old, new = run.table.shapes[held[0]], run.table.shapes[m.shape]
     assert isinstance(old, Line)
     assert isinstance(new, Line)
     gx, gy = run.table.pull[i]
     share = gx * new.along[0] + gy * new.along[1]
     if held[1] * share * (old.normal[0] * new.along[0] + old.normal[1] * new.along[1]) < 0:
+        run.now = time
         raise CollapseError("rest on two walls")
 
 

@@ -176,7 +176,9 @@ class Search:
         if isinstance(shape, Tip) and radius == 0:
             return []
         x, y, u, w = flight.at(now)
-        images, again = self._images(self._boxes[k], x, y, u, w, flight.ax, flight.ay, float(radius))
+        images, again = [(0, 0)], None
+        if not (isinstance(shape, Line) and shape.length2 is None):
+            images, again = self._images(self._boxes[k], x, y, u, w, flight.ax, flight.ay, float(radius))
         found: list[Found] = []
         for image in images:
             px, py = self.shift(image)
