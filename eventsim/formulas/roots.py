@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import NamedTuple, TypeAlias
+
+ROOT_BITS = 256
+"""Of a root that is no rational: what floats and their products cannot tell from it."""
 
 Line: TypeAlias = tuple[Fraction, Fraction, Fraction]
 """A coordinate as a polynomial in time: its value at time 0, its rate there, half its acceleration."""
@@ -35,6 +39,12 @@ def quadratic_root(a: Fraction, b: Fraction, c: Fraction, side: int) -> Moment |
 def less_number(line: Line, number: float | Fraction) -> Line:
     """A coordinate counted from a number."""
     return line[0] - Fraction(number), line[1], line[2]
+
+
+def root_of(square: Fraction) -> Fraction:
+    """The square root of a rational, exact if that is one, else to ROOT_BITS bits after its first one."""
+    whole = square.numerator * square.denominator << 2 * ROOT_BITS
+    return Fraction(math.isqrt(whole), square.denominator << ROOT_BITS)
 
 
 def falls_to(line: Line, target: float | Fraction, side: int) -> Moment | None:

@@ -1,6 +1,9 @@
 """Contacts at exactly one time, which share a disk, are seen as such wherever they fall on the clock."""
 
+import math
+
 import pytest
+from mpmath import mp, mpf
 
 import eventsim as es
 from tests.engines.exact_ties import is_cluster, two_partners, two_walls
@@ -46,3 +49,20 @@ def test_a_disk_that_meets_two_others_at_once_gives_to_both(engine):
     expected = [(5247 / 15811, 1056 / 15811), (0.22073240, 0.52975776), (0.44741003, -0.59654671)]
     for velocity, true in zip(run.state.velocity.tolist(), expected, strict=True):
         assert velocity == pytest.approx(true, abs=1e-8)  # as many digits as are given
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_which_wall_of_a_corner_a_disk_meets_first_is_exact(engine):
+    """It flies along the bisector but for the last bits, which are told by the exact normals, of 60 digits here."""
+    mp.dps = 60
+    for k in range(60):
+        turn, half = 0.3 + 0.11 * k, 0.4 + 0.01 * k
+        ends = [(5.0 * math.cos(turn + s * half), 5.0 * math.sin(turn + s * half)) for s in (-1, 1)]
+        x, y = 3.0 * math.cos(turn), 3.0 * math.sin(turn)
+        wall = es.Polyline((ends[0], (0.0, 0.0), ends[1]), name="corner")
+        scene = es.Scene(es.Disks([(x, y)], [(-0.5 * x, -0.5 * y)], 0.1), es.Open(), [wall], until=6.0)
+        run = es.simulate(scene, events=1, engine=engine, log=True)
+        gaps = [abs(mpf(ex) * mpf(y) - mpf(ey) * mpf(x)) / mp.hypot(mpf(ex), mpf(ey)) for ex, ey in ends]
+        times = [(gap - mpf(0.1)) / (gap / 2) for gap in gaps]
+        first = f"corner.{int(times[1] < times[0])}"
+        assert run.log.wall_name[0] == first or times[0] == times[1]

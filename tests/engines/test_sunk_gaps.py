@@ -1,6 +1,7 @@
 """Behind contacts that take energy a gap of a few last bits is no contact that anybody knows: the run stops and says so."""
 
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -93,8 +94,43 @@ def test_a_disk_in_a_corner_meets_both_walls_however_small_the_gap(engine):
         )
         run = es.simulate(scene, until=2.0, engine=engine, log=True)
         assert run.stopped in ("until", "quiet")
-        assert {run.log.wall_name[row] for row in run.log.wall[:2].tolist()} == {"corner.0", "corner.1"}
+        assert set(run.log.wall_name[:2]) == {"corner.0", "corner.1"}
         first, second = run.log.time[:2].tolist()
         seen += first < second
         assert second - first < 2.0**-48
     assert seen > 5
+
+
+ROUND = {
+    "container": es.Circle((0.0, 0.0), 2.7),
+    "arc": es.Arc((2.7, 0.0), (0.0, 2.7), (-2.7, 0.0)),
+}
+
+
+def along(wall, angle, until):
+    """A disk on contact with the inside of a round wall, which moves along it but for an angle, outwards."""
+    x, y = 2.4 * math.cos(0.3), 2.4 * math.sin(0.3)
+    velocity = -math.sin(0.3 + angle), math.cos(0.3 + angle)
+    return es.Scene(es.Disks([(x, y)], [velocity], 0.3), es.Open(), [ROUND[wall]], until=until)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("wall", ROUND)
+@pytest.mark.parametrize("angle", [0.0, 1e-10, 1e-8])
+def test_hops_along_a_round_wall_below_the_digits_end_a_run(wall, angle, engine):
+    """At an angle of 1e-8 they open gaps of 1e-16: rounding would make up as many as it likes."""
+    run = es.simulate(along(wall, angle, 1.0), engine=engine)
+    assert run.stopped == "digits"
+    assert run.counters.events < 5
+    assert "creeps along" in run.reason or "do not end" in run.reason
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("wall", ROUND)
+def test_hops_that_digits_can_tell_go_on(wall, engine):
+    """Each takes 2 (R - r) sin(angle) / v, of which the last bits of a place are a part of 1e-16 / angle."""
+    run = es.simulate(along(wall, 1e-5, 0.01), engine=engine, log=True)
+    assert run.stopped == "until"
+    hops = [b - a for a, b in pairwise(run.log.time.tolist())][1:]
+    assert len(hops) > 200
+    assert hops == pytest.approx([4.8 * math.sin(1e-5)] * len(hops), rel=1e-4)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.oracle.digits import ONE, UNIT, root
+from tests.oracle.digits import ONE, UNIT, ZERO, root
 from tests.oracle.doubt import SAFE, NoDoubt, contact_map
 from tests.oracle.impact import MOST_TOGETHER, Together, lightness, parted, shares
 from tests.oracle.order import demand_ends, demand_small, is_same, lateness, predict
@@ -48,7 +48,8 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
         map_contact(run, m, normals[0], before, after, pulls, e)
     elif all(m.at_end for m in cluster) and len(disks) == 1 and is_convex(run, disks[0], cluster, before[disks[0]]):
         i = disks[0]
-        after, impulses, unique, may_refuse = {i: _turned(before[i], es[0])}, [ONE] * len(cluster), False, True
+        after, unique, may_refuse = {i: _turned(before[i], es[0])}, True, True
+        impulses = [ONE] + [ZERO] * (len(cluster) - 1)  # one row, whatever ends there
     else:
         if any(run.table.mass[i] == 0 for i in disks):
             raise BeyondError("a cluster with tracers")

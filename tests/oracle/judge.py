@@ -244,8 +244,11 @@ class _Judge:
                 is_it = (
                     row.kind == kind and {p.disk for p in row.parts} == set(disks) and (not wall or wall in row.walls)
                 )
-                if is_it and all(any(row is one for one in others) for others in ahead[1:]) and not self._is_over(row, time):
-                    return row
+                if not is_it or not all(any(row is one for one in others) for others in ahead[1:]) or self._is_over(row, time):
+                    continue
+                if not self._is_in_time(row, time) and self._changes_nothing(number, disks):
+                    continue  # a graze before it
+                return row
             i = disks[0]
             if ahead[0] and kind == REST and (rest := self._early_rest(i, wall, number)) is not None:
                 return rest
@@ -267,6 +270,9 @@ class _Judge:
             raise _MistakeError(
                 f"disk {disks}: {kind} {wall} at t = {float(time):.12g}, true: {self._told(ahead)}", number
             )
+
+    def _is_in_time(self, row: Row, time: Decimal) -> bool:
+        return abs(float(time - row.time)) <= self._time_slack(row, row.parts[0].disk)
 
     def _is_over(self, row: Row, time: Decimal) -> bool:
         """Whether a row that may be missing is missing: it should have come before."""

@@ -340,7 +340,8 @@ class Search:
             for crossing in crossings:
                 if not crossing.falls or (best is not None and crossing.time >= best[0]):
                     continue
-                at_end = self._foot(one, place, speed, pull, crossing.time, radius, now, calls, shut)
+                soon = self._is_soon(speed, pull, crossing.time) and not touched
+                at_end = self._foot(one, place, speed, pull, crossing.time, radius, now, calls, shut if soon else [])
                 if at_end is not None:
                     best = crossing.time, side, IMPACT, at_end
                     break
@@ -366,6 +367,11 @@ class Search:
                 if normal is not None and side * (normal[0] * arm[0] + normal[1] * arm[1]) > 0:
                     shut.append(end)
         return shut
+
+    def _is_soon(self, speed: Vector, pull: Vector, t: Decimal) -> bool:
+        """Whether a flight is straight until a contact, or so short that it comes back to nothing before it."""
+        way = t * (abs(speed[0]) + abs(speed[1]) + t * (abs(pull[0]) + abs(pull[1])))
+        return pull == (0, 0) or way <= CORNER * self.near
 
     def _normal_at(self, shape: Shape, end: Vector, place: Vector) -> Vector | None:
         """The normal of a wall at a point, if that is an end of it, or on a side of the domain."""
@@ -422,7 +428,7 @@ class Search:
             return None if foot < 0 or rest < 0 else False
         ex, ey = one.along
         n = float(one.norm)
-        size = abs(ex) * (abs(x) + abs(one.start[0])) + abs(ey) * (abs(y) + abs(one.start[1]))
+        size = abs(ex) * (abs(x) + abs(place[0]) + abs(one.start[0])) + abs(ey) * (abs(y) + abs(place[1]) + abs(one.start[1]))
         ends = sign(foot, size), sign(rest, size)
         margin = float(min(abs(foot), abs(rest))) / n
         if margin < self.near and (one.start if abs(foot) < abs(rest) else one.end) not in shut:
@@ -469,7 +475,8 @@ class Search:
             for t in times:
                 if best is not None and now + t >= best.time:
                     break
-                at_end = self._on_bow(shape, d, speed, pull, t, radius, now, calls, shut)
+                soon = t == 0 or (self._is_soon(speed, pull, t) and not touched)
+                at_end = self._on_bow(shape, d, speed, pull, t, radius, now, calls, shut if soon else [])
                 if at_end is not None:
                     best = Meeting(now + t, a, -1, k, image, side, how, at_end)
                     break

@@ -90,3 +90,9 @@ def touch_round(run: State, i: int, k: int, shape: Ring | Bow | Tip) -> None:
             gap = side * (d2 - reach * reach)
             if gap <= 0 and -gap <= 2 * slack * (reach + slack) and sign(gap, d2 + reach * reach) <= 0:
                 f.touch[wall_key(k, image, side)] = False
+                forget(run, i, float(-gap) / float(2 * reach) if reach > 0 else 0.0)
+
+
+def forget(run: State, i: int, overlap: float) -> None:
+    """An overlap that is rounding is none: floats may count with it as well."""
+    run.doubt.round(i, (overlap, overlap, 0.0, 0.0))

@@ -251,6 +251,37 @@ def test_what_lies_on_a_wall_slides_and_falls_over_its_end() -> None:
     assert [(row.kind, float(row.time)) for row in told.rows[:2]] == [("rest", 0.0), ("wall", 2.0)]
 
 
+def test_a_disk_in_a_channel_falls_onto_its_side_wherever_it_is() -> None:
+    scene = es.Scene(disks([(2.5, 1.0)], radius=0.5), es.Channel((3.0, 4.0)), gravity=(0.0, -1.0), until=1.5)
+    told = story(scene)
+    assert [float(row.time) for row in told.rows] == [1.0]
+
+
+def test_what_keeps_no_speed_rests_at_its_first_contact() -> None:
+    scene = es.Scene(disks([(1.5, 1.0)], radius=0.5), es.Box((3.0, 4.0)), gravity=(0.0, -1.0), restitution=0.0, until=9.0)
+    told = story(scene)
+    assert [(row.kind, float(row.time)) for row in told.rows] == [("wall", 1.0), ("rest", 1.0)]
+
+
+def test_what_slides_into_a_corner_of_two_sides_has_no_answer_behind_its_zeno_time() -> None:
+    """It lies on the bottom, 1 from the right side, to which gravity pulls it by 1/2: 2 until there, 4 more of bounces."""
+    scene = es.Scene(disks([(1.5, 0.5)]), es.Box((3.0, 4.0)), gravity=(0.5, -1.0), restitution=0.5, until=9.0)
+    told = story(scene)
+    assert told.ending == "collapse"
+    assert float(told.time) == pytest.approx(6.0, abs=1e-7)
+
+
+def test_a_point_into_a_corner_meets_both_walls_and_a_vertex_once() -> None:
+    """Off the corner by a last bit its way is that of directions alone; a vertex turns it round in one row."""
+    corner = es.Polyline(((-1.0, 1.0), (0.0, 0.0), (1.0, 1.0)))
+    inside = story(es.Scene(disks([(2.0**-50, 1.0)], [(0.0, -1.0)], 0.0), es.Open(), [corner], until=3.0))
+    assert [len(row.walls) for row in inside.rows[:2]] == [2, 2]
+    assert velocities(inside) == [(0.0, 1.0)]
+    outside = story(es.Scene(disks([(0.0, -1.0)], [(0.0, 1.0)], 0.0), es.Open(), [corner], until=3.0))
+    assert len(outside.rows) == 1
+    assert velocities(outside) == [(0.0, -1.0)]
+
+
 def test_a_drop_on_a_vertex_has_no_answer_behind_its_zeno_time() -> None:
     """Drop height h = 0.5, g = 1, e = .5: t* = sqrt(2h/g) (1+e)/(1-e) = 3."""
     told = story(

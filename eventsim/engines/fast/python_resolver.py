@@ -47,7 +47,7 @@ class PythonResolver:
         near = self._contacts_until(latest_tie(now, machine.rules.tie_screen))
         generation = self._ties.settle(near) if any(event.time == now for event in near) else []
         if (sunk := self._sunk.reason(generation)) is not None:
-            self.reason, self.sunk = sunk, True
+            self.reason, self.sunk = sunk, machine.stage.law.loses_energy()
             return "digits"
         resolver = self._opened_resolver()
         waiting = [int(state.labels[i]) for i in self._find(due_at, machine.counts, now)[:, 0]]

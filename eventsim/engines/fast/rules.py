@@ -11,7 +11,7 @@ from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
 from eventsim.engines.fast.shapes import CENTER, CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
-from eventsim.engines.reference.sunk import can_sink
+from eventsim.engines.reference.sunk import can_creep, can_sink
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 from eventsim.scene.surfaces import moved_on
@@ -47,7 +47,7 @@ def rules_of(stage: Stage) -> Rules:
         *instant_of(stage),
         stillness_of(stage),
         stage.tie_screen,
-        1 if can_sink(stage) else None,
+        1 if can_sink(stage) or can_creep(stage) else None,
     )
 
 

@@ -270,6 +270,12 @@ def is_straight(m, k):
 
 
 @inline
+def is_hollow(m, k):
+    """Whether the k-th shape is round, so that a disk may creep along it."""
+    return real(m.features, WIDTH * k) >= CONTAINER
+
+
+@inline
 def is_post(m, k):
     """Whether the k-th shape is a post."""
     return real(m.features, WIDTH * k) == POST

@@ -7,7 +7,7 @@ from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.layout import RADIUS, REALS, WALL, T
 from eventsim.engines.fast.memory import real
 from eventsim.engines.fast.pairs import images, shifts
-from eventsim.engines.fast.shapes import wall_normal
+from eventsim.engines.fast.shapes import is_hollow, wall_normal
 from eventsim.formulas.doubt import is_sunk
 
 WIDER = 2.0
@@ -22,8 +22,8 @@ def pair_may_be_sunk(m, rules, i, j, now, sinks):
 
 @inline
 def wall_may_be_sunk(m, rules, i, code, now, gx, sinks):
-    """The same of a disk and the wall that the code of its event stands for; under gravity no gap to a wall is sunk."""
-    return False if sinks is None or gx is not None else _wall_may_be_sunk(m, rules, i, code, now)
+    """The same of a disk and the wall that the code of its event stands for; under gravity only of one that is round."""
+    return False if sinks is None else _wall_may_be_sunk(m, rules, i, code, now, gx)
 
 
 @part
@@ -41,8 +41,10 @@ def _pair_may_be_sunk(m, rules, i, j, now):
 
 
 @part
-def _wall_may_be_sunk(m, rules, i, code, now):
+def _wall_may_be_sunk(m, rules, i, code, now, gx):
     wall, side = (WALL - code) // 2, -1 if (WALL - code) % 2 else 1
+    if gx is not None and (wall < rules.first_feature or not is_hollow(m, wall - rules.first_feature)):
+        return False
     x, y = place(m, rules, i, now)
     u, w = speed(m, rules, i, now)
     nx, ny = wall_normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)

@@ -1,7 +1,8 @@
 """Gaps below the digits: contacts that only the last bits of rounded places predict.
 
 A contact that takes energy leaves disks slow and close.  The gap to what comes next is a difference of places.  Once it has sunk
-to their last bits, nobody knows when that contact comes, or whether another one comes first.  Then a run stops.
+to their last bits, nobody knows when that contact comes, or whether another one comes first.  Then a run stops.  So it does where
+a disk hops along a round wall lower than that.
 """
 
 from __future__ import annotations
@@ -14,7 +15,12 @@ from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
 from eventsim.formulas.doubt import is_sunk
 from eventsim.formulas.rest import AT_ONCE
+from eventsim.formulas.walls.boundary import Boundary
+from eventsim.formulas.walls.post import Post
 from eventsim.scene.stage import Stage
+
+ALONG = 2.0**-20
+"""Who approaches a wall at less than this part of its speed moves along it."""
 
 
 class Sunk:
@@ -23,17 +29,16 @@ class Sunk:
     def __init__(self, stage: Stage, state: ExactState) -> None:
         self._stage = stage
         self._state = state
-        self._looks = can_sink(stage)
+        self._looks, self._creeps = can_sink(stage), can_creep(stage)
         self._start = list(zip(stage.x.tolist(), stage.y.tolist(), strict=True))
 
     def reason(self, generation: list[Event]) -> str | None:
         """Why contacts of an instant cannot be resolved: a sentence on the first gap below the digits; None where they can."""
-        if not self._looks:
-            return None
         for event in generation:
-            gap = self._gap(event)
-            if gap is not None:
+            if self._looks and (gap := self._gap(event)) is not None:
                 return self._sentence(event, gap)
+            if self._creeps and (gap := self._hop(event)) is not None:
+                return self._word_on_hops(event, gap)
         return None
 
     def _gap(self, event: Event) -> float | None:
@@ -54,8 +59,25 @@ class Sunk:
         lag = event.time - begin
         if event.b < 0 and lag <= AT_ONCE * event.time and all(met[0] < 0 for met in state.met[event.a]):
             return None  # it is in a corner: it meets what it approaches, and whatever the gap, at this instant
+        if event.b < 0 and self._stage.gravity is not None:
+            return None  # disks come to rest there
         approach, size = self._of_pair(event) if event.b >= 0 else self._of_wall(event)
         return approach * lag if is_sunk(approach, lag, size) else None
+
+    def _hop(self, event: Event) -> float | None:
+        """The gap that closes where a disk that moves along a round wall meets it; None where it is known.
+
+        It comes from there, or from a place next to it at the start or at a kick.
+        """
+        state, i = self._state, event.a
+        if event.b >= 0 or not is_hollow(self._stage, -1 - event.b):
+            return None
+        if state.met[i] and all(met[0] != event.b for met in state.met[i]):
+            return None
+        (approach, size), lag = self._of_wall(event), float(event.time - state.t[i])
+        if not (is_sunk(approach, lag, size) and approach < ALONG * math.hypot(*state.speed(i, event.time))):
+            return None
+        return approach * lag
 
     def _have_just_met(self, event: Event) -> bool:
         """Whether one of two disks remembers their contact, at which its flight began."""
@@ -88,9 +110,7 @@ class Sunk:
         return -(dx * (ua - ub) + dy * (wa - wb)) / distance, size / distance + float(radius[a] + radius[b])
 
     def _of_wall(self, event: Event) -> tuple[float, float]:
-        """The same of a disk and a wall; nothing sinks there under gravity, where disks come to rest."""
-        if self._stage.gravity is not None:
-            return math.inf, 0.0
+        """The same of a disk and a wall."""
         i, surface = event.a, -1 - event.b
         x, y = self._state.place(i, event.time)
         u, w = self._state.speed(i, event.time)
@@ -107,6 +127,24 @@ class Sunk:
             f"the gap of {who} has sunk to {gap:.2g}, the last bits of their places, behind contacts that take energy: which "
             f"contact comes next, and when, float64 cannot tell any more; {self._stage.law.remedy()}"
         )
+
+    def _word_on_hops(self, event: Event, gap: float) -> str:
+        wall = self._stage.wall_names[self._stage.surfaces[-1 - event.b].wall]
+        return (
+            f"disk {event.a} creeps along {wall} in hops that open gaps of {max(gap, 0.0):.2g}, the last bits of its place: when "
+            "they end, float64 cannot tell; a start further from the wall, or less along it, has hops that can be told"
+        )
+
+
+def is_hollow(stage: Stage, surface: int) -> bool:
+    """Whether a surface is round, so that a disk may creep along it from contact to contact."""
+    found = stage.surfaces[surface]
+    return not isinstance(found, Boundary) and found.shape.line() is None and not isinstance(found.shape, Post)
+
+
+def can_creep(stage: Stage) -> bool:
+    """Whether hops along a round wall may sink below the digits; not where a flight that begins on contact is known to."""
+    return not stage.settles and any(is_hollow(stage, k) for k in range(len(stage.surfaces)))
 
 
 def can_sink(stage: Stage) -> bool:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from eventsim.formulas.crossing import closing_delay, reopening_delay
 from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
-from eventsim.formulas.roots import Line, Moment, falls_to, less_number
+from eventsim.formulas.roots import Line, Moment, falls_to, less_number, root_of
 from eventsim.formulas.walls.point import (
     CLOSE,
     End,
@@ -185,13 +185,17 @@ class Face(NamedTuple):
         return side * nx, side * ny, side * distance
 
     def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
-        """The exact time of a contact."""
+        """The exact time of a contact, by the exact normal; along a parabola with its length to so many bits that none counts."""
         x, y = less_number(x, self.x), less_number(y, self.y)
-        nx, ny = Fraction(self.nx), Fraction(self.ny)
-        if radius == 0.0:  # its corners are exact, and so is a hit of two faces that share one
-            nx, ny = Fraction(self.y) - Fraction(self.y1), Fraction(self.x1) - Fraction(self.x)
+        nx, ny = Fraction(self.y) - Fraction(self.y1), Fraction(self.x1) - Fraction(self.x)
         distance = nx * x[0] + ny * y[0], nx * x[1] + ny * y[1], nx * x[2] + ny * y[2]
-        return falls_to(distance, side * (radius * self.norm), side)
+        at, rate, half = distance
+        if radius == 0.0 or half != 0:
+            return falls_to(distance, side * Fraction(radius) * root_of(nx * nx + ny * ny), side)
+        if rate == 0:
+            return None
+        reach = Fraction(radius) / rate
+        return Moment(-at / rate, side if reach > 0 else -side, reach * reach * (nx * nx + ny * ny))
 
     def line(self) -> Face:
         """The face along which disks may rest and slide."""
