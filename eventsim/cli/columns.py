@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventsim.measure.found import Columns, Found
 from eventsim.record.files.atomic import atomic_write
 
 if TYPE_CHECKING:
     from eventsim.measure import Measures
-
-Columns = dict[str, list[float]]
-"""Name -> numbers; NaN where there is none."""
 
 
 def series_columns(measures: Measures) -> Columns:
@@ -53,6 +52,15 @@ def profile_columns(measures: Measures) -> Columns:
             columns[f"v{name}_error{end}"] = one.velocity_error[:, axis].tolist()
         columns |= {f"temperature{end}": one.temperature.tolist(), f"temperature_error{end}": one.temperature_error.tolist()}
     return columns
+
+
+def study_columns(found: Iterable[Found]) -> Columns:
+    """All tables of studies side by side; NaN below the end of a short one, the table's name before a column's that is taken."""
+    columns: Columns = {}
+    for name, table in ((name, table) for one in found for name, table in one.tables.items()):
+        columns |= {key if key not in columns else f"{name}_{key}": column for key, column in table.items()}
+    longest = max(map(len, columns.values()), default=0)
+    return {key: column + [math.nan] * (longest - len(column)) for key, column in columns.items()}
 
 
 def table_of(columns: Columns) -> str:

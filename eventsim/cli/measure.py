@@ -4,21 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from eventsim.cli.columns import diffusion_columns, profile_columns, series_columns, table_of, write_columns
-from eventsim.cli.options import json_option, quiet_option, scene_options, writable
+from eventsim.cli.columns import (
+    diffusion_columns,
+    profile_columns,
+    series_columns,
+    study_columns,
+    table_of,
+    write_columns,
+)
+from eventsim.cli.options import Verb, json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import say
 from eventsim.cli.source import chosen_scene, demand_no_scene_options, is_log, log_of, run_of, stop_options
 from eventsim.cli.words import aligned, as_json_text, short
 from eventsim.measure.quantities import FAMILIES
+from eventsim.measure.studies import STUDIES, study
+from eventsim.measure.words import table_text
 from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.measure import Measures
+    from eventsim.measure.found import Found
     from eventsim.measure.structure import Structure
+    from eventsim.replay.log import Told
 
 
 HELP = """Measure the run that LOG tells, or of SCENE, simulated now without keeping a log.
@@ -35,6 +46,7 @@ Examples:
   eventsim measure periodic-fluid --set packing_fraction=0.3 --events 1000000
   eventsim measure cooling --series --out cooling.csv
   eventsim measure jar --until 500 --profile y
+  eventsim measure sinai --until 2000 --lyapunov 1
 
 \b
 Quantities:
@@ -60,9 +72,24 @@ Keys of --json:
   profile                   null without --profile; axis, edges, species: density, velocity, temperature, each with
                             its error, and theory of the density (hydrostatics under gravity)
   structure                 null without --structure; psi_6, r, g
+{studies}
+                            null without their options, else {{quantities, tables: name -> columns, notes}}
 
 Exit codes: 0 done; 2 bad usage, scene or file, or nothing to measure; 130 interrupted.
-""".format(quantities="\n".join(f"  {family.words}" for family in FAMILIES))
+""".format(
+    quantities="\n".join(f"  {family.words}" for family in FAMILIES),
+    studies="\n".join(f"  {one.name:<25} {one.words}" for one in STUDIES),
+)
+
+
+def study_options(verb: Verb) -> Verb:
+    """Add the options of all studies."""
+    for one in reversed(STUDIES):
+        kinds = tuple(one.values.values())
+        how: dict[str, Any] = {"type": kinds[0] if len(kinds) == 1 else kinds} if kinds else {"is_flag": True, "default": None}
+        words = f"Also {one.words}."
+        verb = click.option(f"--{one.name}", metavar=" ".join(one.values) or None, help=words, **how)(verb)
+    return verb
 
 
 @click.command(help=HELP)
@@ -72,7 +99,8 @@ Exit codes: 0 done; 2 bad usage, scene or file, or nothing to measure; 130 inter
 @click.option("--structure", is_flag=True, help="Also g(r) at contact and psi_6 of the final state (needs freud).")
 @click.option("--series", is_flag=True, help="Also energy, temperature, pressure and collision rate along the run.")
 @click.option("--profile", type=click.Choice(["x", "y"]), help="Also density, velocity and temperature along an axis.")
-@click.option("--out", metavar="FILE.csv", help="Write the series, or else the profile, to a file.")
+@study_options
+@click.option("--out", metavar="FILE.csv", help="Write the series, else the profile, else the tables of studies, to a file.")
 @json_option
 @quiet_option
 def command(
@@ -88,20 +116,26 @@ def command(
     out: str | None,
     as_json: bool,
     quiet: bool,
+    **studies: Any,
 ) -> None:
     """Measure a run, see HELP."""
     target = writable(out, "--out", (".csv",))
-    if target is not None and not series and profile is None:
-        raise click.UsageError("--out is the file of the series or the profile: give --series or --profile")
-    measures, order = measured(scene, settings, seed, until, events, discard, structure, profile, quiet)
-    columns = series_columns(measures) if series else profile_columns(measures)
+    asked = [one for one in STUDIES if studies[one.name] is not None]
+    if target is not None and not series and profile is None and not asked:
+        raise click.UsageError("--out is the file of the series, the profile or the tables of studies: ask for one of them")
+    measures, order, log = measured(scene, settings, seed, until, events, discard, structure, profile, bool(asked), quiet)
+    found = {one.name: study(log, one.name, *_given(studies[one.name]), discard=discard) for one in asked if log is not None}
+    columns = series_columns(measures) if series else profile_columns(measures) or study_columns(found.values())
     if target is not None:
         write_columns(columns, target)
     if as_json:
-        found = None if order is None else order.to_dict()
-        say(as_json_text({"scene": scene, **measures.to_dict(), "structure": found}))
+        told = None if order is None else order.to_dict()
+        made = {one.name: found[one.name].to_dict() if one.name in found else None for one in STUDIES}
+        say(as_json_text({"scene": scene, **measures.to_dict(), "structure": told, **made}))
     elif not quiet:
         say(measures_text(scene, measures, order))
+        for one in found.values():
+            say("\n" + found_text(one))
         if series:
             say("\n" + table_of(series_columns(measures)))
         if profile is not None:
@@ -117,26 +151,40 @@ def measured(
     discard: float | None,
     structure: bool,
     profile: str | None,
+    logged: bool,
     quiet: bool,
-) -> tuple[Measures, Structure | None]:
-    """The measures of a log file, or of a scene that is simulated now; and the structure of its last state."""
+) -> tuple[Measures, Structure | None, Told | None]:
+    """The measures of a log file, or of a scene that is simulated now; the structure of its last state; its log, if `logged`."""
     if structure:
         from eventsim.measure.structure import structure_of
     if is_log(source):
         from eventsim.measure import measure, measure_file
         from eventsim.replay.passage import Passage
 
-        if not structure:
+        if not structure and not logged:
             demand_no_scene_options(source, settings, seed, until, events)
-            return measure_file(source, discard, profile)[0], None
+            return measure_file(source, discard, profile)[0], None, None
         log = log_of(source, settings, seed, until, events, quiet)
-        return measure(log, discard, profile), structure_of(log.scene, Passage(log).final())
+        return measure(log, discard, profile), structure_of(log.scene, Passage(log).final()) if structure else None, log
 
     scene = chosen_scene(source, settings, seed)
-    run = run_of(scene, source, until, events, quiet, measure=True if discard is None else discard, profile=profile)
+    wanted = True if discard is None else discard
+    run = run_of(scene, source, until, events, quiet, measure=wanted, profile=profile, log=logged)
     if run.measures is None:
         raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
-    return run.measures, structure_of(scene, run.state) if structure else None
+    return run.measures, structure_of(scene, run.state) if structure else None, run.log
+
+
+def _given(option: Any) -> tuple[float, ...]:
+    """What stood behind the option of a study."""
+    return () if option is True else option if isinstance(option, tuple) else (option,)
+
+
+def found_text(found: Found) -> str:
+    """What a study found, as aligned lines."""
+    tables = [table_of(columns) for columns in found.tables.values()]
+    words = [f"  {note}" for note in found.notes]
+    return "\n".join([table_text(found.quantities), *words, *tables])
 
 
 def measures_text(asked: str, measures: Measures, structure: Structure | None) -> str:

@@ -11,6 +11,7 @@ from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.shape import Shape
 from eventsim.measure.sums import nearest
 from eventsim.record.events import Kind, Rows
+from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.scene.walls import parts_of
@@ -57,9 +58,11 @@ class Tangent:
     Laws are taken as the log shows them: what share of the approach velocity came back is no function of it.
     """
 
-    def __init__(self, scene: Scene, off: list[Deviation], rounding: Rounding | None = None) -> None:
-        """Begin with deviations; rounding: what each row adds."""
-        stage = stage_of(scene)
+    def __init__(
+        self, scene: Scene, off: list[Deviation], rounding: Rounding | None = None, corner: Point | None = None
+    ) -> None:
+        """Begin with deviations; rounding: what each row adds; corner: what places in rows are relative to, None: the stage's."""
+        stage = stage_of(scene, corner)
         self.off = off
         self._rounding = rounding
         self._stage = stage

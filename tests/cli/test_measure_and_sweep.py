@@ -34,6 +34,19 @@ def test_structure_of_the_last_state(eventsim):
     assert "periodic" in eventsim("measure", "gas", "--events", 100, "--structure").stderr
 
 
+def test_studies_are_made_where_they_are_asked_for(eventsim, tmp_path):
+    log, table = tmp_path / "a.npz", tmp_path / "a.csv"
+    assert eventsim("run", *FLUID[:3], "--events", 300, "--log", log, "-q").exit_code == 0
+    text = eventsim("measure", log, "--lyapunov", 2, "--out", table).stdout
+    assert "lyapunov_1_per_contact" in text
+    assert table.read_text().startswith("k,exponent,error,")
+    data = json.loads(eventsim("measure", log, "--lyapunov", 2, "--json").stdout)
+    assert len(data["lyapunov"]["tables"]["lyapunov"]["k"]) == 2
+    assert json.loads(eventsim("measure", log, "--json").stdout)["lyapunov"] is None
+    of_the_scene = json.loads(eventsim("measure", *FLUID[:3], "--events", 300, "--lyapunov", 2, "--json").stdout)
+    assert of_the_scene["lyapunov"] == data["lyapunov"]
+
+
 @pytest.mark.parametrize(
     ("words", "expected"),
     [

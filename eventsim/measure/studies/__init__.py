@@ -1,0 +1,56 @@
+"""Studies: what is measured only where it is asked for, each an option of `eventsim measure`.
+
+To add one is its file and one line in `STUDIES`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from eventsim.errors import EventsimError
+from eventsim.measure.found import Found
+from eventsim.measure.studies import lyapunov
+from eventsim.replay.log import Told
+
+
+class Study(NamedTuple):
+    """A study.
+
+    Attributes:
+        name: of its option.
+        values: what follows the option, name -> type; none: it is a flag.
+        words: what it measures, for help.
+        of: makes it, of (log, discard, *values); discard: time at the beginning that is left out, None: it is not said.
+    """
+
+    name: str
+    values: dict[str, type]
+    words: str
+    of: Callable[..., Found]
+
+
+STUDIES = (
+    Study("lyapunov", {"K": int}, "the K largest Lyapunov exponents, per time and per contact of a disk", lyapunov.found),
+)
+"""The table of studies."""
+
+
+def study(log: Told, name: str, *values: float, discard: float | None = None) -> Found:
+    """Make a study of the run that a log tells.
+
+    Args:
+        log: full or compact.
+        name: of the table, such as "lyapunov".
+        values: what the study asks for.
+        discard: time at the beginning that is left out; None: each study's own share.
+
+    Raises:
+        EventsimError: for another name, other values, or a log that does not tell what the study needs.
+    """
+    chosen = next((one for one in STUDIES if one.name == name), None)
+    if chosen is None:
+        raise EventsimError(f"there is no study {name!r}; there are {', '.join(one.name for one in STUDIES)}")
+    if len(values) != len(chosen.values):
+        raise EventsimError(f"the study {name} asks for {', '.join(chosen.values) or 'no values'}, not {list(values)}")
+    return chosen.of(log, discard, *values)
