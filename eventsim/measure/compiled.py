@@ -24,7 +24,7 @@ class Kernels(NamedTuple):
 
     take: Callable[[sums.Block, int, sums.Plan, sums.Sums], int]
     finish: Callable[[float, sums.Plan, sums.Sums], bool]
-    hold_all: Callable[[sums.Plan, sums.Sums, float], None]
+    hold_all: Callable[[sums.Plan, sums.Sums, float], float]
 
 
 def kernels(rows: int) -> Kernels:
@@ -60,6 +60,7 @@ def _compiled() -> Kernels:
         sums.turn,
         sums.slot_of,
         sums.hold,
+        sums.swap,
         sums.spread,
         sums.fall,
         sums.fly,

@@ -23,12 +23,12 @@ def measures_of(records: Records) -> Measures:
     found = _doubts(records)
     if not found and ensemble.steady:
         found = strangers((quantity.name, quantity.deviation, quantity.source) for quantity in quantities)
-    table = ensemble.table if ensemble.steady or ensemble.billiard else None
+    table = ensemble.table if ensemble.billiard else None
     return Measures(
         disks=ensemble.n,
         tracers=0 if ensemble.tracers is None else ensemble.species[ensemble.tracers].number,
         packing_fraction=ensemble.packing_fraction,
-        table_seen=None if table is None or not ensemble.billiard else (table.area, table.perimeter),
+        table_seen=None if table is None else (table.area, table.perimeter),
         duration=records.duration,
         discarded=records.discarded,
         discard_given=records.discard is not None,

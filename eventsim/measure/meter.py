@@ -38,6 +38,9 @@ from eventsim.scene.stage import Stage, stage_of
 BLOCK = 1 << 15
 """Rows that are taken up together."""
 
+WHOLE = np.dtype((np.void, ROW.itemsize))
+"""A row as it lies in memory: copied at once, and not column by column."""
+
 FIRST_BINS = 64
 """Bins into which the first block of rows is cut: from there on the width only doubles."""
 
@@ -99,7 +102,7 @@ class Meter:
         movers = np.flatnonzero(ensemble.movers)
         watched = movers[np.linspace(0, len(movers) - 1, min(WATCHED, len(movers))).astype(np.int64)]
         self._profiler = None if profile is None else Profiler(scene, ensemble, profile)
-        self._correlated = np.arange(len(watched))
+        self._correlated: NDArray[np.intp] | slice = slice(None)  # all
         if self._profiler is not None:
             self._correlated = np.searchsorted(movers, watched)
             watched = movers
@@ -120,7 +123,8 @@ class Meter:
         while begin < len(rows):
             count = min(len(rows) - begin, BLOCK - self._filled)
             part = rows[begin : begin + count]
-            self._block[self._filled : self._filled + count] = slowed_rows(part, self._pace) if self._pace else part
+            part = slowed_rows(part, self._pace) if self._pace else part
+            self._block[self._filled : self._filled + count].view(WHOLE)[:] = part.view(WHOLE)
             self._filled, begin = self._filled + count, begin + count
             if self._filled == BLOCK:
                 self._take(self._block)
@@ -171,8 +175,8 @@ class Meter:
         time = np.maximum.accumulate(np.maximum(time, self._time))  # logged times may step back by an ulp
         self._scales(float(time[-1]), len(rows))
         self._rows += len(rows)
-        pairs = rows[rows["kind"] == Kind.PAIR]
-        self._groups.add(pairs["a"].astype(np.intp), pairs["b"].astype(np.intp))
+        pairs = rows["kind"] == Kind.PAIR
+        self._groups.add(rows["a"][pairs].astype(np.intp), rows["b"][pairs].astype(np.intp))
         kernel = kernels(self._rows)
         self._hold(kernel)
         self._time = float(time[-1])
@@ -185,11 +189,10 @@ class Meter:
 
     def _hold(self, kernel: Kernels) -> None:
         """Make rates and energy anew from the velocities: sums of changes lose digits where a gas has cooled."""
-        disks, numbers = self._sums.disks, self._sums.numbers
-        kernel.hold_all(self._plan, self._sums, max(self._time - numbers[sums.ORIGIN], 0.0))
+        numbers = self._sums.numbers
+        energy = kernel.hold_all(self._plan, self._sums, max(self._time - numbers[sums.ORIGIN], 0.0))
         if self.scene.gravity is None:
-            speed2 = disks[:, sums.VX] ** 2 + disks[:, sums.VY] ** 2
-            numbers[sums.HEAT] = 0.5 * float(disks[:, sums.MASS] @ speed2)
+            numbers[sums.HEAT] = energy
 
     def _scales(self, end: float, rows: int) -> Correlator:
         """Return the correlator; width of bins and interval of samples are made from the pace of the first block."""

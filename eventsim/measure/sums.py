@@ -226,13 +226,34 @@ def hold(plan: Plan, sums: Sums, i: int, time: float, sign: float) -> None:
             turn(sums, first_wall(plan) + SIDES * wall, time, sign * mass * sums.walls[wall, PRESS])
 
 
-def hold_all(plan: Plan, sums: Sums, time: float) -> None:
-    """Make all rates anew: sums of changes lose digits where a gas has cooled."""
+def hold_all(plan: Plan, sums: Sums, time: float) -> float:
+    """Make all rates anew: sums of changes lose digits where a gas has cooled.  The energy that the velocities have."""
+    disks, energy = sums.disks, 0.0
     for c in range(len(sums.rates)):
         turn(sums, c, time, -sums.rates[c])
         sums.rates[c] = 0.0
-    for i in range(len(sums.disks)):
+    for i in range(len(disks)):
         hold(plan, sums, i, time, 1.0)
+        energy += 0.5 * disks[i, MASS] * (disks[i, VX] * disks[i, VX] + disks[i, VY] * disks[i, VY])
+    return energy
+
+
+def swap(plan: Plan, sums: Sums, i: int, time: float, vx: float, vy: float) -> None:
+    """Change the rates by what another velocity of disk i changes, at a time since ORIGIN; nothing makes it fall."""
+    disks = sums.disks
+    ux, uy, mass = disks[i, VX], disks[i, VY], disks[i, MASS]
+    old2, new2 = ux * ux + uy * uy, vx * vx + vy * vy
+    old, new = math.sqrt(old2), math.sqrt(new2)
+    general = GENERAL + PER_SPECIES * int(disks[i, SPECIES])
+    turn(sums, general + PATH, time, new - old)
+    turn(sums, general + SPEED2, time, new2 - old2)
+    turn(sums, slot_of(plan, sums, i, old, time), time, -1.0)
+    turn(sums, slot_of(plan, sums, i, new, time), time, 1.0)
+    if mass > 0.0:
+        turn(sums, ENERGY, time, 0.5 * mass * (new2 - old2))
+        turn(sums, XX, time, mass * (vx * vx - ux * ux))
+        turn(sums, XY, time, mass * (vx * vy - ux * uy))
+        turn(sums, YY, time, mass * (vy * vy - uy * uy))
 
 
 def spread(sums: Sums, begin: float, end: float, channel: int, rate: float) -> None:
@@ -372,12 +393,17 @@ def mark(sums: Sums, time: float) -> None:
 def leave(plan: Plan, sums: Sums, i: int, time: float, vx: float, vy: float) -> float:
     """Disk i begins a free flight at a time with a new velocity; return by how much its energy changes."""
     disks, since = sums.disks, max(time - sums.numbers[ORIGIN], 0.0)
-    hold(plan, sums, i, since, -1.0)
+    falls = disks[i, GX] != 0.0 or disks[i, GY] != 0.0 or disks[i, FALL_X] != 0.0 or disks[i, FALL_Y] != 0.0
+    if falls:
+        hold(plan, sums, i, since, -1.0)
+    else:
+        swap(plan, sums, i, since, vx, vy)
     fly(plan, sums, i, time)
     old_x, old_y = disks[i, VX], disks[i, VY]
     disks[i, VX], disks[i, VY] = vx, vy
-    disks[i, GX], disks[i, GY], disks[i, LIES_ON] = disks[i, FALL_X], disks[i, FALL_Y], -1.0
-    hold(plan, sums, i, since, 1.0)
+    if falls:
+        disks[i, GX], disks[i, GY], disks[i, LIES_ON] = disks[i, FALL_X], disks[i, FALL_Y], -1.0
+        hold(plan, sums, i, since, 1.0)
     change: float = 0.5 * disks[i, MASS] * ((vx * vx + vy * vy) - (old_x * old_x + old_y * old_y))
     return change
 
