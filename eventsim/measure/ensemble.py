@@ -96,9 +96,13 @@ class Ensemble:
 
     @property
     def elastic(self) -> bool:
-        """Whether contacts keep the energy."""
-        restitution = self.scene.restitution
-        return restitution is None or (restitution.pair == 1.0 and restitution.wall == 1.0)
+        """Whether contacts keep the energy: those that there can be."""
+        scene, domain = self.scene, self.scene.domain
+        if scene.restitution is None:
+            return True
+        walls = scene.walls or not (isinstance(domain, Open) or all(domain.periodic))
+        pairs = len(scene.disks) > 1
+        return not (pairs and scene.restitution.pair != 1.0) and not (walls and scene.restitution.wall != 1.0)
 
     @property
     def pushed(self) -> bool:

@@ -51,7 +51,13 @@ def _doubts(records: Records) -> list[str]:
     if not records.mixed:
         if records.shared < FEWEST_CONTACTS:
             return [f"{records.shared:.2g} contacts of a disk are too few to tell (at least {FEWEST_CONTACTS:g})"]
-        return [f"the disks fall into {records.groups} groups that have not met"]
+        if records.groups > 1:
+            return [f"the disks fall into {records.groups} groups that have not met"]
+        few, kind = records.exchanged
+        return [
+            f"species {kind} has shared its energy as in {few:.2g} contacts of equal disks:"
+            f" too few to tell (at least {FEWEST_CONTACTS:g})"
+        ]
     rates = records.channel(sums.VIRIAL) / records.time
     late = records.discard is None and transient(records.discarded - records.origin, records.end - records.origin)
     way = np.hypot(*(records.sums.disks[ensemble.counted, sums.WX : sums.WY + 1] - records.end * ensemble.drift).T)

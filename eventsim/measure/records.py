@@ -21,7 +21,10 @@ from eventsim.scene.names import plural
 FEWEST_EVENTS = 32
 """Contacts, of all disks together, from which on their scatter says how sure a mean is: some 18 % of the bar itself."""
 
-MEMORY = 6.0
+FADING = 2.0
+"""Contacts of a disk in which what the mean speed of a gas has too much fades to 1 / e: long runs in thin gases, to 5 %."""
+
+MEMORY = 3.0 * FADING
 """Contacts of a disk after which nothing is left of its speed."""
 
 FEWEST_CONTACTS = 10.0
@@ -206,6 +209,24 @@ class Records:
         """Contacts of a disk in which energy is shared, in what is kept."""
         return 2.0 * self.pairs / max(self.ensemble.n, 1)
 
+    @cached_property
+    def exchanged(self) -> tuple[float, int]:
+        """The fewest contacts of equal disks that share out as much energy as those of a disk of one species, and which species.
+
+        In a contact of masses m and M a disk gives 4 m M / (m + M)^2 of what it gives to its equal.
+        """
+        species = self.ensemble.species[: self.ensemble.kinds]
+        if len(species) < 2:
+            return self.shared, 0
+        found = []
+        for kind, one in enumerate(species):
+            shares = [
+                float(self.met(kind, k).sum()) * 4.0 / (2.0 + one.mass / it.mass + it.mass / one.mass)
+                for k, it in enumerate(species)
+            ]
+            found.append((sum(shares) / one.number, kind))
+        return min(found)
+
     @property
     def contacts_seen(self) -> float:
         """Contacts in what is kept, with disks, posts and walls, of disks that carry energy, else of tracers."""
@@ -251,7 +272,8 @@ class Records:
     @property
     def mixed(self) -> bool:
         """Whether every disk has had the contacts to come into equilibrium: else theory has nothing to say yet."""
-        return self.no_temperature is None and self.shared >= FEWEST_CONTACTS and self.groups == 1
+        enough = self.shared >= FEWEST_CONTACTS and self.exchanged[0] >= FEWEST_CONTACTS
+        return self.no_temperature is None and enough and self.groups == 1
 
     # --- bars
 
@@ -263,15 +285,20 @@ class Records:
         """sum(above) / sum(below), with an error bar, or the reason why the run can tell none.
 
         remembered: of what disks keep from one contact to the next, such as speeds.  Stretches are then at least as long as
-        that memory, however few are left: in a short run the scatter itself could not tell it.
+        that memory where enough of them are left, and what they still have in common widens the bar: in a short run the scatter
+        itself could not tell it.
         """
-        step = 1
+        step, fading = 1, math.nan
         if remembered and self.shared > 0.0:
-            memory = MEMORY * float(self.time.sum()) / self.shared
-            step = max(min(math.ceil(memory / self.width), len(above) // FEWEST_BLOCKS), 1)
+            fading = FADING * float(self.time.sum()) / self.shared / self.width
+            step = max(min(math.ceil(MEMORY / FADING * fading), len(above) // FEWEST_BLOCKS), 1)
         starts = np.arange(0, len(above), step)
         bar = ratio_average(np.add.reduceat(above, starts), np.add.reduceat(below, starts))
         bar = bar._replace(length=bar.length * step)
+        if fading > 0.0:
+            # the variance of blocks of length T is that of blocks without memory times 1 - x (1 - exp(-1 / x)), x = fading / T
+            x = fading / bar.length
+            bar = bar._replace(error=bar.error / math.sqrt(1.0 + x * math.expm1(-1.0 / x)))
         why = self._no_bar(bar, above)
         return (bar, None) if why is None else (bar._replace(error=math.nan), why)
 

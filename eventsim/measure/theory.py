@@ -128,7 +128,7 @@ def cooling_exponent(restitution: float) -> float:
 def shear_damping(eta: float) -> float:
     """Nu / (omega d^2): how fast shear flow dies out, per contact of a disk, kinematic viscosity nu and rate omega by Enskog.
 
-    Source: D. M. Gass, J. Chem. Phys. 54, 1898 (1971), doi:10.1063/1.1675116.
+    Source: D. M. Gass, Enskog theory for a rigid disk fluid, J. Chem. Phys. 54, 1898 (1971).
     """
     g = contact_value(eta, compressibility_factor(eta))
     cover = 2.0 * eta

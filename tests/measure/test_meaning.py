@@ -289,3 +289,27 @@ def test_no_bar_is_zero_and_no_number_is_without_a_reason(name):
         assert quantity.error != 0.0, quantity.name
         assert quantity.fixed or quantity.error > 0.0 or quantity.doubt, quantity.name
         assert not math.isnan(quantity.value) or quantity.doubt, quantity.name
+
+
+def test_a_restitution_that_no_contact_has_takes_no_energy():
+    gas = lattice_gas(16, 0.2, es.Periodic, seed=2)
+    law = es.Restitution(pair=1.0, wall=0.5)
+    plain, lossy = (
+        run_of(es.Scene(gas.disks, gas.domain, restitution=one), events=300).log for one in (None, law)
+    )
+    assert measure(lossy).table() == measure(plain).table()
+    alone = es.Disks([[0.5, 0.5]], [[0.6, 0.8]], 0.1)
+    scene = es.Scene(alone, es.Box((1.0, 1.0)), restitution=es.Restitution(pair=0.5, wall=1.0))
+    assert measure(run_of(scene, events=100).log).steady
+
+
+def test_disks_too_heavy_to_share_energy_with_others_are_not_held_against_theory():
+    """A contact of masses m and M gives 4 m M / (m + M)^2 of what one of equal masses gives."""
+    gas = lattice_gas(16, 0.2, es.Periodic, seed=2)
+    for heavy, known in ((1.0, True), (1e6, False)):
+        mass = np.where(np.arange(16) < 4, heavy, 1.0)
+        radius = np.where(np.arange(16) < 4, 0.9, 1.0) * gas.disks.radius
+        scene = es.Scene(es.Disks(gas.disks.position, gas.disks.velocity / np.sqrt(mass)[:, None], radius, mass), gas.domain)
+        measures = measure(run_of(scene, events=400).log)
+        assert (measures["temperature_0"].theory is not None) == known
+        assert ("species 0 has shared its energy" in "".join(measures.doubts)) != known

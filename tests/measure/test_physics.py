@@ -41,6 +41,12 @@ def test_error_bars_are_true():
     assert 60 <= inside <= 76
 
 
+def test_error_bars_of_speeds_are_true_in_short_runs():
+    """Of 20 contacts a disk: the mean speed is remembered for two of them."""
+    off = [measured(fluid(0.05, n=64, seed=seed), events=640)["mean_speed"].deviation for seed in range(100)]
+    assert 0.8 < np.sqrt(np.mean(np.square(off))) < 1.5
+
+
 def test_an_equimolar_mixture():
     share = 0.5 / 2.96
     gases = [
