@@ -30,6 +30,11 @@ class Told:
     b: NDArray[np.int64]
     wall: tuple[str, ...]
 
+    def since(self, time: float) -> Told:
+        """Those after a time."""
+        first = int(np.searchsorted(self.time, time, side="right"))
+        return Told(self.time[first:], self.a[first:], self.b[first:], self.wall[first:])
+
 
 def read_contacts(path: Path, n: int) -> Told:
     """The contacts between n disks and with walls; EventsimError, naming the file, for what is no such table."""

@@ -1,4 +1,7 @@
-"""Columns of a .csv file: a header, then rows; lines that begin with # are comments."""
+"""Columns of a .csv file: a header, then rows; lines that begin with # are comments.
+
+Values are separated by commas; by semicolons or tabs where the header has these and no comma.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +19,11 @@ def csv_columns(path: Path) -> Columns:
     """The columns of a file as texts, by their names in small letters; EventsimError for what is no such table."""
     with reading(path, EventsimError, "is not a table of comma-separated values") as file:
         text = file.read().decode("utf-8-sig")
-    rows = list(csv.reader(line for line in text.splitlines() if line.strip() and not line.startswith("#")))
-    if not rows:
+    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    if not lines:
         raise EventsimError(f"{path}: has no header")
+    between = next((mark for mark in ",;\t" if mark in lines[0]), ",")
+    rows = list(csv.reader(lines, delimiter=between))
     header = [name.strip().lower() for name in rows[0]]
     if len(set(header)) < len(header):
         raise EventsimError(f"{path}: has more than one column {next(name for name in header if header.count(name) > 1)}")

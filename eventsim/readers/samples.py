@@ -58,13 +58,14 @@ def checked(samples: Samples) -> Samples:
     if len(shape) != 3 or shape[2] != 2 or shape[0] != len(samples.times) or not shape[1]:
         raise EventsimError(f"{samples.source}: positions {shape} at times {samples.times.shape}: must be (T, n, 2) at (T,)")
     if len(samples.times) < 2:
-        raise EventsimError(f"{samples.source}: holds one time alone; a motion has at least two")
+        raise EventsimError(f"{samples.source}: holds {len(samples.times)} times; a motion has at least two")
     if samples.velocity is not None and samples.velocity.shape != shape:
         raise EventsimError(f"{samples.source}: velocities {samples.velocity.shape} of positions {shape}: must be alike")
     for name, values in (("times", samples.times), ("positions", samples.position), ("velocities", samples.velocity)):
         if values is not None and not np.all(np.isfinite(values)):
-            place = np.argwhere(~np.isfinite(values))[0].tolist()
-            raise EventsimError(f"{samples.source}: {name} must be finite; at {place} there is {values[tuple(place)]}")
+            place = tuple(np.argwhere(~np.isfinite(values))[0].tolist())
+            whose = f"of disk {place[1]} at time number {place[0]}" if len(place) > 1 else f"number {place[0]}"
+            raise EventsimError(f"{samples.source}: {name} must be finite; {whose} there is {values[place]}")
     order = np.argsort(samples.times, kind="stable")
     times = samples.times[order]
     if np.any(np.diff(times) == 0.0):

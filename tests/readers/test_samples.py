@@ -28,6 +28,13 @@ def test_every_format_gives_the_same_positions(kind, tmp_path):
         assert np.array_equal(samples.velocity, SPEEDS)
 
 
+@pytest.mark.parametrize("mark", [";", "\t", ", "])
+def test_other_separators_and_a_byte_order_mark_are_understood(mark, tmp_path):
+    rows = ["time,disk,x,y", "0,0,1.5,1", "1,0,2.5,1"]
+    (tmp_path / "a.csv").write_text("\n".join(rows).replace(",", mark), encoding="utf-8-sig")
+    assert read_samples(tmp_path / "a.csv").position.tolist() == [[[1.5, 1.0]], [[2.5, 1.0]]]
+
+
 @pytest.mark.parametrize("suffix", [".csv", ".npz", ".xyz", ".gsd"])
 def test_what_eventsim_writes_is_read_back(suffix, tmp_path):
     if suffix == ".gsd":
@@ -54,6 +61,7 @@ def test_what_eventsim_writes_is_read_back(suffix, tmp_path):
         ("a.csv", "x0,y0\n0,0\n1,1\n", "tells no time: say the time between frames"),
         ("a.csv", "time,disk,x,y\n0,0,1\n", "row 0 has 3 values under 4 names"),
         ("a.csv", "", "has no header"),
+        ("a.csv", "time;disk;x;y\n0;0;1,5;1\n", "x = '1,5': must be a number, with a decimal point"),
         ("a.xyz", "2\ntime=0\nAr 0 0 0\n", "line 1: announces 2 disks, and 1 lines follow"),
         ("a.xyz", "1\n\nAr 0 0 0\n1\n\nAr 0 0 0\n", "frame 0 tells no time"),
         ("a.xyz", "one\n", "must be a number of disks"),

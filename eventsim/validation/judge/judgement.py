@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from eventsim.errors import EventsimError
 from eventsim.readers.contacts import Told
 from eventsim.readers.samples import Samples
 from eventsim.record.events import Floats, Kind
@@ -16,6 +15,7 @@ from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.overlaps import period_of
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.follow import distances
+from eventsim.validation.judge.beginning import begins_late, demand_same_pace, placed, scene_at
 from eventsim.validation.judge.charge import Charge, Window, charged, in_our_form
 from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, energy_on_the_way, flights_of
@@ -38,11 +38,14 @@ SMALLEST = 1e-9
 SMOOTHED = 5
 """Samples."""
 
-SAME_START = 0.01
-"""In diameters: how far positions at the start may be from those of the scene."""
-
 COARSE = 0.3
 """Of the typical speed: where the least turn that can be told from noise is larger, contacts cannot be told from positions."""
+
+
+BLIND = (
+    "the samples are too coarse, or too blurred, to tell contacts from positions: tell velocities, more digits, more times, "
+    "or the contacts (--contacts)"
+)
 
 
 @dataclass(slots=True)
@@ -61,6 +64,7 @@ class Judgement:
         energy: (T,) relative change of the energy, at `times`; NaN where a velocity is not known; None without energy.
         momentum: the largest change, over sum m |v|, where nothing outside gives any; None elsewhere.
         deepest: (depth in reaches, a, b, time) of the deepest overlap at the looks.
+        blind: why its contacts cannot be told; None where they can.
         faults: all that were seen, in order of time.
         remarks: sentences on what could not be judged.
         elapsed: CPU seconds per time unit of a function that was stepped; None of a file.
@@ -78,6 +82,7 @@ class Judgement:
     energy: Floats | None
     momentum: float | None
     deepest: tuple[float, int, int, float]
+    blind: str | None = None
     faults: list[Fault] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     elapsed: float | None = None
@@ -112,8 +117,13 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
     Raises:
         EventsimError: where the samples are not of this scene.
     """
+    remarks = []
+    if begins_late(scene, samples):
+        first = float(samples.times[0])
+        scene, contacts = scene_at(scene, first), None if contacts is None else contacts.since(first)
+        remarks.append(f"the motion begins at t = {first:g}: it is judged from the state that the event-driven run has then")
     stage = stage_of(scene)
-    samples = _placed(scene, stage, samples)
+    samples = placed(scene, stage, samples)
     times = samples.times
     looks = times[np.unique(np.linspace(0, len(times) - 1, min(LOOKS, len(times))).astype(int))]
     looks = looks[looks > scene.start_time]
@@ -124,9 +134,13 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
     start = np.column_stack([stage.vx, stage.vy])
     flights = flights_of(stage, times, place, samples.velocity, start, samples.step)
     around = Surroundings(stage)
-    remarks = [] if truth.run.stopped is None else [f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})"]
+    if truth.run.stopped is not None:
+        remarks.append(f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})")
     blind = flights.least > COARSE * truth.speed
-    remarks += _doubts(flights, samples, blind and contacts is None)
+    if not blind:
+        demand_same_pace(flights, start, samples.source)
+    if samples.velocity is not None and not flights.told:
+        remarks.append("the velocities that are told are not those with which positions move: they are not used")
     read = Read() if blind else contacts_from(flights, around, mass)
     met = read.met if contacts is None else in_our_form(contacts, stage)
     step = float(np.median(np.diff(times)))
@@ -154,65 +168,19 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
         charge=charge,
         looks=looks,
         errors=np.sqrt(np.mean(apart**2, axis=1)),
-        energy=_smooth(energy / energy[0] - 1.0, flights.told) if energy[0] > 0.0 else None,
+        energy=_smooth(energy / energy[0] - 1.0, flights.told) if energy[0] > 0.0 and (flights.told or not blind) else None,
         momentum=_momentum(velocity, stage, mass),
         deepest=_deepest(scene, samples, looks, seen),
+        blind=BLIND if blind and contacts is None else None,
         faults=sorted((fault for fault in seen_here if fault is not None), key=lambda fault: fault.time),
         remarks=remarks,
     )
-
-
-def _placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
-    """The samples on the scene's axes, from its start on; EventsimError where they are of another scene."""
-    if samples.n != stage.n:
-        raise EventsimError(f"{samples.source}: has {samples.n} disks, and the scene {stage.n}")
-    for name, told, own in (("radius", samples.radius, stage.radius), ("mass", samples.mass, scene.disks.mass)):
-        if told is not None and not np.allclose(told, own, rtol=1e-5, atol=0.0):
-            if samples.cell is not None and np.all(told == told[0]):
-                continue  # what the gsd library gives where a file tells nothing
-            disk = int(np.argmax(~np.isclose(told, own, rtol=1e-5, atol=0.0)))
-            raise EventsimError(f"{samples.source}: disk {disk} has the {name} {told[disk]:g}, in the scene {own[disk]:g}")
-    samples = samples.placed(scene.domain.origin if scene.domain.size is not None else (0.0, 0.0))
-    begin, first = scene.start_time, float(samples.times[0])
-    if first < begin - 1e-9 * abs(begin):
-        raise EventsimError(f"{samples.source}: begins at {first:g}, before the scene does at {begin:g}")
-    own = scene.disks.position
-    diameter = 2.0 * (float(np.median(stage.radius)) or 1.0)
-    if first <= begin + 1e-9 * abs(begin):
-        away = distances(stage, samples.position[0], own)
-        disk = int(np.argmax(away))
-        if away[disk] > SAME_START * diameter:
-            here, there = samples.position[0, disk].tolist(), own[disk].tolist()
-            raise EventsimError(
-                f"{samples.source}: disk {disk} begins at ({here[0]:.6g}, {here[1]:.6g}), in the scene at ({there[0]:.6g}, "
-                f"{there[1]:.6g}): another scene, another order of disks, or other axes?"
-            )
-        return samples
-    velocity = None
-    if samples.velocity is not None:
-        velocity = np.concatenate([scene.disks.velocity[None], samples.velocity])
-    position = np.concatenate([own[None], samples.position])
-    times = np.concatenate([[begin], samples.times])
-    return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
 
 
 def _what_is_told(samples: Samples, flights: Flights, contacts: Told | None) -> str:
     """In words."""
     told = ["positions", *(["velocities"] if flights.told else []), *(["contacts"] if contacts is not None else [])]
     return f"{', '.join(told)} of {samples.n} disks at {len(samples.times)} times"
-
-
-def _doubts(flights: Flights, samples: Samples, blind: bool) -> list[str]:
-    """What the samples cannot tell."""
-    found = []
-    if samples.velocity is not None and not flights.told:
-        found.append("the velocities that are told are not those with which positions move: they are not used")
-    if blind:
-        found.append(
-            "the samples are too coarse, or too blurred, to tell contacts from positions: tell velocities, more digits, "
-            "more times, or the contacts (--contacts)"
-        )
-    return found
 
 
 def _lost_from(truth: Truth, apart: Floats) -> Floats:

@@ -19,6 +19,8 @@ def judged_in_words(judgement: Judgement) -> list[str]:
 def _first(judgement: Judgement) -> str:
     """The first wrong event, or that there is none."""
     fault, parting = judgement.first_fault, judgement.charge.parting
+    if fault is None and judgement.blind is not None:
+        return f"Whether an event is wrong cannot be told: {judgement.blind}."
     if fault is not None:
         further = _further(judgement)
         return f"First wrong event: {fault.sentence}.{further}"
@@ -43,6 +45,8 @@ def _further(judgement: Judgement) -> str:
 def _contacts(judgement: Judgement) -> str:
     """Found, missed, doubled, false, and times."""
     charge = judgement.charge
+    if judgement.blind is not None:
+        return ""
     if not charge.ahead and not charge.doubled and not charge.false:
         return "No contact could be charged: no disk that was still in its place met anything."
     text = (

@@ -110,7 +110,7 @@ def test_velocities_of_another_unit_are_not_used(missed):
 def test_samples_that_are_too_coarse_say_so():
     times, places, _, _ = motion(SCENE, frame=0.4)
     judged = es.validate(SCENE, trajectory=(times, places))
-    assert "too coarse" in judged.verdict[-1]
+    assert "cannot be told: the samples are too coarse" in judged.verdict[0]
     assert judged.first_fault is None
     assert judged.judgement.charge.missed == 0
 
@@ -129,3 +129,22 @@ def test_a_periodic_gas_and_a_fall_are_judged_too():
     judged = es.validate(fall, trajectory=(times, np.array([run.state_at(float(time)).position for time in times])))
     assert judged.first_fault is None
     assert judged.judgement.charge.found >= 2
+
+
+def test_a_motion_that_begins_late_is_judged_from_there_on():
+    """What an engine did before nobody knows: it is charged with nothing."""
+    times, places, _, contacts = motion(SCENE)
+    begin = int(np.searchsorted(times, contacts[3][0])) + 1
+    judged = es.validate(SCENE, trajectory=(times[begin:], places[begin:]), contacts=[(t, a, b) for t, a, b, _ in contacts])
+    assert judged.first_fault is None
+    assert judged.judgement.charge.found > 30
+    assert "it is judged from the state" in judged.verdict[-1]
+    with pytest.raises(es.EventsimError, match=r"disk \d+ begins at"):
+        es.validate(SCENE, trajectory=(times[begin:], places[:-begin]))
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_a_motion_in_another_unit_of_time_is_refused(unit):
+    times, places, _, _ = motion(SCENE)
+    with pytest.raises(es.EventsimError, match=f"its disks begin with {1.0 / unit:g} times the velocities of the scene"):
+        es.validate(SCENE, trajectory=(unit * times, places))

@@ -1,0 +1,97 @@
+"""Where a motion begins: with its scene, a step later, or far into it; and whether it is that of the scene at all."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventsim.errors import EventsimError
+from eventsim.readers.samples import Samples
+from eventsim.record.events import Floats
+from eventsim.scene import Disks, Scene
+from eventsim.scene.stage import Stage
+from eventsim.validation.follow import distances
+from eventsim.validation.judge.flights import UNLIKE, Flights
+from eventsim.validation.truth import truth_of
+
+LATE = 1.5
+"""Steps after the start of the scene up to which a motion begins with it: an engine tells places when its first step is done."""
+
+SAME_START = 0.01
+"""In diameters: how far positions at the start may be from those of the scene."""
+
+OTHER_PACE = 0.1
+"""Of the velocities at the start: by how much all may differ by one factor before they are told in another unit."""
+
+
+def begins_late(scene: Scene, samples: Samples) -> bool:
+    """Whether the first samples are missing, and with them what an engine did then."""
+    late = float(samples.times[0]) - scene.start_time
+    return samples.n == len(scene.disks) and late > LATE * float(np.median(np.diff(samples.times)))
+
+
+def scene_at(scene: Scene, first: float) -> Scene:
+    """The scene as the event-driven run has it at a later time."""
+    run = truth_of(scene, [first]).run
+    if run.stopped is not None:
+        raise EventsimError(f"the motion begins at t = {first:g}, and the event-driven run stopped before ({run.stopped})")
+    disks = Disks(run.position[0], run.velocity[0], scene.disks.radius, scene.disks.mass)
+    return Scene(
+        disks=disks,
+        domain=scene.domain,
+        walls=scene.walls,
+        gravity=scene.gravity,
+        restitution=scene.restitution,
+        contact_duration=scene.contact_duration,
+        start_time=first,
+        name=scene.name,
+    )
+
+
+def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
+    """The samples on the scene's axes, from its start on; EventsimError where they are of another scene."""
+    if samples.n != stage.n:
+        raise EventsimError(f"{samples.source}: has {samples.n} disks, and the scene {stage.n}")
+    for name, told, own in (("radius", samples.radius, stage.radius), ("mass", samples.mass, scene.disks.mass)):
+        if told is not None and not np.allclose(told, own, rtol=1e-5, atol=0.0):
+            if samples.cell is not None and np.all(told == told[0]):
+                continue  # what the gsd library gives where a file tells nothing
+            disk = int(np.argmax(~np.isclose(told, own, rtol=1e-5, atol=0.0)))
+            raise EventsimError(f"{samples.source}: disk {disk} has the {name} {told[disk]:g}, in the scene {own[disk]:g}")
+    samples = samples.placed(scene.domain.origin if scene.domain.size is not None else (0.0, 0.0))
+    begin, first = scene.start_time, float(samples.times[0])
+    if first < begin - 1e-9 * abs(begin):
+        raise EventsimError(f"{samples.source}: begins at {first:g}, before the scene does at {begin:g}")
+    own = scene.disks.position
+    diameter = 2.0 * (float(np.median(stage.radius)) or 1.0)
+    if first <= begin + 1e-9 * abs(begin):
+        away = distances(stage, samples.position[0], own)
+        disk = int(np.argmax(away))
+        if away[disk] > SAME_START * diameter:
+            here, there = samples.position[0, disk].tolist(), own[disk].tolist()
+            raise EventsimError(
+                f"{samples.source}: disk {disk} begins at ({here[0]:.6g}, {here[1]:.6g}), in the scene at ({there[0]:.6g}, "
+                f"{there[1]:.6g}): another scene, another order of disks, or other axes?"
+            )
+        return samples
+    velocity = None
+    if samples.velocity is not None:
+        velocity = np.concatenate([scene.disks.velocity[None], samples.velocity])
+    position = np.concatenate([own[None], samples.position])
+    times = np.concatenate([[begin], samples.times])
+    return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
+
+
+def demand_same_pace(flights: Flights, start: Floats, source: str) -> None:
+    """Raise EventsimError where all disks begin with one and the same multiple of the velocities that they should have."""
+    dt = float(flights.times[1] - flights.times[0])
+    begun = (flights.place[1] - flights.place[0]) / dt - 0.5 * flights.pull * dt
+    size = np.sum(start * start, axis=1)
+    moves = size > 0.0
+    if not moves.any():
+        return
+    share = float(np.median(np.sum(begun * start, axis=1)[moves] / size[moves]))
+    off = np.hypot(*(begun - share * start)[moves].T) / np.sqrt(size[moves])
+    if abs(share - 1.0) > OTHER_PACE and float(np.median(off)) < UNLIKE:
+        raise EventsimError(
+            f"{source}: its disks begin with {share:.4g} times the velocities of the scene: another unit of time, another scene?"
+        )
