@@ -6,7 +6,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.readers.samples import Samples
-from eventsim.record.events import Floats
+from eventsim.record.events import Floats, Rows
 from eventsim.scene import Disks, Scene
 from eventsim.scene.stage import Stage
 from eventsim.validation.follow import distances
@@ -18,6 +18,9 @@ LATE = 1.5
 
 SAME_START = 0.01
 """In diameters: how far positions at the start may be from those of the scene."""
+
+MANY = 3
+"""Disks that do not all turn in their first step so that one factor tells what is left of all their velocities."""
 
 OTHER_PACE = 0.1
 """Of the velocities at the start: by how much all may differ by one factor before they are told in another unit."""
@@ -81,13 +84,21 @@ def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
     return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
 
 
-def demand_same_pace(flights: Flights, start: Floats, source: str) -> None:
-    """Raise EventsimError where all disks begin with one and the same multiple of the velocities that they should have."""
+def demand_same_pace(flights: Flights, start: Floats, rows: Rows, source: str) -> None:
+    """Raise EventsimError where disks begin with one and the same multiple of the velocities that they should have.
+
+    start: (n, 2) velocities.  rows: of the event-driven run, which tell who flies free until the first samples.
+    """
     dt = float(flights.times[1] - flights.times[0])
     begun = (flights.place[1] - flights.place[0]) / dt - 0.5 * flights.pull * dt
     size = np.sum(start * start, axis=1)
-    moves = size > 0.0
-    if not moves.any():
+    moves, free = size > 0.0, size > 0.0
+    early = rows[rows["time"] <= flights.times[1]]
+    free[early["a"]] = False
+    free[early["b"][early["b"] >= 0]] = False
+    if free.any():
+        moves = free
+    elif moves.sum() < MANY:
         return
     share = float(np.median(np.sum(begun * start, axis=1)[moves] / size[moves]))
     off = np.hypot(*(begun - share * start)[moves].T) / np.sqrt(size[moves])

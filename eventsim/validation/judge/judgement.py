@@ -137,8 +137,7 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
     if truth.run.stopped is not None:
         remarks.append(f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})")
     blind = flights.least > COARSE * truth.speed
-    if not blind:
-        demand_same_pace(flights, start, samples.source)
+    demand_same_pace(flights, start, truth.run.rows, samples.source)
     if samples.velocity is not None and not flights.told:
         remarks.append("the velocities that are told are not those with which positions move: they are not used")
     read = Read() if blind else contacts_from(flights, around, mass)

@@ -148,3 +148,11 @@ def test_a_motion_in_another_unit_of_time_is_refused(unit):
     times, places, _, _ = motion(SCENE)
     with pytest.raises(es.EventsimError, match=f"its disks begin with {1.0 / unit:g} times the velocities of the scene"):
         es.validate(SCENE, trajectory=(unit * times, places))
+
+
+def test_a_disk_that_turns_round_in_the_first_step_is_in_its_own_unit_of_time():
+    scene = es.Scene(es.Disks([[0.3, 0.5]], [[-1.0, 0.0]], 0.1), es.Box((1.0, 1.0)))
+    run = es.simulate(scene, until=0.3, log=True)
+    times = np.array([0.0, 0.25, 0.3])
+    judged = es.validate(scene, trajectory=(times, np.array([run.state_at(float(time)).position for time in times])))
+    assert judged.first_fault is None
