@@ -8,6 +8,9 @@ import numpy as np
 CLOSE = 1e-9
 """Of the scene's size: the bound that positions keep; what is reached is nearer to 1e-13."""
 
+PATIENT = 90
+"""Seconds for what takes one on a machine that does nothing else."""
+
 
 class Page:
     """The page, driven."""
@@ -19,7 +22,7 @@ class Page:
     def js(self, script, *values):
         return self.driver.execute_script(script, *values)
 
-    def wait(self, condition, seconds=20):
+    def wait(self, condition, seconds=PATIENT):
         """Wait until an expression of the page is true."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -28,7 +31,7 @@ class Page:
             time.sleep(0.05)
         raise AssertionError(f"not within {seconds} s: {condition}")
 
-    def open(self, hash_="", seconds=20):
+    def open(self, hash_="", seconds=PATIENT):
         self.driver.get("about:blank")
         self.driver.get(f"{self.address}#{hash_}")
         self.wait("window.live && live.player && live.player.duration > 0", seconds)

@@ -194,10 +194,9 @@ def test_a_disk_is_thrown_and_moved(page, tmp_path):
 
 def test_side_by_side_with_the_per_frame_engine(page):
     page.open("count=40&speed=600&packing=0.3&seed=2&rate=30")
-    page.wait("live.player.comparison && live.player.duration > 1")
-    page.press("play")
-    page.wait("live.player.view.time > 1.5")
-    page.press("play")
+    page.wait("live.player.comparison && live.player.duration > 1.5")
+    page.js("live.player.seek(1.5)")
+    page.wait("live.player.comparison.matching && live.player.view.time === 1.5 && live.part('differences').textContent")
     told = page.js("return live.part('differences').textContent")
     assert "per frame" in told
     astray, overlapping = page.js("const c = live.player.comparison; return [c.astray.size, c.overlapping]")
