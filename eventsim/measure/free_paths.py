@@ -16,7 +16,7 @@ from eventsim.replay.flights import FlightTable
 
 
 def free_paths(tables: Iterable[FlightTable], n: int) -> Iterator[Floats]:
-    """Yield the lengths of all ways from one pair contact of a disk to its next; tables: flights of n disks in order."""
+    """Yield the lengths of all ways between contacts with disks that deflect; tables: flights of n disks in order."""
     since = np.full(n, np.nan)  # flown since its last pair contact
     for table in tables:
         if not len(table.disk):
@@ -26,7 +26,7 @@ def free_paths(tables: Iterable[FlightTable], n: int) -> Iterator[Floats]:
         gone = np.concatenate(
             [[0.0], np.cumsum(table.lengths())]
         )  # length flown before each flight, all disks in a row
-        at = np.flatnonzero(table.pair)
+        at = np.flatnonzero(table.deflected)
         whole = np.diff(gone[at])[table.disk[at[1:]] == table.disk[at[:-1]]]
         low, high = np.searchsorted(at, begins), np.searchsorted(at, ends)
         met = low < high

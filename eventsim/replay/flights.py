@@ -27,8 +27,8 @@ class FlightTable:
     """Free flights (F,), disk by disk, in the order of time.
 
     time: when it begins. duration: until the disk's next event or the end of the log. place, velocity: (F, 2) at its
-    beginning. pull: (F, 2) acceleration. pair: whether it begins with a contact of two disks. first: whether it is its
-    disk's first.
+    beginning. pull: (F, 2) acceleration. pair: whether it begins with a contact of two disks; deflected: and the other one
+    has mass. first: whether it is its disk's first.
     """
 
     disk: Indices
@@ -38,6 +38,7 @@ class FlightTable:
     velocity: Floats
     pull: Floats
     pair: NDArray[np.bool_]
+    deflected: NDArray[np.bool_]
     first: NDArray[np.bool_]
 
     def pieces(self, parts: int = PARABOLA_PIECES) -> tuple[Floats, Floats, Indices]:
@@ -104,7 +105,7 @@ def flights_from(start: State, pull: Floats) -> FlightTable:
     n = len(pull)
     never, every = np.zeros(n, np.bool_), np.ones(n, np.bool_)
     time = np.full(n, start.time)
-    return FlightTable(np.arange(n), time, np.zeros(n), start.position, start.velocity, pull, never, every)
+    return FlightTable(np.arange(n), time, np.zeros(n), start.position, start.velocity, pull, never, never, every)
 
 
 def flights_between(stage: Stage, flown: FlightTable, rows: Rows, end: float) -> FlightTable:
@@ -140,6 +141,8 @@ def _begun(stage: Stage, rows: Rows) -> FlightTable:
         if stage.supports is not None:
             rests = rows["kind"][row] == Kind.REST
             pull[rests] = stage.slopes[rows["wall"][row[rests]]]
+    met = rows["kind"][row] == Kind.PAIR
+    other = np.where(met, both("b", "a").astype(np.int64), disk)
     return FlightTable(
         disk=disk,
         time=rows["time"][row],
@@ -147,7 +150,8 @@ def _begun(stage: Stage, rows: Rows) -> FlightTable:
         place=np.column_stack([both("xa", "xb"), both("ya", "yb")]) + stage.corner,
         velocity=np.column_stack([both("vxa", "vxb"), both("vya", "vyb")]),
         pull=pull,
-        pair=rows["kind"][row] == Kind.PAIR,
+        pair=met,
+        deflected=met if stage.mass is None else met & (stage.mass[other] > 0.0),
         first=np.zeros(len(disk), np.bool_),
     )
 

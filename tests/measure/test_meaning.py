@@ -7,8 +7,9 @@ import pytest
 
 import eventsim as es
 from eventsim.measure import Meter, measure
+from eventsim.measure.free_paths import free_paths
 from eventsim.record.events import Kind
-from eventsim.replay.flights import flight_table
+from eventsim.replay.flights import flight_table, flights
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
 from tests.engines.scenes import lattice_gas
@@ -313,3 +314,18 @@ def test_disks_too_heavy_to_share_energy_with_others_are_not_held_against_theory
         measures = measure(run_of(scene, events=400).log)
         assert (measures["temperature_0"].theory is not None) == known
         assert ("species 0 has shared its energy" in "".join(measures.doubts)) != known
+
+
+def test_free_paths_do_not_end_at_tracers():
+    scene = with_tracers()
+    gas = np.arange(16)
+    alone = es.Scene(es.Disks(*(column[gas] for column in (scene.disks.position, scene.disks.velocity, scene.disks.radius))),
+                     scene.domain)  # fmt: skip
+    long = run_of(scene, events=250)  # until places are beyond the digits
+    short = run_of(alone, until=long.time)
+    with_, without = (
+        np.sort(np.concatenate(list(free_paths((table.of(gas) for table in flights(Replay(run.log))), len(run.scene.disks)))))
+        for run in (long, short)
+    )
+    assert len(with_) == len(without) > 60
+    assert np.allclose(with_, without, rtol=1e-6)

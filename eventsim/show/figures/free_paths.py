@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
 from eventsim.measure import measure
+from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.free_paths import free_paths, path_density
 from eventsim.record.events import Floats, Kind
 from eventsim.replay.flights import flights
@@ -70,4 +71,6 @@ def draw(figure: Figure, log: Told) -> None:
 
 
 def _paths(passage: Passage) -> Iterator[Floats]:
-    return free_paths(flights(passage), passage.stage.n)
+    """Of those that carry energy; of tracers where nothing does."""
+    movers = np.flatnonzero(ensemble_of(passage.log.scene).movers)
+    return free_paths((table.of(movers) for table in flights(passage)), passage.stage.n)

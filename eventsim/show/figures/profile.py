@@ -30,7 +30,7 @@ def draw(figure: Figure, log: Told) -> None:
             theory = True
         if np.isfinite(one.temperature).any():
             below.errorbar(middle, one.temperature, np.nan_to_num(one.temperature_error), **look)
-    label(above, "", f"disks / ({LENGTH})$^2$", name_of(log))
+    label(above, "", f"disks / ({LENGTH})$^2$", f"{name_of(log)}: density and temperature along {profile.axis}")
     label(below, f"{profile.axis} [{LENGTH}]", "temperature kT", "")
     above.set_ylim(0.0, None)
     below.set_ylim(0.0, None)

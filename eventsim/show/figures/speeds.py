@@ -31,6 +31,7 @@ def draw(figure: Figure, log: Told) -> None:
     for place, one in enumerate(histograms[: len(KINDS)]):
         middle, colour = 0.5 * (one.edges[1:] + one.edges[:-1]), KINDS[place]
         name = f"species {one.species}" if len(histograms) > 1 else "measured"
+        name = "tracers" if measures.tracers and one is histograms[-1] else name
         axes.stairs(one.density, one.edges, fill=True, alpha=0.25, color=colour)
         axes.errorbar(middle, one.density, one.error, fmt="o", ms=3, lw=1, color=colour, label=name)
         if one.theory is not None:
@@ -39,7 +40,7 @@ def draw(figure: Figure, log: Told) -> None:
             misfits.append(one.misfit)
         seen = np.flatnonzero(one.density > SEEN * one.density.max())
         end = max(end, float(one.edges[seen[-1] + 1]))
-    verdict = "Maxwell's curve does not hold here"
+    verdict = "speeds, with no theory beside"
     if misfits:
         verdict = f"{np.sqrt(np.mean(np.square(misfits))):.1f} standard errors from Maxwell on average"
     elif measures.doubts:

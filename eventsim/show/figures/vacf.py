@@ -45,6 +45,7 @@ def draw(figure: Figure, log: Told) -> None:
             level = float((vacf[first] * lag[first]).mean()) / start
             axes.plot(lag[tail], level / lag[tail], color=ORANGE, lw=1.3, label="1 / t")
     axes.set(xscale="log", yscale="log")
+    verdict = "" if measures.steady else ", an average over a run without a steady state"
     kept = r"$\langle v(0)\, v(t)\rangle / \langle v^2\rangle$"
-    label(axes, f"lag [{TIME}]", kept, f"{name_of(log)}: velocity autocorrelation")
+    label(axes, f"lag [{TIME}]", kept, f"{name_of(log)}: velocity autocorrelation{verdict}")
     axes.legend(frameon=False)
