@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.measure.ensemble import ensemble_of
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
 from eventsim.validation.judge.matching import assigned
@@ -123,6 +124,33 @@ def test_a_built_in_scene_with_its_parameters(page, tmp_path):
     page.js("live.player.await(arguments[0], false)", 10.0)
     page.wait("live.player.awaited === null")
     assert page.js("return live.player.world.event.time.length") == 314
+
+
+@pytest.mark.parametrize("name", ["gas", "mixture", "periodic-fluid", "jar", "cooling"])
+def test_read_outs_are_what_measure_says(page, tmp_path, name):
+    page.open(f"gallery={name}")
+    moment = 0.9 * page.js("return live.player.duration")
+    told = page.js(
+        "live.player.seek(arguments[0]); live.tell(live.player);"
+        "const texts = [...live.readouts.values].map(([name, value]) => [name, value.textContent.replaceAll(',', '')]);"
+        "return Object.fromEntries(texts)",
+        moment,
+    )
+    log = es.load_log(page.fetch("log-file", tmp_path / "log.csv"))
+    ensemble, velocity = ensemble_of(log.scene), Replay(log).state_at(moment).velocity
+    kinetic = 0.5 * float((log.scene.disks.mass * (velocity**2).sum(axis=1)).sum())
+    if ensemble.no_temperature is None:
+        assert float(told["temperature"]) == pytest.approx(ensemble.temperature(kinetic), rel=1e-3)
+    else:
+        assert told["temperature"] == "\N{EN DASH}"
+    if ensemble.no_pressure is not None or not ensemble.box:
+        assert told["p V / N kT"] == "\N{EN DASH}"
+        return
+    since = max(moment - 5.0 * page.js("return live.player.view.speed"), 0.0)  # the last seconds that were played
+    taken = log.impulse[(log.kinds == "wall") & (log.time > since) & (log.time <= moment)].sum()
+    pressure = taken / (2.0 * sum(log.scene.domain.size) * (moment - since))
+    z = pressure * ensemble.area / (ensemble.n * ensemble.temperature(kinetic))
+    assert float(told["p V / N kT"]) == pytest.approx(z, rel=1e-2)
 
 
 @pytest.mark.slow
