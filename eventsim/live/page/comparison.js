@@ -45,7 +45,7 @@ class Comparison {
     return {
       exact: `<strong>event-driven</strong><br>${count(this.exact)} events, each at its time${this.given ? `<br>${this.given}` : ""}`,
       other: `<strong>${this.name}</strong><br>of disks in place: ${number(found)} contacts found, <b>${number(missed)}</b> missed, <b>${number(surplus)}</b> too many` +
-        `<span class="faint" title="matched pair by pair within this time"> (± ${Number(this.matching.tolerance.toPrecision(2))})</span>; ${number(astray)} of disks astray<br>` +
+        `<span class="faint" title="matched pair by pair within this time"> (± ${Number(this.matching.tolerance.toPrecision(2))})</span>; ${number(astray)} more are of disks astray<br>` +
         `<b>${this.overlapping}</b> pairs overlap, <b>${this.stuck.size}</b> stuck; <b class="astray">${this.astray.size}</b> of ${this.other.count} astray; energy ${energy}${lost}`,
     };
   }
