@@ -74,7 +74,17 @@ def _expected_z(records: Records) -> Expected | None:
     closed = two_in_a_box(records)
     if closed:
         return Expected(closed["Z"], 0.0, CLOSED)
-    return virial_z(records)
+    return _mixture_z(records) if records.ensemble.kinds > 1 else virial_z(records)
+
+
+def _mixture_z(records: Records) -> Expected | None:
+    """Z of a mixture in a periodic domain; None where no theory holds."""
+    ensemble, parts = records.ensemble, mixture_of(records.ensemble)
+    eta = ensemble.packing_fraction
+    if parts is None or eta is None or eta > theory.MIXTURE_UP_TO or not (records.mixed and ensemble.simple and ensemble.torus):
+        return None
+    z = theory.mixture_compressibility_factor(parts)
+    return Expected(z, theory.MIXTURE_ACCURACY * z, MIXTURE)
 
 
 def _contact_values(records: Records, kt: float) -> Iterator[Measure]:
