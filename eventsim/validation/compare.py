@@ -121,7 +121,7 @@ def compare(
     sizes = sorted({step * flight for step in USUAL_STEPS} if steps is None else set(steps), reverse=True)
     times = truth.times.tolist()
     duration = times[-1] - scene.start_time
-    timing = timing_of(lambda: ENGINES[engine].open(truth.stage, keep_rows=True), times, [truth.run.elapsed_s])
+    timing = timing_of(lambda: ENGINES[engine].open(truth.stage, keep_rows=True), times[-1:], [truth.run.elapsed_s])
     exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks, timing.per(duration))
     lines = []
     for competitor in ready:
@@ -141,7 +141,7 @@ def compare(
                 left_out.append(_given_up(competitor, sizes[place:], reason))
                 break
             found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt)
-            timing = timing_of(opened, times)
+            timing = timing_of(opened, times[-1:])  # stops on the way are ours
             lines.append(_line(truth, competitor.label, dt, run, found, checks, timing.per(duration)))
     orders = {
         competitor.label: fitted_order(

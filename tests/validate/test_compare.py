@@ -156,12 +156,12 @@ def test_the_time_of_pymunk_is_that_of_a_loop_of_ones_own():
         return (time.thread_time() - begun) / until
 
     own_loop()
-    own = np.median([own_loop() for _ in range(9)])
+    own = min(own_loop() for _ in range(9))  # the least: others who use the machine only add to it
     (line,) = compare(scene, chosen_competitors(["pymunk"]), steps=(dt,), until=until).lines
     found = curves(Task("break", scene, "trajectory", until), [COMPETITORS["pymunk"]], patience_s=1.0).of("pymunk")
-    assert line.elapsed == pytest.approx(own, rel=0.3)
+    assert line.timing.least == pytest.approx(own, rel=0.3)
     nearest = min(found, key=lambda point: abs(math.log(point.value / dt)))
-    assert nearest.elapsed * nearest.value == pytest.approx(own * dt, rel=0.3)
+    assert nearest.least * nearest.value == pytest.approx(own * dt, rel=0.3)
 
 
 def test_an_unknown_engine_is_named_with_those_that_there_are():
