@@ -45,8 +45,7 @@ def command(
     """Prove what happens in SCENE: every number is a ball that the true one lies in, every comparison is certain.
 
     Where balls overlap, the run begins again with twice as many bits. Ties are decided where the numbers are rational
-    or come from equal expressions. Needs the extra `certify`. Gravity together with anything round (posts, ends of
-    segments, arcs, containers) cannot be proven and is refused.
+    or come from equal expressions. Needs the extra `certify`.
 
     \b
     Examples:

@@ -3,11 +3,12 @@
 The squared distance of a falling centre from a fixed point is a quartic of time.  Its derivative is a cubic, whose own
 derivative is a quadratic: so the roots of the quadratic bracket those of the cubic, and these bracket those of the
 quartic, every one on a monotone piece, where bisection cannot miss.  No root formula of degree 4, hence no cancellation.
+Balls enclose the root on such a piece instead, by the interval Newton method.
 """
 
 from typing import NamedTuple
 
-from eventsim.formulas.real import NEVER, Real, is_float, sqrt
+from eventsim.formulas.real import NEVER, Real, is_float, root_between, sqrt
 
 BISECTIONS = 200
 """More halvings than any bracket here survives in float64."""
@@ -89,6 +90,21 @@ def round_rate(dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, circl
     px = dx + t * (du + (0.5 * ax) * t)
     py = dy + t * (dw + (0.5 * ay) * t)
     return side * ((px - circle.x) * (du + ax * t) + (py - circle.y) * (dw + ay * t))
+
+
+def round_polynomial(
+    dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, circle: Round, side: float, touches: bool
+) -> tuple[Real, Real, Real, Real, Real]:
+    """The coefficients of the gap h, that of t^0 first."""
+    cx, cy = dx - circle.x, dy - circle.y
+    start = 0.0 if touches else (dx * dx + dy * dy) - 2.0 * (dx * circle.x + dy * circle.y) - circle.excess
+    return (
+        side * start,
+        (2.0 * side) * (cx * du + cy * dw),
+        side * ((du * du + dw * dw) + (cx * ax + cy * ay)),
+        side * (du * ax + dw * ay),
+        (0.25 * side) * (ax * ax + ay * ay),
+    )
 
 
 def circle_delays(
@@ -222,6 +238,9 @@ def _turn(
     falling: bool,
 ) -> Real:
     """Where the rate changes its sign between low, where the gap is falling or not, and high."""
+    if not is_float(dx):
+        _, c1, c2, c3, c4 = round_polynomial(dx, dy, du, dw, ax, ay, circle, side, False)
+        return root_between(dx, (c1, 2.0 * c2, 3.0 * c3, 4.0 * c4), low, high)
     for _ in range(BISECTIONS):
         middle = low + 0.5 * (high - low)
         if not (low < middle < high):
@@ -255,6 +274,8 @@ def _closing(
         return low if counts else NEVER
     if round_gap(dx, dy, du, dw, ax, ay, circle, side, touches, high) > 0.0:
         return NEVER
+    if not is_float(dx):
+        return root_between(dx, round_polynomial(dx, dy, du, dw, ax, ay, circle, side, touches), low, high)
     for _ in range(BISECTIONS):
         middle = low + 0.5 * (high - low)
         if not (low < middle < high):

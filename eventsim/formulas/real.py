@@ -18,6 +18,14 @@ def is_float(x: Real) -> bool:
     return isinstance(x, float)
 
 
+def root_between(like: Real, coefficients: tuple[Real, ...], low: Real, high: Real) -> Real:
+    """The one root of a polynomial that is monotone from low to high, where its signs differ.
+
+    For number types other than float, of which `like` is one; floats are bisected.  coefficients: that of t^0 first.
+    """
+    return like.root_between(coefficients, low, high)
+
+
 def sqrt(x: Real) -> Real:
     """The square root; a number type other than float brings its own."""
     if isinstance(x, float):

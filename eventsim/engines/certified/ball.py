@@ -8,16 +8,14 @@ from contextlib import contextmanager
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq
-
-from eventsim.engines.certified.fingerprint import Fingerprint, product, quotient, root, total
-from eventsim.engines.certified.fingerprint import of_rational as fingerprint_of
+from flint import arb, arb_poly, ctx
 
 if TYPE_CHECKING:
     from eventsim.engines.reference.calendar import Event
 
-LONGEST_RATIONAL = 4096
-"""Bits of a numerator or denominator beyond which a traced number is no longer kept as a rational."""
+
+CUTS = (0.5, 0.4375, 0.5625)
+"""Where an interval is cut in search of a root; a root may be in one of these places, but in no two of them."""
 
 
 class Undecided(ArithmeticError):
@@ -99,6 +97,13 @@ class Ball:
         """The square root of a number that is known to be positive."""
         return Ball(self.value.sqrt())
 
+    def root_between(self, coefficients: tuple[Any, ...], low: Any, high: Any) -> Any:
+        """The one root of a polynomial that is monotone from low to high, where its signs differ.
+
+        Raises Undecided where the coefficients are not known well enough.
+        """
+        return Ball(_root_between(*([_arb(c) for c in each] for each in (coefficients, (low, high)))))
+
     def __lt__(self, other: Any) -> bool:
         value, bound = self.value, (other.value if isinstance(other, Ball) else other)
         if value < bound:
@@ -144,122 +149,52 @@ class Ball:
         return None
 
 
-class Traced(Ball):
-    """A ball that knows where it comes from: as a rational number as long as it is one, then by the expression that it is.
+def _arb(number: Ball | float) -> arb:
+    return number.value if isinstance(number, Ball) else arb(number)
 
-    So it decides ties: of rational numbers, and of numbers that the same operations were done for.  Several times slower.
+
+def _root_between(coefficients: list[arb], ends: list[arb]) -> arb:
+    """By the interval Newton method, N(X) = m - f(m) / f'(X), and by bisection until that contracts.
+
+    Source: R. E. Moore, Interval Analysis (1966), chapter 7.
     """
+    f = arb_poly(coefficients)
+    slope = f.derivative()
+    low, high = ends[0].mid(), ends[1].mid()  # the signs there are known on all of their balls
+    if f(low).is_zero():  # a disk at rest in the middle of a circle
+        return low
+    rises = bool(f(high) > 0)
+    if not (rises or f(high) < 0):
+        rises = bool(f(low) < 0)
+    x = low.union(high)
+    while True:
+        middle, rate = x.mid(), slope(x)
+        known = not rate.contains(0)
+        closer = x.intersection(middle - f(middle) / rate) if known else x
+        if not 2 * closer.rad() < x.rad():
+            closer = _half(f, x, rises)
+        if not closer.rad() < x.rad():
+            break
+        x = closer
+    if not known:
+        raise Undecided(f"a root in {x}")
+    return x
 
-    __slots__ = ("_fingerprint", "_rational")
 
-    def __init__(self, value: arb, rational: Fraction | None, fingerprint: Fingerprint | None = None) -> None:
-        super().__init__(value)
-        self._rational = rational
-        self._fingerprint = fingerprint
-
-    @property
-    def rational(self) -> Fraction | None:
-        """The number itself where it is known to be rational."""
-        return self._rational
-
-    @property
-    def fingerprint(self) -> Fingerprint:
-        """What the number is, as the expression that it was made by."""
-        if self._fingerprint is None:
-            assert self._rational is not None
-            self._fingerprint = fingerprint_of(self._rational)
-        return self._fingerprint
-
-    def _exactly(self, rational: Fraction) -> Traced:
-        if max(rational.numerator.bit_length(), rational.denominator.bit_length()) > LONGEST_RATIONAL:
-            fingerprint = fingerprint_of(rational)
-            return Traced(arb(fmpq(rational.numerator, rational.denominator)), None, fingerprint)
-        return of_rational(rational)
-
-    def __add__(self, other: Any) -> Any:
-        if not isinstance(other, Traced):
-            if not math.isfinite(other):
-                return other
-            other = traced(other)
-        if self._rational is not None and other._rational is not None:
-            return self._exactly(self._rational + other._rational)
-        if self._rational == 0:
-            return other
-        if other._rational == 0:
-            return self
-        fingerprint = total(self.fingerprint, other.fingerprint)
-        if fingerprint is None:
-            return self._exactly(Fraction(0))
-        return Traced(self.value + other.value, None, fingerprint)
-
-    __radd__ = __add__
-
-    def __sub__(self, other: Any) -> Any:
-        return self + -other
-
-    def __rsub__(self, other: Any) -> Any:
-        return -self + other
-
-    def __neg__(self) -> Any:
-        if self._rational is not None:
-            return Traced(-self.value, -self._rational)
-        sign, digest = self.fingerprint
-        return Traced(-self.value, None, (-sign, digest))
-
-    def __mul__(self, other: Any) -> Any:
-        if not isinstance(other, Traced):
-            other = traced(other)
-        if self._rational is not None and other._rational is not None:
-            return self._exactly(self._rational * other._rational)
-        for one, factor in ((self, other), (other, self)):
-            if factor._rational is not None and abs(factor._rational) <= 1 and factor._rational.denominator == 1:
-                return factor if factor._rational == 0 else one if factor._rational == 1 else -one
-        return Traced(self.value * other.value, None, product(self.fingerprint, other.fingerprint))
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Any) -> Any:
-        if not isinstance(other, Traced):
-            other = traced(other)
-        if self._rational is not None and other._rational is not None:
-            return self._exactly(self._rational / other._rational)
-        if self._rational == 0:
-            return self
-        return Traced(self.value / other.value, None, quotient(self.fingerprint, other.fingerprint))
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return traced(other) / self
-
-    def sqrt(self) -> Any:
-        """The square root of a number that is known to be positive; rational where it is the square of a rational."""
-        if self._rational is not None:
-            top, bottom = math.isqrt(self._rational.numerator), math.isqrt(self._rational.denominator)
-            if top * top == self._rational.numerator and bottom * bottom == self._rational.denominator:
-                return self._exactly(Fraction(top, bottom))
-        return Traced(self.value.sqrt(), None, root(self.fingerprint))
-
-    def _unclear(self, other: Any) -> int:
-        other = other if isinstance(other, Traced) else traced(other)
-        if self._rational is not None and other._rational is not None:
-            return int(self._rational > other._rational) - int(self._rational < other._rational)
-        if self.fingerprint == other.fingerprint:
-            return 0
-        return super()._unclear(other)
+def _half(f: arb_poly, x: arb, rises: bool) -> arb:
+    """About the half of an interval that holds the root of f; the interval where the root may be at each place to cut it."""
+    low, high = x.lower().mid(), x.upper().mid()
+    for share in CUTS:
+        cut = (low + share * (high - low)).mid()
+        here = f(cut)
+        if not here.contains(0):
+            return low.union(cut) if bool(here > 0) == rises else cut.union(high)
+    return x
 
 
 def ball(x: float) -> Ball:
     """A float as a ball without radius."""
     return Ball(arb(x))
-
-
-def traced(x: float) -> Traced:
-    """A float as a traced number."""
-    return Traced(arb(x), Fraction(x))
-
-
-def of_rational(x: Fraction) -> Traced:
-    """A rational as a traced number."""
-    return Traced(arb(fmpq(x.numerator, x.denominator)), x)
 
 
 def radius_of(number: Ball | float) -> float:

@@ -6,7 +6,8 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from eventsim.engines.certified.ball import Ball, Irrational, about, of_rational
+from eventsim.engines.certified.ball import Ball, Irrational, about
+from eventsim.engines.certified.traced import of_rational
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
 from eventsim.engines.reference.ledger import Ledger

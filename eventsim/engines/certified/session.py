@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from eventsim.engines.base import Motion, Session, Snapshot, Stop
 from eventsim.engines.certified import LEAST_BITS, CertifiedOptions
-from eventsim.engines.certified.ball import Undecided, ball, traced, working_precision
+from eventsim.engines.certified.ball import Undecided, ball, working_precision
 from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
+from eventsim.engines.certified.traced import traced
 from eventsim.errors import EventsimError
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.scene.names import plural
@@ -50,9 +50,7 @@ class CertifiedSession(Session):
     name = "certified"
 
     def __init__(self, stage: Stage, keep_rows: bool = True, options: CertifiedOptions | None = None) -> None:
-        _refuse_parabolas(stage)
-        # A disk at rest and one that falls would meet at a root of a quartic; without rest, a run ends with the bounces.
-        super().__init__(stage if stage.n == 1 else replace(stage, supports=None))
+        super().__init__(stage)
         options = options or CertifiedOptions()
         if not options.bits >= LEAST_BITS:
             raise EventsimError(f"certified: bits = {options.bits!r}: must be at least {LEAST_BITS}")
@@ -192,17 +190,3 @@ class CertifiedSession(Session):
         Raises EventsimError.
         """
         raise EventsimError("the certified engine proves a run from its start: it has no snapshots")
-
-
-def _refuse_parabolas(stage: Stage) -> None:
-    """Raise EventsimError where a parabola can meet something round: that is found by bisection, which encloses nothing."""
-    if stage.gravity is None:
-        return
-    rounded = any(feature.shape.line() is None for feature in stage.features)
-    posts = stage.mass is not None and bool(np.isinf(stage.mass).any())
-    if rounded or posts:
-        what = "walls with ends or round parts" if rounded else "immovable disks"
-        raise EventsimError(
-            f"the certified engine cannot prove this scene: it has gravity and {what}, and a parabola meets something round at "
-            "a root of a quartic, which is found by bisection in floats; leave out one of the two"
-        )

@@ -223,6 +223,11 @@ def _is_float(x):
     return lambda x: True
 
 
+@overload(real.root_between, jit_options={"forceinline": True, **_PART})
+def _root_between(like, coefficients, low, high):
+    return lambda like, coefficients, low, high: high  # never called: floats are bisected
+
+
 @overload(real.sqrt, jit_options={"forceinline": True, **_PART})
 def _sqrt(x):  # without annotations: numba compares them with those of the lambda
     if isinstance(x, types.Float):

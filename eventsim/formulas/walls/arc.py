@@ -211,8 +211,9 @@ class Arc(NamedTuple):
         return self._replace(x=0.0, y=0.0, x1=self.x1 - self.x, y1=self.y1 - self.y)
 
     def in_numbers(self, number: Callable[[float], Real]) -> Arc:
-        """The same arc in other numbers than floats."""
-        return Arc(*map(number, self))._replace(ends=self.ends)
+        """The same arc in other numbers than floats, with both parts of its radius in one."""
+        whole = Arc(*map(number, self))
+        return whole._replace(radius=whole.radius + whole.low, low=number(0.0), ends=self.ends)
 
 
 def arc(x0: float, y0: float, xm: float, ym: float, x1: float, y1: float) -> Arc:
