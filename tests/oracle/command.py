@@ -112,7 +112,7 @@ def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
         if verdict.word != WRONG and case.inside is not None:
             verdict = _kept_inside(case.inside, one, verdict)
         if whole is not None and verdict.word in (RIGHT, UNJUDGED) and one.stopped not in STOPS:
-            verdict = _at_the_end(whole, one, verdict)
+            verdict = _at_the_end(_as_sure_as(told, whole), one, verdict)
         verdicts.append(verdict)
     if len(seen) == 2 and not is_same(*seen):
         verdicts.append(Verdict(WRONG, "the engines differ", -1, 0, 0))
@@ -149,6 +149,15 @@ def whole_story(case: Case) -> Story | None:
         return story(case.scene, events=MOST_ROWS, rounds=WHOLE_ROUNDS, judged=False)
     except TooFewDigitsError:
         return None
+
+
+def _as_sure_as(told: Story, whole: Story) -> Story:
+    """All contacts of a scene, those that floats determine with how far these may be from them."""
+    for row, known in zip(whole.rows, told.rows, strict=False):
+        row.time_error = known.time_error
+        for part, sure in zip(row.parts, known.parts, strict=True):
+            part.place_error, part.velocity_error = sure.place_error, sure.velocity_error
+    return whole
 
 
 def _at_the_end(whole: Story, seen: Seen, verdict: Verdict) -> Verdict:

@@ -75,7 +75,7 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
         run.begin_flight(i, states[i][0], after[i], touches[i])
         run.rest_due.pop(i, None)
     for m, q in zip(cluster, impulses, strict=True):
-        if q == 0 and len(cluster) > 1:
+        if q == 0 and len(cluster) > 1 and unique:
             continue
         walls = names_at(run, m, cluster) if m.b < 0 else frozenset()
         kind = WALL if m.b < 0 else PAIR

@@ -7,7 +7,8 @@ velocities likewise, or to
   what rounding and its growth permit (`doubt`), whichever is more.
 * The run must stop for the same reason.  Where there is no answer (`collapse` in the story) it must stop with a
 reason there.
-* A run that stops with a reason earlier has *refused*: honest, but the oracle knows the answer.
+* A run that stops with a reason earlier has *refused*: honest, but the oracle knows the answer.  It has not where floats do not
+determine the next contact: the doubt about its time is as long as the flight that leads to it.
 * What floats do not determine is not judged.  Nothing that is exact in the starting floats is excused.
 
 A series of bounces may end with its row `rest` before the oracle's does, at the oracle's time, once its flights are
@@ -438,7 +439,7 @@ class _Judge:
         left = self._left()
         now = exact(seen.time) - exact(seen.start_time)
         if seen.stopped in STOPS:
-            if left and left[0].may_refuse:
+            if left and (left[0].may_refuse or self._is_in_doubt(left[0])):
                 return RIGHT, ""
             slack = Decimal(1e3 * CLOSE * max(self.free_time, float(abs(story.time)) * 1e-3))
             if story.ending == "collapse" and (not left or now >= story.time - slack):
@@ -473,6 +474,12 @@ class _Judge:
             self._compare_state(total)
         return RIGHT, ""
 
+    def _is_in_doubt(self, row: Row) -> bool:
+        """Whether floats do not determine a contact: its time is known no better than since when its disks fly towards it."""
+        rows = [self.mine[part.disk] for part in row.parts]
+        begun = [mine[place - 1].time for mine in rows if (place := _place_of(row, mine)) > 0]
+        return bool(begun) and SAFE * row.time_error >= float(row.time - max(begun))
+
     def _compare_state(self, total: int) -> None:
         seen = self.seen
         for part in self.story.state(exact(seen.time) - exact(seen.start_time)):
@@ -491,6 +498,10 @@ class _Judge:
                     f"disk {i}: velocity {tuple(seen.velocity[i])} at the end, true {_floats(part.velocity)}, off by {wrong:.3g}",
                     total,
                 )
+
+
+def _place_of(row: Row, rows: Sequence[Row]) -> int:
+    return next(place for place, one in enumerate(rows) if one is row)
 
 
 def _told(row: Row) -> str:

@@ -17,6 +17,7 @@ from tests.oracle.families import (
     gases,
     idle,
     kicks,
+    meetings,
     mixtures,
     ovals,
     points,
@@ -37,6 +38,7 @@ FAMILIES: Mapping[str, Callable[[np.random.Generator], Case]] = {
     **slopes.FAMILIES,
     **kicks.FAMILIES,
     **ties.FAMILIES,
+    **meetings.FAMILIES,
     **collapse.FAMILIES,
 }
 

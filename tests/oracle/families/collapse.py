@@ -52,4 +52,49 @@ def wall_and_two(rng: np.random.Generator) -> Case:
     return Case(made, to_the_end=True)
 
 
-FAMILIES = {"P4-three": three, "P4-wall": wall_and_two}
+def four(rng: np.random.Generator) -> Case:
+    """Four disks on a line, or slightly bent; some with a contact duration."""
+    gaps = [float(rng.uniform(0.3, 2.0)) for _ in range(3)]
+    bent = 0.0 if rng.random() < 0.5 else float(rng.choice([1e-3, 1e-6])) * float(rng.normal())
+    place = [(float(k) + sum(gaps[:k]), bent if k == 2 else 0.0) for k in range(4)]
+    lasting = rng.random() < 0.25
+    made = scene(
+        position=place,
+        velocity=[(1.0, 0.0), (0.0, 0.0), (0.0, 0.0), (-float(rng.uniform(0.5, 1.5)), 0.0)],
+        radius=0.5,
+        mass=1.0 if rng.random() < 0.7 else [1.0, float(rng.uniform(0.5, 2)), float(rng.uniform(0.5, 2)), 1.0],
+        domain=es.Open(),
+        restitution=float(rng.uniform(0.05, 0.4)),
+        contact_duration=float(10.0 ** rng.uniform(-9, -2)) if lasting else None,
+        until=1e4,
+        events=3000,
+    )
+    return Case(made, to_the_end=not lasting)
+
+
+def slanted(rng: np.random.Generator) -> Case:
+    """Two disks and a slanted wall, or the side of a channel; some with a contact duration."""
+    gap = (float(rng.uniform(0.2, 2.0)), float(rng.uniform(0.3, 2.0)))
+    bent = 0.0 if rng.random() < 0.6 else float(rng.choice([1e-3, 1e-6])) * float(rng.normal())
+    channel, angle = rng.random() < 0.4, float(rng.uniform(0.1, 1.4))
+    nx, ny = (0.0, 1.0) if channel else (math.cos(angle), math.sin(angle))
+    along = 5.0, 0.0
+    height = 0.5 + gap[0], 1.5 + sum(gap)
+    place = [(along[0] + nx * h - ny * s, ny * h + nx * s) for h, s in zip(height, (0.0, bent), strict=True)]
+    lasting = rng.random() < 0.25
+    made = scene(
+        position=place,
+        velocity=[(0.0, 0.0), (-nx, -ny)],
+        radius=0.5,
+        mass=1.0 if rng.random() < 0.7 else [1.0, float(rng.uniform(0.5, 2))],
+        domain=es.Channel((10.0, 1e5)) if channel else es.Open(),
+        walls=[] if channel else [es.Segment((along[0] - 9 * ny, 9 * nx), (along[0] + 9 * ny, -9 * nx))],
+        restitution=_near(rng, WALL_AND_TWO),
+        contact_duration=float(10.0 ** rng.uniform(-9, -2)) if lasting else None,
+        until=1e4,
+        events=3000,
+    )
+    return Case(made, to_the_end=not lasting)
+
+
+FAMILIES = {"P4-three": three, "P4-wall": wall_and_two, "P4-four": four, "P4-slanted": slanted}

@@ -13,14 +13,14 @@ from tests.oracle.families.case import Case, Place, scene
 TRIPLES = ((3, 4, 5), (5, 12, 13), (8, 15, 17), (7, 24, 25))
 
 
-def _dyadic(rng: np.random.Generator, low: float, high: float, bits: int = 8) -> float:
+def dyadic(rng: np.random.Generator, low: float, high: float, bits: int = 8) -> float:
     """A number with few bits."""
     return float(np.round(rng.uniform(low, high) * 2**bits) / 2**bits)
 
 
 def _when(rng: np.random.Generator) -> float:
     """The time of the tie: a power of two, from 1e-6 to 1e3, or a number of few bits."""
-    return float(2.0 ** rng.integers(-20, 11)) if rng.random() < 0.7 else max(_dyadic(rng, 0, 8), 2.0**-8)
+    return float(2.0 ** rng.integers(-20, 11)) if rng.random() < 0.7 else max(dyadic(rng, 0, 8), 2.0**-8)
 
 
 def _spectators(rng: np.random.Generator, until: float) -> list[tuple[Place, Place]]:
@@ -70,7 +70,7 @@ class Start(NamedTuple):
     t: float
 
 
-def _at_rest(rng: np.random.Generator) -> Start | None:
+def at_rest(rng: np.random.Generator) -> Start | None:
     """Two at rest, at Pythagorean distances of the place where the first one meets both; all places are floats."""
     (a, b, c), (p, q, s) = (TRIPLES[int(k)] for k in rng.choice(len(TRIPLES), 2, replace=False))
     one, two = float(2.0 ** rng.integers(-3, 0)), float(2.0 ** rng.integers(-3, 0))
@@ -85,7 +85,7 @@ def _at_rest(rng: np.random.Generator) -> Start | None:
     return Start(places, [(fast, 0.0), (0.0, 0.0), (0.0, 0.0)], radii, way / fast)
 
 
-def _mirrored(rng: np.random.Generator) -> Start | None:
+def mirrored(rng: np.random.Generator) -> Start | None:
     """Two that are mirror images of each other: the numbers may be any."""
     t, r = _when(rng), float(rng.choice([0.5, 1.0, 0.25]))
     x, y = float(rng.uniform(0.3, 3.0)) * r, float(rng.uniform(1.01, 1.9)) * r
@@ -95,7 +95,7 @@ def _mirrored(rng: np.random.Generator) -> Start | None:
     return Start([(0.0, 0.0), (x, y), (x, -y)], [(first / t, 0.0), (0.0, 0.0), (0.0, 0.0)], [r, r, r], t)
 
 
-def _moving(rng: np.random.Generator) -> Start | None:
+def moving(rng: np.random.Generator) -> Start | None:
     """All move, and are at Pythagorean distances at the tie; numbers of few bits."""
     t = _when(rng)
     a, b, c = TRIPLES[int(rng.integers(len(TRIPLES)))]
@@ -107,7 +107,7 @@ def _moving(rng: np.random.Generator) -> Start | None:
     pace = 2.0 ** math.ceil(math.log2(max(t, 1.0)))
     places, velocities = [], []
     for at in ((0.0, 0.0), one, two):
-        u, w = _dyadic(rng, -1, 1, 5) / pace, _dyadic(rng, -1, 1, 5) / pace
+        u, w = dyadic(rng, -1, 1, 5) / pace, dyadic(rng, -1, 1, 5) / pace
         if velocities and (u - velocities[0][0]) * at[0] + (w - velocities[0][1]) * at[1] > 0:
             u, w = 2 * velocities[0][0] - u, 2 * velocities[0][1] - w  # let it approach
         places.append((at[0] - u * t, at[1] - w * t))
@@ -117,7 +117,7 @@ def _moving(rng: np.random.Generator) -> Start | None:
 
 def pairs(rng: np.random.Generator) -> Case:
     """A disk meets two others at once: at mirror images, or where numbers of few bits say so."""
-    start = (_at_rest, _mirrored, _moving)[int(rng.integers(3))](rng)
+    start = (at_rest, mirrored, moving)[int(rng.integers(3))](rng)
     if start is None:
         return pairs(rng)
     masses = [1.0, float(rng.choice([1.0, 2.0])), 1.0]
@@ -135,7 +135,7 @@ def walls(rng: np.random.Generator) -> Case:
 def _in_a_valley(rng: np.random.Generator) -> Case:
     """On the axis of two walls that are mirror images."""
     t, r = _when(rng), float(rng.choice([0.5, 0.25, 0.0]))
-    x, low = float(rng.choice([3.0, 1.0, 0.625])), _dyadic(rng, -1, 1)
+    x, low = float(rng.choice([3.0, 1.0, 0.625])), dyadic(rng, -1, 1)
     rise, wide = float(rng.uniform(0.2, 3.0)), float(rng.choice([3.0, 2.0]))
     points = [(x - wide, low + rise), (x, low), (x + wide, low + rise)]
     at = low + r * math.hypot(rise, wide) / wide  # where it meets both
@@ -152,8 +152,8 @@ def _in_a_valley(rng: np.random.Generator) -> Case:
 def _in_a_corner(rng: np.random.Generator) -> Case:
     """Into a corner of a box, in numbers of few bits."""
     t, r, size = _when(rng), 0.25, 4.0
-    v = 2.0 ** float(np.floor(np.log2(_dyadic(rng, 0.25, 1.5) / t)))
-    share = _dyadic(rng, 0.25, 1.0, 4)
+    v = 2.0 ** float(np.floor(np.log2(dyadic(rng, 0.25, 1.5) / t)))
+    share = dyadic(rng, 0.25, 1.0, 4)
     place = (r + v * t, r + share * v * t)
     if max(place) > size - r:
         return _in_a_corner(rng)
