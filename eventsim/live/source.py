@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 from eventsim.errors import EventsimError, SceneError
 from eventsim.scene import Scene
-from eventsim.scene.files import scene_from_dict
+from eventsim.scene.files import scene_from_dict, tables_of_toml, with_lines
 from eventsim.scene.gallery import Value, gallery
 from eventsim.scene.walls import parts_of
 
@@ -60,18 +59,19 @@ class Text:
     def scene(self) -> Scene:
         """Return the scene; other files it names are not read."""
         try:
-            data = tomllib.loads(self.text)
-        except ValueError as error:
-            raise SceneError(f"this is not valid TOML: {error}") from None
-        except RecursionError:
-            raise SceneError("this is nested too deeply for a scene file") from None
+            data = tables_of_toml(self.text)
+        except SceneError as error:
+            raise SceneError(f"this {error}") from None
         if "disks_file" in data:
             raise SceneError("disks_file: the live view reads no other files; start it with eventsim live SCENE")
         gases = data.get("gas")
         for gas in gases if isinstance(gases, list) else ():
             if isinstance(gas, dict):
                 demand_few(gas.get("count", 0), "gas.count")
-        return scene_from_dict(data)
+        try:
+            return scene_from_dict(data)
+        except SceneError as error:
+            raise with_lines(error, self.text, data) from None
 
 
 def demand_small(scene: Scene) -> None:

@@ -65,3 +65,11 @@ class Open:
 Domain: TypeAlias = Box | Periodic | Channel | Open
 DOMAINS: dict[str, type[Domain]] = {kind.kind: kind for kind in (Box, Periodic, Channel, Open)}
 BOUNDARY_NAMES = ("left", "right", "bottom", "top")
+
+
+def hard_sides(domain: Domain) -> tuple[str, ...]:
+    """The names of the sides that are walls: four of a box, two of a channel, else none."""
+    if isinstance(domain, Open):
+        return ()
+    along_x, along_y = domain.periodic
+    return (() if along_x else BOUNDARY_NAMES[:2]) + (() if along_y else BOUNDARY_NAMES[2:])

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import json
 import math
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
-from eventsim.reading import reading
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import Domain, Open
 from eventsim.scene.overrides import apply_overrides, is_shallow
 from eventsim.scene.scene import Scene
+from eventsim.scene.texts import tables_of_file, tables_of_toml, with_lines
 from eventsim.scene.walls.wall import Wall, keys_of
 
 __all__ = [
@@ -29,14 +28,12 @@ __all__ = [
     "scene_to_dict",
     "scene_to_json",
     "scene_to_toml",
+    "tables_of_toml",
+    "with_lines",
 ]
 
 DISKS_IN_PIECE = 256
 DISKS_BESIDE = "disks.npz"
-
-
-MOST_BYTES = 1 << 30
-"""Of a scene file: some ten million disks."""
 
 
 def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
@@ -50,9 +47,14 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     Raises:
         SceneError: with all problems of the file.
     """
-    path = Path(path)
-    data = _read(path)
-    return scene_from_dict(apply_overrides(data, overrides), path.parent, str(path), seed)
+    path, settings = Path(path), list(overrides or ())
+    data, text = tables_of_file(path)
+    changed = apply_overrides(data, settings)
+    try:
+        return scene_from_dict(changed, path.parent, None, seed)
+    except SceneError as error:
+        told = error if path.suffix.lower() == ".json" else with_lines(error, text, data, settings)
+        raise SceneError(f"{path}: {problem}" for problem in told.problems) from None
 
 
 def draws_at_random(path: str | Path, overrides: Iterable[str] | None = None) -> bool:
@@ -63,7 +65,7 @@ def draws_at_random(path: str | Path, overrides: Iterable[str] | None = None) ->
     """
     from eventsim.scene.tables import uses_chance
 
-    return uses_chance(apply_overrides(_read(Path(path)), overrides))
+    return uses_chance(apply_overrides(tables_of_file(Path(path))[0], overrides))
 
 
 def scene_from_dict(
@@ -188,47 +190,6 @@ def scene_to_toml(scene: Scene) -> str:
         if disk.get("mass") == "inf":
             disk["mass"] = math.inf
     return tomli_w.dumps(data)
-
-
-def _read(path: Path) -> dict[str, Any]:
-    """The tables of a file."""
-    with reading(path, SceneError, "is not a scene file", MOST_BYTES) as file:
-        try:
-            text = file.read().decode("utf-8").replace("\r\n", "\n")
-        except UnicodeDecodeError:
-            raise SceneError(f"{path}: is not a text file (UTF-8)") from None
-    try:
-        data = json.loads(text, object_pairs_hook=_once) if path.suffix.lower() == ".json" else tomllib.loads(text)
-    except _TwiceError as error:
-        raise SceneError(f"{path}: gives the key {error.args[0]!r} twice in one table") from None
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"{path}: is not valid TOML: {error}") from None
-    except json.JSONDecodeError as error:
-        place = f"(at line {error.lineno}, column {error.colno})"
-        raise SceneError(f"{path}: is not valid JSON: {error.msg} {place}") from None
-    except RecursionError:
-        raise SceneError(f"{path}: is nested too deeply for a scene file") from None
-    except ValueError:  # Python reads no whole number of thousands of digits
-        raise SceneError(f"{path}: holds a number with too many digits") from None
-    if not isinstance(data, dict):
-        raise SceneError(f"{path}: must be a JSON object with the keys of a scene")
-    if not is_shallow(data):
-        raise SceneError(f"{path}: is nested too deeply for a scene file")
-    return data
-
-
-class _TwiceError(Exception):
-    """A table of a JSON file has a key more than once; args: the key."""
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A table, each key of which is given once, as TOML demands."""
-    table: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in table:
-            raise _TwiceError(key)
-        table[key] = value
-    return table
 
 
 def _domain_table(domain: Domain) -> dict[str, Any]:

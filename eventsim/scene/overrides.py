@@ -31,12 +31,10 @@ def apply_overrides(data: Mapping[str, Any], overrides: Iterable[str] | None) ->
         path, equals, value = override.partition("=")
         steps = re.sub(r"\[(\d+)\]", r".\1", path.strip()).split(".")
         if not equals or not all(steps):
-            problems.append(
-                f"setting {override!r}: must be key=value, like restitution=0.9 or gas.0.count=500"
-            )
+            problems.append(f"setting {override!r}: must be key=value, like restitution=0.9 or gas.0.count=500")
             continue
         try:
-            _set(changed, steps, _value(value.strip()))
+            _set(changed, steps, value_of(value.strip()))
         except SceneError as error:
             problems += [f"setting {override!r}: {problem}" for problem in error.problems]
     if problems:
@@ -58,7 +56,7 @@ def is_shallow(data: object) -> bool:
     return not level
 
 
-def _value(written: str) -> Any:
+def value_of(written: str) -> Any:
     """The value that TOML sees, or the text itself."""
     try:
         table = tomllib.loads(f"value = {written}")

@@ -16,7 +16,7 @@ from eventsim.formulas.walls.point import end_of
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Shape, Thin
 from eventsim.scene.disks import Floats
-from eventsim.scene.domain import BOUNDARY_NAMES, Channel, Domain, Open, Periodic
+from eventsim.scene.domain import Channel, Domain, Open, Periodic, hard_sides
 from eventsim.scene.joints import joints_of
 from eventsim.scene.numbers import Point
 from eventsim.scene.walls import Wall
@@ -44,13 +44,13 @@ def boundaries_of(domain: Domain) -> tuple[tuple[Boundary, ...], tuple[str, ...]
         return (), ()
     width, height = domain.size
     if isinstance(domain, Channel):
-        return (Boundary(1, 0.0, 1.0, 0), Boundary(1, height, -1.0, 1)), BOUNDARY_NAMES[2:]
+        return (Boundary(1, 0.0, 1.0, 0), Boundary(1, height, -1.0, 1)), hard_sides(domain)
     return (
         Boundary(0, 0.0, 1.0, 0),
         Boundary(0, width, -1.0, 1),
         Boundary(1, 0.0, 1.0, 2),
         Boundary(1, height, -1.0, 3),
-    ), BOUNDARY_NAMES
+    ), hard_sides(domain)
 
 
 def features_of(

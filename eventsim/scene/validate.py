@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from eventsim.letters import is_name
 from eventsim.scene.disks import Disks
-from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open
+from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open, hard_sides
 from eventsim.scene.names import DiskNames, SelectedNames
 from eventsim.scene.numbers import (
     FASTEST,
@@ -128,16 +128,14 @@ def domain_problems(domain: Domain) -> Iterator[str]:
 
 def wall_problems(walls: Sequence[Wall], domain: Domain) -> list[str]:
     """Every rule that the walls of a scene break, one sentence each."""
-    problems = list(_wall_name_problems(walls))
+    problems = list(_wall_name_problems(walls, hard_sides(domain)))
     for i, wall in enumerate(walls):
         broken = list(wall.problems()) or list(_period_problems(wall, domain))
         problems += [f"wall[{i}]{key}" for key in broken]
     return problems
 
 
-def _point_wall_problems(
-    disks: Disks, walls: Sequence[Wall], gravity: Point | None, names: DiskNames
-) -> Iterator[str]:
+def _point_wall_problems(disks: Disks, walls: Sequence[Wall], gravity: Point | None, names: DiskNames) -> Iterator[str]:
     """Walls that only points can meet, along straight lines: what moves is a point, and nothing falls."""
     for i, wall in enumerate(walls):
         if not wall.for_points:
@@ -149,15 +147,15 @@ def _point_wall_problems(
             yield f"wall[{i}]: {names.disk(int(k))} has radius {disks.radius[k]}: only points (radius 0) can meet an {wall.kind}"
 
 
-def _wall_name_problems(walls: Sequence[Wall]) -> Iterator[str]:
+def _wall_name_problems(walls: Sequence[Wall], sides: Sequence[str]) -> Iterator[str]:
     """Names are unique in the log, edges included, and fit into a line of it."""
     owner: dict[str, int] = {}
     for i, (wall, name) in enumerate(zip(walls, wall_names(walls), strict=True)):
         if not name.strip() or not is_name(name) or any(mark in name for mark in ',"'):
             rule = "must not be empty nor hold a comma, a quotation mark, a line end or a control character"
             yield f"wall[{i}].name = {name!r}: {rule}"
-        elif name in BOUNDARY_NAMES:
-            yield f"wall[{i}].name = {name!r}: left, right, bottom and top are the sides of the domain"
+        elif name in sides:
+            yield f"wall[{i}].name = {name!r}: {', '.join(sides[:-1])} and {sides[-1]} are the sides of the domain"
         taken = {name, *(str(part.name) for part in wall.parts(name))}
         for used in sorted(taken & owner.keys()):
             yield f"wall[{i}]: the name {used!r} is taken by wall[{owner[used]}]: names must be unique"

@@ -1,0 +1,300 @@
+"""Keys of other programs and values in other forms, as people write them into scenes, and the line that would be right."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+EXAMPLES = {
+    "name": 'name = "ramp"',
+    "until": "until = 2.0",
+    "events": "events = 100000",
+    "start_time": "start_time = 0.0",
+    "gravity": "gravity = [0.0, -9.81]",
+    "restitution": "restitution = 0.9",
+    "contact_duration": "contact_duration = 1e-6",
+    "equilibration": "equilibration = 1.0",
+    "pair": "pair = 0.9",
+    "wall": "wall = 1.0",
+    "kind": 'kind = "box"',
+    "size": "size = [2.0, 1.0]",
+    "origin": "origin = [0.0, 0.0]",
+    "position": "position = [0.3, 0.8]",
+    "velocity": "velocity = [1.0, 0.0]",
+    "radius": "radius = 0.05",
+    "mass": "mass = 2.0",
+    "count": "count = 20",
+    "packing_fraction": "packing_fraction = 0.3",
+    "temperature": "temperature = 1.0",
+    "speed": "speed = 1.0",
+    "arrangement": 'arrangement = "random"',
+    "region": "region = [1.3, 0.3, 1.9, 0.9]",
+    "seed": "seed = 7",
+    "path": 'path = "start.csv"',
+    "start": "start = [0.0, 0.5]",
+    "end": "end = [1.2, 0.2]",
+    "through": "through = [0.5, 0.5]",
+    "center": "center = [0.0, 0.0]",
+    "points": "points = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.8]]",
+    "semi_axes": "semi_axes = [2.0, 1.0]",
+    "direction": "direction = [1.0, 0.0]",
+}
+"""A line for each key that a table may have."""
+
+TEXTS = ("name", "kind", "arrangement", "path")
+WHOLES = ("events", "count", "seed")
+PAIRS = tuple(key for key, line in EXAMPLES.items() if re.fullmatch(r"\w+ = \[[^,]+, [^,]+\]", line))
+
+LISTS = ("disk", "disks_file", "gas", "wall")
+TABLES = {
+    **dict.fromkeys(("ball", "particle", "atom", "disc", "circle", "puck", "body", "sphere", "post"), "[[disk]]"),
+    **dict.fromkeys(("obstacle", "line", "segment", "border", "polygon", "arc", "barrier", "ramp"), "[[wall]]"),
+    **dict.fromkeys(("box", "world", "container", "boundary", "space", "table", "periodic", "open"), "[domain]"),
+    **{name: f"[[{name}]]" for name in LISTS},
+}
+"""What people call tables."""
+
+ALIASES: dict[str, dict[str, str]] = {
+    "": {
+        "until": "time t_end tmax t_max duration end end_time stop stop_time runtime total_time",
+        "events": "max_events n_events collisions",
+        "start_time": "t0 t_start begin",
+        "gravity": "g acceleration",
+        "restitution": "e elasticity bounce bounciness cor coefficient_of_restitution",
+        "name": "title",
+    },
+    "domain": {"kind": "type shape boundary boundaries", "size": "dimensions lengths box", "origin": "corner offset"},
+    "disk": {
+        "position": "pos place center centre xy location",
+        "velocity": "vel v speed_vector",
+        "radius": "r rad",
+        "mass": "m weight",
+    },
+    "gas": {
+        "count": "n number amount disks balls particles",
+        "packing_fraction": "eta phi density filling fraction",
+        "temperature": "t temp kt",
+        "speed": "v velocity",
+        "arrangement": "layout placement lattice",
+        "radius": "r rad",
+        "mass": "m weight",
+        "region": "area box",
+    },
+    "wall": {
+        "kind": "type shape",
+        "start": "from a p1 begin",
+        "end": "to b p2 stop",
+        "points": "vertices corners nodes",
+        "center": "centre pos position",
+        "radius": "r rad",
+    },
+    "disks_file": {"path": "file filename name source"},
+}  # fmt: skip
+
+WORDS = {
+    "kind": "box:rectangle,rect,square,walls,closed periodic:torus,pbc,wrap open:free,infinite,none,plane channel:tube,pipe "
+    "segment:line,straight,wall polygon:poly,triangle,rectangle circle:ring,container,disk polyline:chain,path",
+    "arrangement": "random:uniform,rand square:grid,lattice,cubic hexagonal:hex,hexagon,triangular compressed:dense,packed",
+}
+
+NEEDLESS = {
+    **dict.fromkeys(
+        ("dt", "timestep", "time_step", "step", "fps", "steps"),
+        "there is no time step: contacts are computed, not looked for",
+    ),
+    **dict.fromkeys(("color", "colour"), "colours are chosen by animate --color"),
+}
+
+
+class Remedy(NamedTuple):
+    """Why a key or value will not do, and the lines that would; no lines where it is best left out."""
+
+    why: str
+    write: str
+
+
+def remedy(
+    table: str, key: str, here: Mapping[str, Any], known: tuple[str, ...], scene_keys: tuple[str, ...]
+) -> Remedy | None:
+    """What to write instead of a key or its value; None where nothing is known.
+
+    Args:
+        table: the name of the table, "" for the scene itself.
+        key: the key, of the file's own spelling.
+        here: the keys and values of that table.
+        known: the keys that such a table may have.
+        scene_keys: single keys of the scene itself.
+    """
+    try:
+        return _remedy(table, key, here, known, scene_keys)
+    except (ArithmeticError, ValueError):  # numbers of thousands of digits
+        return None
+
+
+def _remedy(
+    table: str, key: str, here: Mapping[str, Any], known: tuple[str, ...], scene_keys: tuple[str, ...]
+) -> Remedy | None:
+    value = here[key]
+    if key in known:
+        return _of_value(table, key, value)
+    word = re.sub(r"[^a-z]+$", "", key.lower().replace("-", "_"))
+    if word in NEEDLESS:
+        return Remedy(NEEDLESS[word], "")
+    own = next((f(here) for keys, f in COMBINED.get(table, {}).items() if key in keys and _numbers(here, keys)), None)
+    if own is not None:
+        return own
+    if not table:
+        header = TABLES.get(word) or TABLES.get(word.removesuffix("s"))
+        if isinstance(value, Mapping | list) and header is not None:
+            return Remedy(f"such a table is called {header}", header)
+        if word == "domain" and isinstance(value, Mapping):
+            return Remedy("names are written small", "[domain]")
+    right = word if word in known else _alias(table, word)
+    if right is not None:
+        return Remedy(f"the key is {right}", _line(table, right, value))
+    if table and word in scene_keys:
+        return Remedy(f"{word} is a key of the scene: it stands above the first table", _line("", word, value))
+    right = _alias("", word) if table else None
+    if right is not None:
+        return Remedy(f"the key is {right}, above the first table", _line("", right, value))
+    return None
+
+
+def _alias(table: str, word: str) -> str | None:
+    return next((key for key, words in ALIASES.get(table, {}).items() if word in words.split()), None)
+
+
+def _line(table: str, key: str, value: Any) -> str:
+    """A line with a key, its value mended where that is needed."""
+    mended = None if _fits(key, value) else _of_value(table, key, value)
+    return f"{key} = {written(value)}" if mended is None else mended.write
+
+
+def _fits(key: str, value: Any) -> bool:
+    """Whether a value is of the form that a key asks for."""
+    if key in PAIRS:
+        return isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
+    return (
+        isinstance(value, str)
+        if key in TEXTS
+        else isinstance(value, list)
+        if key in ("points", "region")
+        else _is_number(value)
+    )
+
+
+def written(value: Any) -> str:
+    """A value as TOML writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(written, value)) + "]"
+    return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+def _numbers(here: Mapping[str, Any], keys: tuple[str, ...]) -> bool:
+    """Whether all of these keys that are there are single numbers."""
+    return all(_is_number(here.get(key, 0.0)) for key in keys)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _two(key: str, one: str, two: str) -> Callable[[Mapping[str, Any]], Remedy]:
+    return lambda here: Remedy(
+        f"both numbers stand in {key}", f"{key} = [{written(here.get(one, 0.0))}, {written(here.get(two, 0.0))}]"
+    )
+
+
+def _polar(here: Mapping[str, Any]) -> Remedy:
+    speed, angle = float(here.get("speed", 1.0)), float(here.get("angle", 0.0))
+    turn, unit = (math.radians(angle), "degrees") if abs(angle) > 2.0 * math.pi or angle == 0.0 else (angle, "radians")
+    velocity = [round(speed * math.cos(turn), 6) + 0.0, round(speed * math.sin(turn), 6) + 0.0]
+    taken = f", the angle read as {unit}" if "angle" in here else ""
+    return Remedy(f"a disk has a velocity [vx, vy]{taken}", f"velocity = {written(velocity)}")
+
+
+def _half(here: Mapping[str, Any]) -> Remedy:
+    return Remedy("the size of a disk is its radius, half the diameter", f"radius = {written(here['diameter'] / 2)}")
+
+
+COMBINED: dict[str, dict[tuple[str, ...], Callable[[Mapping[str, Any]], Remedy]]] = {
+    "disk": {
+        ("x", "y"): _two("position", "x", "y"),
+        ("vx", "vy"): _two("velocity", "vx", "vy"),
+        ("speed", "angle"): _polar,
+        ("diameter",): _half,
+    },
+    "gas": {("diameter",): _half},
+    "wall": {("x1", "y1"): _two("start", "x1", "y1"), ("x2", "y2"): _two("end", "x2", "y2"), ("diameter",): _half},
+    "domain": {("width", "height"): _two("size", "width", "height"), ("w", "h"): _two("size", "w", "h")},
+}
+"""Keys that together say what one key says here."""
+
+
+def _of_value(table: str, key: str, value: Any) -> Remedy | None:
+    """What to write instead of the value of a known key."""
+    example = Remedy("", EXAMPLES[key]) if key in EXAMPLES else None
+    mended: Any = None
+    if key in WORDS and isinstance(value, str):
+        groups = [group.partition(":") for group in WORDS[key].split()]
+        mine = groups if table == "wall" and key == "kind" else groups[:4]
+        fits = [right for right, _, words in mine if value.lower() == right or value.lower() in words.split(",")]
+        mended = fits[-1] if fits else None
+    elif key in TEXTS and _is_number(value):
+        mended = str(value)
+    elif key in PAIRS:
+        mended = _pair(key, value)
+    elif key == "restitution" and _is_number(value) and 1.0 < value <= 100.0:
+        return Remedy("it is a part of 1, not per cent", f"{key} = {written(value / 100)}")
+    elif isinstance(value, str):
+        mended = number_in(value)
+    elif isinstance(value, list) and len(value) == 1 and _is_number(value[0]):
+        mended = value[0]
+    if key in WHOLES and isinstance(mended, float):
+        mended = round(mended)
+    return example if mended is None else Remedy("", f"{key} = {written(mended)}")
+
+
+def _pair(key: str, value: Any) -> list[Any] | None:
+    """Two numbers that somebody means by a value; None where that is open."""
+    if isinstance(value, str):
+        found = [
+            number_in(part)
+            for part in re.split(r"[;\s]+|,\s+|,(?=.*\.)|(?<=\d)x(?=\d)", value.strip(" ()[]{}"))
+            if part
+        ]
+        return found if len(found) == 2 and None not in found else None
+    if isinstance(value, Mapping) and value.keys() == {"x", "y"}:
+        return [value["x"], value["y"]]
+    if isinstance(value, list) and len(value) == 4 and all(isinstance(x, int) for x in value):
+        return [float(f"{value[0]}.{value[1]}"), float(f"{value[2]}.{value[3]}")]  # decimal commas
+    if isinstance(value, list) and len(value) == 2:
+        found = [x if _is_number(x) else number_in(str(x)) for x in value]
+        return None if None in found else found
+    if _is_number(value):
+        return {"gravity": [0.0, -abs(float(value))], "size": [value, value], "semi_axes": [value, value]}.get(
+            key, [value, 0.0] if key == "velocity" else None
+        )
+    return None
+
+
+NUMBER = re.compile(r"([-+]?)(\d*)(?:[.,](\d*))?([eE][-+]?\d+)?\s*([*/]\s*\d+\.?\d*|%|[A-Za-z°µ²^/]\S*)?")
+
+
+def number_in(text: str) -> float | int | None:
+    """The number that somebody means by a text: with a decimal comma, no digit before the point, a unit, a fraction."""
+    found = NUMBER.fullmatch(text.strip())
+    if found is None or not (found[2] or found[3]):
+        return None
+    sign, whole, part, power, rest = (group or "" for group in found.groups())
+    if not part and not power and not rest and "." not in text and "," not in text:
+        return int(sign + whole)
+    number = float(f"{sign}{whole or 0}.{part or 0}{power}")
+    if rest.startswith(("*", "/")) and re.fullmatch(r"\d+\.?\d*", rest[1:].strip()):
+        other = float(rest[1:])
+        return number * other if rest[0] == "*" else number / other if other else None
+    return number / 100.0 if rest == "%" else number

@@ -1,0 +1,186 @@
+"""Slips of the pen in scene files that are no TOML: which line, what is wrong there, and what would be right.
+
+A line is mended by one rule after the other; what is proposed has been read: the text is TOML then, at least as far as that line.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Iterator
+from itertools import islice
+from typing import NamedTuple
+
+from eventsim.scene.quoting import HEADER, quoted
+from eventsim.scene.remedies import EXAMPLES, LISTS, PAIRS, TEXTS, WHOLES, written
+
+LONGEST = 1 << 20
+"""Letters of a file that is read again with a line mended."""
+
+LINES_BEFORE = 3
+"""Where an error is noticed, the slip may be so many lines before: a bracket that is not closed."""
+
+WIDEST = 400
+"""Letters of a line that is mended."""
+
+PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
+VALUE = r"(?<![\w.])"
+POWER = r"(?:(\d+(?:\.\d+)?)\s*\*\s*)?10(?:\^|\*\*)([-+]?\d+)"
+UNIT = r"(=\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[A-Za-zµ°][\w/²^*-]*\s*(?=#|$)"
+
+
+class Slip(NamedTuple):
+    """What is wrong, and a function of a line and its key that gives it without."""
+
+    why: str
+    mend: Callable[[str, str], str]
+
+
+def _sub(pattern: str, by: str | Callable[[re.Match[str]], str]) -> Callable[[str, str], str]:
+    return lambda line, key: re.sub(pattern, by, line)
+
+
+def _fraction(match: re.Match[str]) -> str:
+    one, other = float(match[1]), float(match[3])
+    return written(one * other) if match[2] == "*" else written(one / other) if other else match[0]
+
+
+def _comma(line: str, key: str) -> str:
+    head, equals, value = line.partition("=")
+    if key in WHOLES:
+        return head + equals + re.sub(r"(?<=\d)[,'](?=\d{3})", "", value)
+    if key in PAIRS and "[" not in value and "(" not in value:
+        return line
+    return head + equals + re.sub(r"(?<![\d.,])(\d+),(\d+)(?![\d.,])", r"\1.\2", value)
+
+
+def _semicolon(line: str, key: str) -> str:
+    between = r"(?<=[\d\]])\s*;\s*(?=[-+.\d\[])"
+    return re.sub(between, ", ", re.sub(r"(\d),(\d)", r"\1.\2", line)) if re.search(between, line) else line
+
+
+def _pair(line: str, key: str) -> str:
+    number = r"[-+]?[\d.][\d.eE+-]*"
+    return re.sub(rf"(=\s*)({number})\s*[,;x]\s*({number})(?=\s*(#|$))", r"\1[\2, \3]", line) if key in PAIRS else line
+
+
+def _closed(line: str, key: str) -> str:
+    code, mark, comment = line.partition("#")
+    code = code.rstrip()
+    if code.count("[") > code.count("]"):
+        return code + "]" * (code.count("[") - code.count("]")) + (f"  {mark}{comment}" if mark else "")
+    if code.count("]") == code.count("[") + 1 and "=" in code:
+        return re.sub(r"=\s*", "= [", line, count=1)
+    if code.count("{") > code.count("}"):
+        return code + "}"
+    return line + '"' if code.count('"') % 2 else line
+
+
+def _worded(line: str, key: str) -> str:
+    if key in TEXTS:
+        return re.sub(r"=\s*([A-Za-z][^\"#=]*?)\s*(?=#|$)", r'= "\1"', line)
+    return line
+
+
+SLIPS = (
+    Slip("quotation marks are straight", _sub("[“”„‟«»]", '"')),
+    Slip("a comment begins with #", _sub(r"\s*(//|%%|--).*$", "")),
+    Slip("a line ends without a mark", _sub(r"[;,]\s*$", "")),
+    Slip("tables of a list stand in double brackets", _sub(r"^\s*\[{1,2}\s*(" + "|".join(LISTS) + r")\s*\]{0,2}\s*$", r"[[\1]]")),
+    Slip("the name of a table stands in brackets", _sub(r"^\s*\[\s*(\w+)\s*$", r"[\1]")),
+    Slip("a key is followed by =", _sub(r"^(\s*\w+)\s*(?::=|==|=>|:)\s*", r"\1 = ")),
+    Slip("a key is followed by =", _sub(r"^(\s*\w+)\s+(?=[-+.\d\[\"(])", r"\1 = ")),
+    Slip("a key is one word", _sub(r"^(\s*\w+)[ ](\w+)(?=\s*=)", r"\1_\2")),
+    Slip("lists stand in square brackets", _sub(r"\(([^()]*)\)", r"[\1]")),
+    Slip("lists stand in square brackets", _sub(r"\{([^{}=]*)\}", r"[\1]")),
+    Slip("two numbers stand in square brackets", _pair),
+    Slip("a number has a decimal point, not a comma", _comma),
+    Slip("a comma stands between two numbers, and a point in each", _semicolon),
+    Slip("a comma stands between two numbers", _sub(r"(?<=\d)[ \t]+(?=[-+.]?\d)", ", ")),
+    Slip("a comma stands between two points", _sub(r"\]\s*\[(?=[-+.\d])", "], [")),
+    Slip("a number has a digit before its point", _sub(VALUE + r"([-+]?)\.(\d)", r"\g<1>0.\2")),
+    Slip("a number has a digit after its point", _sub(r"(\d)\.(?![\d])", r"\1.0")),
+    Slip("a number begins with no zero", _sub(VALUE + r"0+(\d)", r"\1")),
+    Slip("it is a part of 1, not per cent", _sub(r"(\d+(?:\.\d+)?)\s*%", lambda m: written(float(m[1]) / 100.0))),
+    Slip("a file does not compute", _sub(VALUE + r"(\d+(?:\.\d+)?)\s*([*/])\s*(\d+(?:\.\d+)?)", _fraction)),
+    Slip("a power of ten is written with e", _sub(POWER, lambda m: f"{m[1] or 1}e{m[2]}")),
+    Slip("units are your own: a number stands alone", _sub(UNIT, r"\1")),
+    Slip("true and false are written small", _sub(r"\b(True|False)\b", lambda m: m[1].lower())),
+    Slip("infinity is written inf", _sub(r"\b(?:infinity|Infinity|Inf|INF|oo|math\.inf|np\.inf)\b", "inf")),
+    Slip("a text stands in quotation marks", _worded),
+    Slip("what is opened is closed", _closed),
+)  # fmt: skip
+"""In the order in which they are tried; each alone, then all after one another."""
+
+
+def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
+    """What is wrong with a text that is no TOML: a sentence, the line, a caret, and the line that would be right."""
+    match = PLACE.fullmatch(str(error))
+    lines = text.split("\n")
+    if match is None or not lines:
+        return str(error)
+    line = min(int(match[2]) if match[2] else len(lines), len(lines))
+    column = int(match[3]) - 1 if match[2] else len(lines[line - 1])
+    if len(text) <= LONGEST:
+        for here in _lines_before(lines, line):
+            for why, right in _mended(lines, here):
+                if _reads_on(lines, here, right, line):
+                    return f"{why} (at line {here})" + _shown(lines, here, right)
+    key = _key_of(lines[line - 1])
+    example = "" if not key or key not in EXAMPLES else EXAMPLES[key]
+    return f"{match[1]} (at line {line}, column {column + 1})" + quoted(
+        lines[line - 1], column, "", example, f"line {line}"
+    )
+
+
+def _lines_before(lines: list[str], line: int) -> list[int]:
+    """The line of an error and some that hold anything before it, nearest first."""
+    near = (k for k in range(line, 0, -1) if lines[k - 1].strip() and not lines[k - 1].lstrip().startswith("#"))
+    return [k for k in islice(near, 1 + LINES_BEFORE) if len(lines[k - 1]) <= WIDEST]
+
+
+def _key_of(line: str) -> str:
+    match = re.match(r"\s*([\w-]+)", line)
+    return match[1] if match else ""
+
+
+def _mended(lines: list[str], number: int) -> Iterator[tuple[str, str]]:
+    """What may be wrong with a line, and the line without it."""
+    line = lines[number - 1]
+    key = _key_of(line)
+    for slip in SLIPS:
+        if (right := slip.mend(line, key)) != line:
+            yield slip.why, right
+    right, found = line, list[str]()
+    for slip in SLIPS:
+        if (mended := slip.mend(right, key)) != right:
+            right, found = mended, [*found, slip.why]
+    if len(found) > 1:
+        yield "; ".join(dict.fromkeys(found)), right
+    header = next((HEADER.match(before) for before in reversed(lines[: number - 1]) if HEADER.match(before)), None)
+    if header is not None and header[2] in LISTS and "=" in line:
+        yield f"this table has {key} already; another one begins with its name", f"[[{header[2]}]]\n{line}"
+    if HEADER.match(line) is not None:
+        yield "this table was begun before: put its keys there, and leave this line out", ""
+
+
+def _reads_on(lines: list[str], number: int, right: str, last: int) -> bool:
+    """Whether a text can be read, or at least beyond line `last`, once line `number` is right."""
+    text = "\n".join([*lines[: number - 1], right, *lines[number:]])
+    if right in (f"[[{name}]]" for name in LISTS):  # all of that name
+        text = re.sub(rf"(?m)^\s*\[{right.strip('[]')}\]\s*$", right, text)
+    try:
+        tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        match = PLACE.fullmatch(str(error))
+        return match is not None and match[2] is not None and int(match[2]) > last + right.count("\n")
+    except (ValueError, RecursionError):
+        return False
+    return True
+
+
+def _shown(lines: list[str], number: int, right: str) -> str:
+    """A line, a caret where it departs from what is right, and that."""
+    line = lines[number - 1].rstrip()
+    same = next((k for k, (a, b) in enumerate(zip(line, right, strict=False)) if a != b), min(len(line), len(right)))
+    return quoted(line, same if "\n" not in right else 0, "", right, f"line {number}")

@@ -1,0 +1,183 @@
+"""Mistakes that beginners make in a scene file: each is answered with its line, a caret, and the line that would be right."""
+
+import pytest
+
+from eventsim.errors import SceneError
+from eventsim.scene.files import load_scene
+from eventsim.scene.remedies import EXAMPLES
+from eventsim.scene.schema import DISK, DISKS_FILE, DOMAIN, GAS, RESTITUTION, WALL
+from eventsim.scene.schema import SCENE as SCENE_KEYS
+
+SCENE = """\
+until = 2.0
+gravity = [0.0, -9.81]
+restitution = 0.9
+[domain]
+kind = "box"
+size = [2.0, 1.0]
+[[wall]]
+kind = "segment"
+start = [0.0, 0.5]
+end = [0.4, 0.5]
+[[disk]]
+position = [0.3, 0.8]
+velocity = [1.0, 0.0]
+radius = 0.05
+mass = 2.0
+[[gas]]
+count = 20
+radius = 0.02
+temperature = 1.0
+arrangement = "random"
+region = [1.0, 0.0, 2.0, 1.0]
+seed = 7
+"""
+
+MISTAKES = [
+    # a line of SCENE, what somebody wrote instead, what the caret points to, what is proposed
+    ("radius = 0.05", "radius = 0,05", ",05", "radius = 0.05"),
+    ("radius = 0.05", "radius = .05", ".05", "radius = 0.05"),
+    ("velocity = [1.0, 0.0]", "velocity = [1., 0.]", ", 0.]", "velocity = [1.0, 0.0]"),
+    ("position = [0.3, 0.8]", "position = [0,3, 0,8]", "[0,3", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "position = [0,3; 0,8]", ",3; 0,8]", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "position = (0.3, 0.8)", "(0.3", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "position = {0.3, 0.8}", "{0.3", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "position = 0.3, 0.8", "0.3, 0.8", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "position = [0.3 0.8]", " 0.8]", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "position = [0.3, 0.8", "", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", 'position = "0.3, 0.8"', '"0.3', "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "x = 0.3\ny = 0.8", "x = 0.3", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "pos = [0.3, 0.8]", "pos", "position = [0.3, 0.8]"),
+    ('kind = "box"', "kind = box", "box", 'kind = "box"'),
+    ('kind = "box"', "kind = “box”", "“box”", 'kind = "box"'),
+    ('kind = "box"', 'kind = "box', "", 'kind = "box"'),
+    ('kind = "box"', 'kind = "Box"', '"Box"', 'kind = "box"'),
+    ('kind = "box"', 'kind = "rectangle"', '"rectangle"', 'kind = "box"'),
+    ('kind = "box"', 'type = "box"', "type", 'kind = "box"'),
+    ('kind = "segment"', 'kind = "line"', '"line"', 'kind = "segment"'),
+    ("size = [2.0, 1.0]", "width = 2.0\nheight = 1.0", "width", "size = [2.0, 1.0]"),
+    ("size = [2.0, 1.0]", "size = 2 x 1", "2 x 1", "size = [2, 1]"),
+    ("[[disk]]", "[disk]", "[disk]", "[[disk]]"),
+    ("[[disk]]", "[[disk]", "", "[[disk]]"),
+    ("[[disk]]", "[[ball]]", "[[ball]]", "[[disk]]"),
+    ("[[disk]]", "[[Disk]]", "[[Disk]]", "[[disk]]"),
+    ("[domain]", "[[domain]]", "[[domain]]", "[domain]"),
+    ("mass = 2.0", "mass = 2.0\n[domain]", "[domain]", None),
+    ("mass = 2.0", "mass = 2.0\nposition = [0.5, 0.5]\nradius = 0.05", "position", "[[disk]]\nposition = [0.5, 0.5]"),
+    ("mass = 2.0", "mass: 2.0", ": 2.0", "mass = 2.0"),
+    ("mass = 2.0", "mass 2.0", "2.0", "mass = 2.0"),
+    ("mass = 2.0", "mass = 2.0 kg", " kg", "mass = 2.0"),
+    ("mass = 2.0", "mass = 4/2", "4/2", "mass = 2.0"),
+    ("mass = 2.0", "mass = 2.0;", ";", "mass = 2.0"),
+    ("mass = 2.0", "mass = 2.0  // heavy", "  // heavy", "mass = 2.0"),
+    ("mass = 2.0", "mass = infinity", "inity", "mass = inf"),
+    ("mass = 2.0", 'mass = "2.0"', '"2.0"', "mass = 2.0"),
+    ("mass = 2.0", "mass = 02.0", "02.0", "mass = 2.0"),
+    ("mass = 2.0", "mass = heavy", "heavy", "mass = 2.0"),
+    ("mass = 2.0", "mass =", "", "mass = 2.0"),
+    ("radius = 0.05", "diameter = 0.1", "diameter", "radius = 0.05"),
+    ("radius = 0.05", "r = 0.05", "r = 0.05", "radius = 0.05"),
+    ("radius = 0.05", "", "[[disk]]", "radius = 0.05"),
+    ("velocity = [1.0, 0.0]", "speed = 2.0\nangle = 90", "speed", "velocity = [0.0, 2.0]"),
+    ("velocity = [1.0, 0.0]", "vx = 1.0\nvy = 0.0", "vx", "velocity = [1.0, 0.0]"),
+    ("gravity = [0.0, -9.81]", "gravity = -9.81", "-9.81", "gravity = [0.0, -9.81]"),
+    ("gravity = [0.0, -9.81]", "g = 9.81", "g = 9.81", "gravity = [0.0, -9.81]"),
+    ("[[wall]]", "gravity = -9.81\n[[wall]]", "gravity", "gravity = [0.0, -9.81]\n[domain]"),
+    ("mass = 2.0", "mass = 2.0\nduration = 3", "duration", "until = 3\n[domain]"),
+    ("restitution = 0.9", "restitution = 90 %", "90 %", "restitution = 0.9"),
+    ("restitution = 0.9", "restitution = 90", "90", "restitution = 0.9"),
+    ("restitution = 0.9", "elasticity = 0.9", "elasticity", "restitution = 0.9"),
+    ("until = 2.0", "until = 2 s", " s", "until = 2"),
+    ("until = 2.0", "until = 2.0\ndt = 0.01", "dt", None),
+    ("count = 20", "n = 20", "n = 20", "count = 20"),
+    ("count = 20", "count = 1,000", ",000", "count = 1000"),
+    ("seed = 7", "", "[[gas]]", "seed = 7"),
+    ('arrangement = "random"', 'arrangement = "hex"', '"hex"', 'arrangement = "hexagonal"'),
+    ("end = [0.4, 0.5]", "to = [0.4, 0.5]", "to", "end = [0.4, 0.5]"),
+    ("radius = 0.02", "packing fraction = 0.02", " fraction", "packing_fraction = 0.02"),
+]
+
+
+def told(file, *settings):
+    with pytest.raises(SceneError) as caught:
+        load_scene(file, settings)
+    return caught.value.problems
+
+
+@pytest.mark.parametrize(("line", "wrong", "at", "right"), MISTAKES, ids=[repr(wrong) for _, wrong, _, _ in MISTAKES])
+def test_a_mistake_is_told_with_its_line_a_caret_and_the_right_line(tmp_path, line, wrong, at, right):
+    assert SCENE.count(line) == 1
+    text = SCENE.replace(line, wrong)
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    problems = told(tmp_path / "scene.toml")
+    found = []
+    for problem in problems:
+        _, *rows = problem.split("\n    ")
+        if not rows:
+            continue
+        label, _, shown = rows[0].partition(": ")
+        number = int(label.removeprefix("line "))
+        assert shown.strip() == text.splitlines()[number - 1].strip()
+        pointed = rows[0][rows[1].index("^") :]
+        found.append((pointed, [row.removeprefix("write:").strip() for row in rows[2:]]))
+    wanted = [] if right is None else right.split("\n")
+    assert any(pointed.startswith(at) and (at or not pointed) and write == wanted for pointed, write in found), problems
+
+
+@pytest.mark.parametrize(
+    ("line", "right"),
+    [
+        (line, right)
+        for line, _, _, right in MISTAKES
+        if right and "[domain]" not in right and "[[disk]]\n" not in right
+    ],
+)
+def test_what_is_proposed_makes_a_scene(tmp_path, line, right):
+    (tmp_path / "scene.toml").write_text(SCENE.replace(line, right))
+    load_scene(tmp_path / "scene.toml", ["gas.0.count=20"])
+
+
+def test_a_setting_is_quoted_as_it_was_typed(tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    for setting, caret, right in (
+        ("restitution=.17", 12, "restitution=0.17"),
+        ("gravity=-9.81", 8, "gravity=[0.0, -9.81]"),
+        ("gas.0.radius=0,01", 13, "gas.0.radius=0.01"),
+    ):
+        (problem,) = told(tmp_path / "scene.toml", setting)
+        _, typed, pointed, write = problem.split("\n    ")
+        assert typed == f"typed: {setting}"
+        assert pointed.index("^") == caret + len("typed: ")
+        assert write == f"write: {right}"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_a_mark_of_byte_order_is_no_part_of_a_scene(tmp_path, encoding):
+    for name, text in (
+        ("scene.toml", SCENE),
+        ("scene.json", '{"domain": {"kind": "open"}, "disk": [{"position": [0, 0], "radius": 1}]}'),
+    ):
+        (tmp_path / name).write_text(text, encoding=encoding)
+        assert len(load_scene(tmp_path / name).disks) > 0
+
+
+def test_sides_are_names_of_walls_where_the_domain_has_none(tmp_path):
+    wall = '[[wall]]\nkind = "segment"\nstart = [7, 1]\nend = [7, 2]\nname = "left"\n'
+    disk = "[[disk]]\nposition = [2, 2]\nradius = 0.5\n"
+    for domain in ('kind = "open"', 'kind = "periodic"\nsize = [10, 5]', 'kind = "channel"\nsize = [10, 5]'):
+        (tmp_path / "scene.toml").write_text(f"[domain]\n{domain}\n{disk}{wall}")
+        assert load_scene(tmp_path / "scene.toml").walls[0].name == "left"
+    (tmp_path / "scene.toml").write_text(
+        f'[domain]\nkind = "channel"\nsize = [10, 5]\n{disk}{wall.replace("left", "top")}'
+    )
+    (problem,) = told(tmp_path / "scene.toml")
+    assert "bottom and top are the sides of the domain" in problem
+
+
+def test_every_key_of_a_scene_has_an_example():
+    keys = {
+        str(key)
+        for schema in (SCENE_KEYS, RESTITUTION, DISK, GAS, DISKS_FILE, *DOMAIN.values(), *WALL.values())
+        for key in schema.schema
+    }
+    assert keys <= EXAMPLES.keys()
