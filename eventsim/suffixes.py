@@ -5,7 +5,9 @@ LOGS = (".csv", ".jsonl", ".npz", ".parquet")
 PART = ".part"
 """After the name of a file that grows, or is not whole yet."""
 
-EXCHANGE = (".xyz", ".gsd")
+DUMPS = (".dump", ".lammpstrj")
+LAMMPS_DATA = (".data", ".lmp")
+EXCHANGE = (".xyz", ".gsd", *DUMPS)
 """States for other programs."""
 
 STATES = (".csv", ".npz", *EXCHANGE)
@@ -15,6 +17,9 @@ READ_TABLES = (".csv", ".npz", ".parquet")
 
 TRAJECTORIES = (*READ_TABLES, *EXCHANGE)
 """Positions at times that another program wrote."""
+
+STARTS = (".csv", ".npz", *EXCHANGE, *LAMMPS_DATA)
+"""Disks at one time: what a disks_file may be."""
 
 FIGURES = (".png", ".svg", ".pdf")
 ANIMATIONS = (".mp4", ".gif", ".html", ".png")

@@ -40,23 +40,27 @@ def _is_number(word: str) -> bool:
     "--frames", type=click.IntRange(min=2), metavar="N", help="N times instead, evenly from beginning to end."
 )
 @click.option(
-    "--out", metavar="FILE", help="Write to FILE (.csv, .npz; .xyz, .gsd for other programs) instead of stdout."
+    "--out", metavar="FILE", help="Write to FILE (.csv, .npz; .xyz, .gsd, .dump for other programs) instead of stdout."
 )
+@click.option("--unwrapped", is_flag=True, help="Places that go on over the sides of a periodic domain.")
 @json_option
 @quiet_option
 def command(
-    log: str, times: tuple[float, ...], frames: int | None, out: str | None, as_json: bool, quiet: bool
+    log: str, times: tuple[float, ...], frames: int | None, out: str | None, unwrapped: bool, as_json: bool, quiet: bool
 ) -> None:
     """Print the positions and velocities of all disks at each time T of the run that LOG tells.
 
     A table with the columns time, disk, x, y, vx, vy, radius, mass; floats read back as the same bits. At the
     exact time of an event it is the state after it. The table of a single time is a disks_file for a scene.
+    .xyz is extended XYZ, .gsd that of HOOMD, .dump (or .lammpstrj) that of LAMMPS; the last two keep how often a
+    disk went round a periodic domain.
 
     \b
     Examples:
       eventsim state break.csv --at 0.5
       eventsim state break.csv --at 0.5 1 1.5 --out states.csv
       eventsim state gas.csv --frames 100 --out gas.xyz        for OVITO, freud, ASE, ...
+      eventsim state gas.csv --frames 100 --unwrapped --out walk.csv
 
     \b
     Keys of --json:
@@ -73,6 +77,8 @@ def command(
 
     from eventsim.cli.words import as_json_text
     from eventsim.replay.filed import open_filed
+    from eventsim.replay.images import images_of
+    from eventsim.replay.images import unwrapped as going_on
     from eventsim.replay.log import EventLog
     from eventsim.replay.passage import Passage
     from eventsim.replay.states import state_columns, write_csv, write_states
@@ -86,10 +92,16 @@ def command(
         begin, end = passage.span
         times = tuple(begin + (end - begin) * (k / (frames - 1)) for k in range(frames))
     ordered = sorted(set(times))
-    found = dict(zip(ordered, passage.states(ordered), strict=True))
-    states = [found[time] for time in times]
+    states = list(passage.states(ordered))
+    place = {time: number for number, time in enumerate(ordered)}
+    wanted = [place[time] for time in times]
+    keeps = target is not None and target.suffix.lower() in suffixes.EXCHANGE and target.suffix.lower() != ".xyz"
+    images = images_of(passage, states) if unwrapped or keeps else None
+    if unwrapped and not keeps and images is not None:
+        states = going_on(passage, states, images)
+    states = [states[number] for number in wanted]
     if target is not None:
-        write_states(target, events.scene, states)
+        write_states(target, events.scene, states, None if images is None else images[wanted])
     if as_json:
         data: dict[str, object] = {"log": log, "times": list(times), "disks": len(events.scene.disks)}
         if target is None:

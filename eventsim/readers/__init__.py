@@ -3,7 +3,7 @@
     samples    what all readers give: positions at times
     columns    tables of named columns, one row for each disk and time, or one for each time
     csv, npz, parquet   give such columns
-    xyz, gsd   formats of molecular dynamics
+    xyz, gsd, lammps   formats of molecular dynamics
     contacts   who met whom, when
 """
 
@@ -37,12 +37,13 @@ def read_columns(path: Path) -> Columns:
     return TABLES[suffix](path)
 
 
-def read_samples(path: Path, dt: float | None = None) -> Samples:
+def read_samples(path: Path, dt: float | None = None, least: int = 2) -> Samples:
     """Where all disks are at the times of a file.
 
     Args:
-        path: a file that ends in .csv, .npz, .parquet, .xyz or .gsd.
-        dt: the time between two frames, for a file that tells no times.
+        path: a file that ends in .csv, .npz, .parquet, .xyz, .gsd, .dump or .lammpstrj.
+        dt: the time between two frames, for a file that tells no times; of .gsd and dumps, that of a step.
+        least: so many frames an .xyz, .gsd or dump must have.
 
     Raises:
         EventsimError: naming the file, for what cannot be read or is not the same disks at each time.
@@ -51,11 +52,39 @@ def read_samples(path: Path, dt: float | None = None) -> Samples:
     if suffix == ".xyz":
         from eventsim.readers.xyz import read_xyz
 
-        return read_xyz(path, dt)
+        return read_xyz(path, dt, least)
     if suffix == ".gsd":
         from eventsim.readers.gsd import read_gsd
 
-        return read_gsd(path, dt)
+        return read_gsd(path, dt, least)
+    if suffix in suffixes.DUMPS:
+        from eventsim.readers.lammps import read_dump
+
+        return read_dump(path, dt, least)
     if suffix not in suffixes.READ_TABLES:
         raise EventsimError(f"{path}: positions at times are read from {', '.join(suffixes.TRAJECTORIES)}")
     return samples_of(read_columns(path), str(path), dt)
+
+
+def read_start(path: Path, frame: int | None = None) -> Samples:
+    """Where all disks are at one time.
+
+    Args:
+        path: a file that ends in .xyz, .gsd, .dump, .lammpstrj, .data or .lmp.
+        frame: which of its frames, from 0 on, or from -1 back; None: it must have one.
+
+    Raises:
+        EventsimError: naming the file.
+    """
+    if path.suffix.lower() in suffixes.LAMMPS_DATA:
+        from eventsim.readers.lammps import read_data
+
+        samples = read_data(path)
+    else:
+        samples = read_samples(path, 1.0, 1)
+    count = len(samples.times)
+    if frame is None and count > 1:
+        raise EventsimError(f"{path}: holds {count} frames; one start needs one: say frame = 0, or -1 for the last")
+    if frame is not None and not -count <= frame < count:
+        raise EventsimError(f"{path}: frame = {frame}: must be from {-count} to {count - 1}, for {count} frames")
+    return samples.at(0 if frame is None else frame)

@@ -14,7 +14,7 @@ from eventsim.readers.samples import Samples, checked, last_digit, times_of_fram
 from eventsim.reading import reading, told_as
 
 
-def read_gsd(path: Path, dt: float | None = None) -> Samples:
+def read_gsd(path: Path, dt: float | None = None, least: int = 2) -> Samples:
     """The samples of a file; dt: the time of a step of its clock, where frames log no time.
 
     Raises:
@@ -40,6 +40,8 @@ def read_gsd(path: Path, dt: float | None = None) -> Samples:
     boxes = np.array([frame.configuration.box[:2] for frame in frames], dtype=np.float64)
     if np.any(boxes != boxes[0]):
         raise EventsimError(f"{path}: the box changes its size: a scene has one domain")
+    if any(np.any(frame.configuration.box[3:5] != 0.0) for frame in frames):
+        raise EventsimError(f"{path}: the box is tilted: must have right angles")
     images = np.array([frame.particles.image[:, :2] for frame in frames], dtype=np.float64)
     places = np.array([frame.particles.position[:, :2] for frame in frames])
     speeds = np.array([frame.particles.velocity[:, :2] for frame in frames], dtype=np.float64)
@@ -54,5 +56,6 @@ def read_gsd(path: Path, dt: float | None = None) -> Samples:
             np.where(mass > 0.0, mass, np.inf),  # what is immovable is written as 0
             (float(boxes[0, 0]), float(boxes[0, 1])),
             max(last_digit(places), float(np.finfo(np.float32).eps) * float(boxes.max())),
-        )
+        ),
+        least,
     )

@@ -44,6 +44,12 @@ class Samples:
         """The number of disks."""
         return int(self.position.shape[1])
 
+    def at(self, frame: int) -> Samples:
+        """One of them alone."""
+        chosen = slice(frame, frame + 1 or None)
+        velocity = None if self.velocity is None else self.velocity[chosen]
+        return replace(self, times=self.times[chosen], position=self.position[chosen], velocity=velocity)
+
     def placed(self, corner: tuple[float, float]) -> Samples:
         """The same on the axes of a domain with this lower-left corner."""
         if self.cell is None:
@@ -52,12 +58,12 @@ class Samples:
         return replace(self, position=self.position + shift, cell=None)
 
 
-def checked(samples: Samples) -> Samples:
-    """The samples, their times in order; EventsimError for what cannot be positions at times."""
+def checked(samples: Samples, least: int = 2) -> Samples:
+    """The samples, their times in order; EventsimError for what cannot be positions at `least` times."""
     shape = samples.position.shape
     if len(shape) != 3 or shape[2] != 2 or shape[0] != len(samples.times) or not shape[1]:
         raise EventsimError(f"{samples.source}: positions {shape} at times {samples.times.shape}: must be (T, n, 2) at (T,)")
-    if len(samples.times) < 2:
+    if len(samples.times) < least:
         raise EventsimError(f"{samples.source}: holds {len(samples.times)} times; a motion has at least two")
     if samples.velocity is not None and samples.velocity.shape != shape:
         raise EventsimError(f"{samples.source}: velocities {samples.velocity.shape} of positions {shape}: must be alike")

@@ -20,6 +20,7 @@ PLAIN = "species:S:1:pos:R:3"
 TIME = re.compile(r"(?:^|[\s,;])(?:time|t)\s*=\s*\"?([^\s\",;]+)", re.IGNORECASE)
 PROPERTIES = re.compile(r"(?:^|\s)properties\s*=\s*\"?([^\s\"]+)", re.IGNORECASE)
 VELOCITIES = ("velo", "vel", "velocity", "velocities")
+RADII, MASSES = ("radius", "radii"), ("mass", "masses")
 
 
 class Frame(NamedTuple):
@@ -29,7 +30,7 @@ class Frame(NamedTuple):
     columns: dict[str, Floats]
 
 
-def read_xyz(path: Path, dt: float | None = None) -> Samples:
+def read_xyz(path: Path, dt: float | None = None, least: int = 2) -> Samples:
     """The samples of a file; dt: the time between frames where they tell none.
 
     Raises:
@@ -49,8 +50,8 @@ def read_xyz(path: Path, dt: float | None = None) -> Samples:
     times = times_of_frames(str(path), [frame.time for frame in frames], dt)
     position = np.stack([frame.columns["pos"][:, :2] for frame in frames])
     speeds = None if velocity is None else np.stack([frame.columns[velocity][:, :2] for frame in frames])
-    radius, mass = (names[name][:, 0] if name in names else None for name in ("radius", "mass"))
-    return checked(Samples(str(path), times, position, speeds, radius, mass))
+    radius, mass = (next((names[name][:, 0] for name in words if name in names), None) for words in (RADII, MASSES))
+    return checked(Samples(str(path), times, position, speeds, radius, mass), least)
 
 
 def _frames(path: Path, lines: list[str]) -> Iterator[Frame]:

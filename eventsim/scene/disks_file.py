@@ -1,4 +1,4 @@
-"""Disks from a table in a file: csv with a header, or npz."""
+"""Disks from a file: a table (csv with a header, npz), or one frame of a format of molecular dynamics."""
 
 from __future__ import annotations
 
@@ -10,13 +10,18 @@ from typing import IO
 
 import numpy as np
 
-from eventsim.errors import SceneError
+from eventsim import suffixes
+from eventsim.errors import EventsimError, SceneError
+from eventsim.readers import read_start
 from eventsim.reading import Npz, reading
 from eventsim.scene.cells import Indices
 from eventsim.scene.disks import Disks, Floats
+from eventsim.scene.domain import Domain
 from eventsim.scene.gas import MOST_DISKS
 
 COLUMNS = ("x", "y", "vx", "vy", "radius", "mass")
+DEFAULTS = {"vx": 0.0, "vy": 0.0, "mass": 1.0}
+"""What disks have where a file lacks a column, as in [[disk]]."""
 
 MOST_BYTES = 1 << 32
 """What a file may have: enough for as many disks as a scene may have."""
@@ -31,18 +36,32 @@ class DisksFile:
     number: Indices
 
 
-def read_disks_file(path: Path) -> DisksFile:
+def read_disks_file(
+    path: Path, domain: Domain | None = None, frame: int | None = None, radius: float | None = None, mass: float | None = None
+) -> DisksFile:
     """The disks of a file with the columns x, y, vx, vy, radius, mass; further columns are ignored.
 
-    A file written by `eventsim state` will do if it holds one time.
+    Velocities and mass may be missing, as in [[disk]].  A file written by `eventsim state` will do if it holds one time.
+
+    Args:
+        path: a file that ends as one of `suffixes.STARTS`.
+        domain: in which the disks are put; None: not known.
+        frame: which frame of an .xyz, .gsd or LAMMPS file, from 0 on, or from -1 back.
+        radius, mass: of disks of which the file tells none.
 
     Raises:
         SceneError: naming the file, and the line where there is one.
     """
+    suffix = path.suffix.lower()
+    given = DEFAULTS | {key: value for key, value in (("radius", radius), ("mass", mass)) if value is not None}
+    if suffix in suffixes.STARTS and suffix not in (".csv", ".npz"):
+        return _read_frame(path, domain, frame, given)
+    if frame is not None:
+        raise SceneError(f"{path}: frame = {frame}: a table has no frames; it holds one time")
     packed = path.suffix.lower() == ".npz"
     what = "is not an npz file with arrays of numbers" if packed else "is not a table of disks"
     with reading(path, SceneError, what, MOST_BYTES) as file:
-        columns, row, number = _read_npz(path, file) if packed else _read_csv(path, file)
+        columns, row, number = (_read_npz if packed else _read_csv)(path, file, given)
     if "time" in columns:
         times = np.unique(columns["time"])
         if len(times) > 1:
@@ -50,8 +69,35 @@ def read_disks_file(path: Path) -> DisksFile:
             raise SceneError(
                 f"{path}: holds the disks at {len(times)} times ({listed}); one start needs one time"
             )
-    x, y, vx, vy, radius, mass = (columns[key] for key in COLUMNS)
-    return DisksFile(Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), radius, mass), row, number)
+    x, y, vx, vy, r, m = (columns[key] if key in columns else np.full(len(columns["x"]), given[key]) for key in COLUMNS)
+    return DisksFile(Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), r, m), row, number)
+
+
+def _read_frame(path: Path, domain: Domain | None, frame: int | None, given: dict[str, float]) -> DisksFile:
+    """The disks of one frame, inside the period of the domain."""
+    try:
+        samples = read_start(path, frame)
+    except EventsimError as error:
+        raise SceneError(str(error)) from None
+    size = None if domain is None else domain.size
+    if domain is not None and size is not None:
+        if samples.cell is not None and not np.allclose(samples.cell, size, rtol=1e-6):  # single precision
+            raise SceneError(f"{path}: has the box {list(samples.cell)}, and the domain the size {list(size)}: must be alike")
+        samples = samples.placed(domain.origin)
+    position = samples.position[0].copy()
+    for axis, period in enumerate((None, None) if domain is None else domain.period):
+        if period is not None and domain is not None:
+            low = domain.origin[axis]
+            place = position[:, axis]
+            inside = (place >= low) & (place < low + period)
+            folded = low + np.mod(place - low, period)
+            position[:, axis] = np.where(inside, place, np.where(folded < low + period, folded, low))
+    if samples.radius is None and "radius" not in given:
+        raise SceneError(f"{path}: tells no radius: say radius = 0.5 beside the path")
+    radius = given["radius"] if samples.radius is None else samples.radius
+    velocity = None if samples.velocity is None else samples.velocity[0]
+    mass = given["mass"] if samples.mass is None else samples.mass
+    return DisksFile(Disks(position, velocity, radius, mass), "atom", np.arange(samples.n))
 
 
 def write_disks_file(path: Path, disks: Disks) -> None:
@@ -60,7 +106,7 @@ def write_disks_file(path: Path, disks: Disks) -> None:
     np.savez(path, **dict(zip(COLUMNS, columns, strict=True)))
 
 
-def _read_csv(path: Path, file: IO[bytes]) -> tuple[dict[str, Floats], str, Indices]:
+def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Floats], str, Indices]:
     """The columns by name, and the line of each row; lines that begin with # are comments."""
     try:
         lines = file.read().decode("utf-8-sig").splitlines()
@@ -68,8 +114,7 @@ def _read_csv(path: Path, file: IO[bytes]) -> tuple[dict[str, Floats], str, Indi
         raise SceneError(f"{path}: is not a text file (UTF-8)") from None
     number = [n for n, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
     header = [name.strip() for name in next(csv.reader([lines[number[0] - 1]]))] if number else []
-    _demand_columns(path, header)
-    wanted = [*COLUMNS, *(["time"] if "time" in header else [])]
+    wanted = _wanted_columns(path, header, given)
     places = [header.index(name) for name in wanted]
     number = number[1:]
     rows = [lines[n - 1] for n in number]
@@ -101,13 +146,12 @@ def _bad_lines(
     return problems or [f"{path}: cannot be read as comma-separated numbers"]
 
 
-def _read_npz(path: Path, file: IO[bytes]) -> tuple[dict[str, Floats], str, Indices]:
+def _read_npz(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Floats], str, Indices]:
     """The columns by name, and the index of each row."""
     if not zipfile.is_zipfile(file):
         raise SceneError(f"{path}: is not an npz file with arrays of numbers; a table of text is named .csv")
     arrays = Npz(file)
-    _demand_columns(path, arrays.names)
-    wanted = [*COLUMNS, *(["time"] if "time" in arrays.names else [])]
+    wanted = _wanted_columns(path, arrays.names, given)
     longest = max(arrays.open(name).count for name in wanted)
     if longest > MOST_DISKS:
         raise SceneError(f"{path}: holds {longest} disks: must be at most {MOST_DISKS}")
@@ -119,13 +163,14 @@ def _read_npz(path: Path, file: IO[bytes]) -> tuple[dict[str, Floats], str, Indi
     return columns, "row", np.arange(len(columns["x"]))
 
 
-def _demand_columns(path: Path, header: list[str]) -> None:
-    """Raise if a column is missing or there twice."""
-    missing = [name for name in COLUMNS if name not in header]
+def _wanted_columns(path: Path, header: list[str], given: dict[str, float]) -> list[str]:
+    """The columns to read; raise if one is missing that has no default, or there twice."""
+    missing = [name for name in COLUMNS if name not in header and name not in given]
+    if ("vx" in header) != ("vy" in header):
+        missing.append("vy" if "vx" in header else "vx")
     if missing:
-        raise SceneError(
-            f"{path}: lacks {', '.join(missing)}: the columns must be named {', '.join(COLUMNS)}"
-        )
+        raise SceneError(f"{path}: lacks {', '.join(missing)}: the columns must be named {', '.join(COLUMNS)}")
     twice = [name for name in COLUMNS if header.count(name) > 1]
     if twice:
         raise SceneError(f"{path}: has more than one column {', '.join(twice)}")
+    return [name for name in (*COLUMNS, "time") if name in header]

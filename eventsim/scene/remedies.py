@@ -33,6 +33,7 @@ EXAMPLES = {
     "region": "region = [1.3, 0.3, 1.9, 0.9]",
     "seed": "seed = 7",
     "path": 'path = "start.csv"',
+    "frame": "frame = -1",
     "start": "start = [0.0, 0.5]",
     "end": "end = [1.2, 0.2]",
     "through": "through = [0.5, 0.5]",
@@ -44,7 +45,7 @@ EXAMPLES = {
 """A line for each key that a table may have."""
 
 TEXTS = ("name", "kind", "arrangement", "path")
-WHOLES = ("events", "count", "seed")
+WHOLES = ("events", "count", "seed", "frame")
 PAIRS = tuple(key for key, line in EXAMPLES.items() if re.fullmatch(r"\w+ = \[[^,]+, [^,]+\]", line))
 
 LISTS = ("disk", "disks_file", "gas", "wall")

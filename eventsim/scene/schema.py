@@ -15,6 +15,7 @@ from eventsim.scene.walls import WALLS
 from eventsim.scene.walls.wall import LENGTH, NAME, POINTS, keys_of
 from eventsim.scene.walls.wall import POINT as PLACE
 
+MOST_FRAMES = 10**9
 ARRANGEMENTS = ("random", "square", "hexagonal", "compressed")
 TABLE_LISTS = ("disk", "disks_file", "gas", "wall")
 
@@ -130,7 +131,9 @@ GAS = Schema(
         Optional("seed"): whole(0),
     }
 )
-DISKS_FILE = Schema({Required("path"): text})
+DISKS_FILE = Schema(
+    {Required("path"): text, Optional("frame"): whole(-MOST_FRAMES), Optional("radius"): number, Optional("mass"): mass}
+)
 WALL_KEYS: dict[str, Callable[[object], object]] = {PLACE: POINT, POINTS: points, LENGTH: number, NAME: text}
 WALL = {
     kind: Schema({**KIND, **{(Required, Optional)[key == "name"](key): WALL_KEYS[of] for key, of in keys_of(wall).items()}})

@@ -183,11 +183,11 @@ def _read_disks_files(data: Mapping[str, Any], base_dir: Path, parts: _Parts, pr
         if broken:
             continue
         try:
-            file = read_disks_file(base_dir / values["path"])
+            file = read_disks_file(base_dir / values.pop("path"), parts.domain, **values)
         except SceneError as error:
             problems += [f"disks_file[{i}].path: {problem}" for problem in error.problems]
             continue
-        parts.names.add(sum(map(len, parts.disks)), f"{values['path']} {file.row} {{}}", file.number)
+        parts.names.add(sum(map(len, parts.disks)), f"{entry['path']} {file.row} {{}}", file.number)
         parts.disks.append(file.disks)
 
 

@@ -6,6 +6,9 @@ import json
 import numpy as np
 import pytest
 
+from eventsim.readers import read_samples
+from eventsim.replay.log import load_log
+
 
 @pytest.fixture
 def log_file(eventsim, scene_file, tmp_path):
@@ -86,3 +89,17 @@ def test_a_changed_log_is_told_in_one_line(eventsim, tmp_path):
     assert result.exit_code == 0
     assert result.stderr.startswith(f"warning: {log} is not what its run wrote")
     assert result.stderr.count("\n") == 1
+
+
+def test_unwrapped_places_go_on_over_the_sides(eventsim, tmp_path):
+    eventsim("run", "periodic-fluid", "--set", "n=16", "--events", "400", "--log", tmp_path / "log.csv")
+    for name in ("wrapped.csv", "going.csv", "going.dump"):
+        options = ["--unwrapped"] if name == "going.csv" else []
+        assert eventsim("state", tmp_path / "log.csv", "--frames", "20", *options, "--out", tmp_path / name).exit_code == 0
+    wrapped, going = (read_samples(tmp_path / name).position for name in ("wrapped.csv", "going.csv"))
+    size = load_log(tmp_path / "log.csv").scene.domain.size
+    gone = (going - wrapped) / np.array(size)
+    assert np.abs(gone - np.rint(gone)).max() < 1e-12
+    assert gone.any()
+    assert not gone[0].any()
+    assert np.allclose(read_samples(tmp_path / "going.dump").position, going, rtol=0.0, atol=1e-12)

@@ -208,7 +208,7 @@ def test_disks_come_from_csv_and_npz_alike_in_every_bit(tmp_path):
     ("text", "words"),
     [
         (HEADER + "0,0,1,1,0,0,0.5,1\n1,0,2,1,0,0,0.5,1\n", ["2 times (0.0, 1.0)"]),
-        ("x,y\n1,2\n", ["lacks vx, vy, radius, mass"]),
+        ("x,y\n1,2\n", ["lacks radius: the columns must be named x, y, vx, vy, radius, mass"]),
         (
             HEADER + "0,0,1,1,0,0,0.5,1\n\n0,1,9,1,zero,0,0.5\n",
             ["line 4: vx = 'zero'", "line 4: mass is missing"],
