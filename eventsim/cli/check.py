@@ -14,9 +14,12 @@ from eventsim.suffixes import LOGS, PART
 @click.command()
 @scene_options(required=True)
 @click.option("--horizon", is_flag=True, help="Simulate a little, to estimate until when float64 is right.")
+@click.option("--all", "every", is_flag=True, help="Write out every problem: all pairs that overlap, not the first three.")
 @json_option
 @quiet_option
-def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bool, as_json: bool, quiet: bool) -> None:
+def command(
+    scene: str, settings: tuple[str, ...], seed: int | None, horizon: bool, every: bool, as_json: bool, quiet: bool
+) -> None:
     """Validate SCENE, and explain what it has and which machinery it gets for that; or check all of a log file.
 
     A scene with problems is answered with all of them at once, each naming the key or the disks, the value
@@ -28,6 +31,7 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
       eventsim check gas --set n=50
       eventsim check gas --horizon         until which contact its trajectory can be believed
       eventsim check my.toml --quiet       says nothing; the exit code tells
+      eventsim check my.toml --all         each pair of disks that overlap
       eventsim check break.csv             a log: its scene, every row, every digest; a compact one is run again
 
     \b
@@ -78,12 +82,16 @@ def command(scene: str, settings: tuple[str, ...], seed: int | None, horizon: bo
         return
     from dataclasses import asdict
 
+    from contextlib import nullcontext
+
     from eventsim.cli.explain import explanation, page
     from eventsim.cli.needs import needs_of
     from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
+    from eventsim.scene.validate import all_written_out
 
-    chosen = chosen_scene(scene, settings, seed)
+    with all_written_out() if every else nullcontext():
+        chosen = chosen_scene(scene, settings, seed)
     needs = needs_of(chosen)
     estimate = None
     if horizon:

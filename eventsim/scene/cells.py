@@ -76,8 +76,8 @@ class Cells:
             for large in self.grids[i:]:
                 yield from self._search(large, small.members, self.position, self.radius, small.kind)
 
-    def overlaps(self, position: Floats, radius: float, mass: float) -> Iterator[Overlaps]:
-        """Overlaps of other, equal disks at `position` (M, 2) with these, in chunks; `first` counts those."""
+    def overlaps(self, position: Floats, radius: float | Floats, mass: float) -> Iterator[Overlaps]:
+        """Overlaps of other disks at `position` (M, 2) with these, in chunks; `first` counts those.  radius: of all, or (M,)."""
         radii = np.full(len(position), radius)
         everyone = np.arange(len(position))
         kind = int(_kinds(np.array([mass]))[0])

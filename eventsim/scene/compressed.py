@@ -15,7 +15,7 @@ from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.disks import Disks, Floats, join
 from eventsim.scene.domain import Box, Channel, Domain, Periodic
 from eventsim.scene.fill import clear_of, place_gas
-from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity
+from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity, with_radii
 from eventsim.scene.numbers import Point
 from eventsim.scene.walls import Wall
 
@@ -57,8 +57,13 @@ def place_compressed(
     size = (region[2] - region[0], region[3] - region[1])
     wraps = tuple(wrap and whole for wrap, whole in zip(domain.periodic, _whole(region, domain), strict=True))
     period = (size[0] if wraps[0] else math.inf, size[1] if wraps[1] else math.inf)
-    velocities = [start_velocity(gas, rng) for gas, rng in zip(gases, rngs, strict=True)]
-    radii = np.repeat([disk_radius(gas, region) for gas in gases], [gas.count for gas in gases])
+    velocities, drawn = [], []
+    for gas, rng in zip(gases, rngs, strict=True):
+        velocities.append(start_velocity(gas, rng))
+        drawn.append(with_radii(gas, rng))
+    gases = drawn
+    each = [np.full(gas.count, disk_radius(gas, region)) if gas.radii is None else gas.radii for gas in gases]
+    radii = np.concatenate(each)
     if not radii.all():
         raise SceneError(f'{where}.arrangement = "compressed": a radius of 0 cannot grow; use "random"')
     share = math.pi * float((radii**2).sum()) / (size[0] * size[1])
@@ -74,13 +79,12 @@ def place_compressed(
     centres += np.array(region[:2])
     cuts = np.cumsum([gas.count for gas in gases])[:-1]
     placed = []
-    for gas, centre, velocity in zip(gases, np.split(centres, cuts), velocities, strict=True):
-        radius = disk_radius(gas, region)
-        if not clear_of(domain, walls, present, centre, radius, gas, where):
+    for gas, centre, velocity, own in zip(gases, np.split(centres, cuts), velocities, each, strict=True):
+        if not clear_of(domain, walls, present, centre, disk_radius(gas, region), gas, where):
             raise SceneError(
                 f'{where}.arrangement = "compressed": the region must be free of walls and of other disks'
             )
-        placed.append(Disks(centre, velocity, radius, gas.mass))
+        placed.append(Disks(centre, velocity, own, gas.mass))
     return placed
 
 
@@ -106,11 +110,18 @@ def _start(
     size = (region[2] - region[0], region[3] - region[1])
     domain: Domain = Periodic(size) if all(wraps) else Channel(size) if wraps[0] else Box(size)
     plain = [
-        replace(gas, radius=disk_radius(gas, region), packing_fraction=None, region=None, temperature=None, speed=None)
+        replace(
+            gas,
+            radius=gas.radius if gas.radii is not None else disk_radius(gas, region),
+            packing_fraction=None,
+            region=None,
+            temperature=None,
+            speed=None,
+        )
         for gas in gases
     ]
     none = join([])
-    if share > ORDERED and len({gas.radius for gas in plain}) == 1:
+    if share > ORDERED and len({gas.radius for gas in plain}) == 1 and plain[0].radii is None:
         together = replace(plain[0], count=sum(gas.count for gas in plain), arrangement="hexagonal")
         try:
             crystal = place_gas(together, domain, (), none, rngs[0])
@@ -120,7 +131,11 @@ def _start(
     scale = min(1.0, math.sqrt(LOOSE / share))
     # the largest first: the small ones find their way between them
     parts: list[Disks] = [none] * len(plain)
-    for k in sorted(range(len(plain)), key=lambda k: -(plain[k].radius or 0.0)):
-        loose = replace(plain[k], radius=(plain[k].radius or 0.0) * scale, arrangement="random", mass=1.0)
+    for k in sorted(range(len(plain)), key=lambda k: -disk_radius(plain[k], region)):
+        loose = replace(plain[k], arrangement="random", mass=1.0)
+        if loose.radii is None:
+            loose = replace(loose, radius=disk_radius(loose, region) * scale)
+        else:
+            loose = replace(loose, radii=loose.radii * scale)
         parts[k] = place_gas(loose, domain, (), join(parts), rngs[k])
     return join(parts).position.copy(), scale

@@ -13,10 +13,11 @@ from eventsim.errors import SceneError
 from eventsim.scene.cells import Cells
 from eventsim.scene.disks import Disks, Floats
 from eventsim.scene.domain import Domain
-from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity
-from eventsim.scene.insertion import insert_at_random
+from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity, with_radii
+from eventsim.scene.insertion import insert_at_random, insert_sizes
 from eventsim.scene.lattice import Lattice
 from eventsim.scene.overlaps import period_of, touching_depth, wall_overlaps
+from eventsim.scene.sizes import Sizes
 from eventsim.scene.walls import Wall, parts_of
 
 # Random insertion jams at a packing fraction of .547; above this, many disks need not try.
@@ -39,7 +40,8 @@ def place_gas(
 ) -> Disks:
     """The disks of a gas that keeps the rules, clear of walls and of the disks `present`.
 
-    Random numbers are drawn in this order: velocities (none at rest), then the places of a random arrangement.
+    Random numbers are drawn in this order: velocities (none at rest), radii that follow a law, then the places of a random
+    arrangement.
     So the velocities do not depend on where the disks are. 1e6 disks at a packing fraction of .3 take seconds.
 
     Raises:
@@ -48,10 +50,15 @@ def place_gas(
     region = region_of(gas, domain)
     if region is None:
         raise SceneError(f"{where}.region is missing: an open domain has no size that a gas could fill")
-    place = _Place(gas, domain, walls, present, region, where)
-    velocity = start_velocity(gas, rng)
+    if isinstance(gas.radius, Sizes):
+        velocity = start_velocity(gas, rng)
+        gas = gas if gas.radii is not None else with_radii(gas, rng)
+        place = _Place(gas, domain, walls, present, region, where)
+    else:
+        place = _Place(gas, domain, walls, present, region, where)
+        velocity = start_velocity(gas, rng)
     position = place.at_random(rng) if gas.arrangement == "random" else place.on_lattice()
-    return Disks(position, velocity, place.radius, gas.mass)
+    return Disks(position, velocity, place.radius if gas.radii is None else gas.radii, gas.mass)
 
 
 def clear_of(
@@ -61,7 +68,7 @@ def clear_of(
     region = region_of(gas, domain)
     assert region is not None
     place = _Place(replace(gas, radius=radius, packing_fraction=None), domain, walls, present, region, where)
-    return bool(place.is_free(position).all())
+    return bool(place.is_free(position, gas.radii).all())
 
 
 class _Place:
@@ -105,6 +112,17 @@ class _Place:
             high.append(self.region[axis + 2] - margin - self.origin[axis])
         corner = np.array(self.origin)
         for _ in range(ROUNDS):
+            if self.gas.radii is not None:
+                order = np.argsort(-self.gas.radii, kind="stable")
+                lower, upper = np.array(self.region[:2]) - corner, np.array(self.region[2:]) - corner
+                centres = insert_sizes(
+                    self.gas.radii[order], self.mass, lower, upper, self.wraps, self.period, self._relative_free, rng
+                )
+                if len(centres) == count:
+                    back = np.empty((count, 2))
+                    back[order] = centres + corner
+                    return back
+                raise SceneError(self._too_dense(len(centres)))
             placed = insert_at_random(
                 count,
                 self.radius,
@@ -146,21 +164,31 @@ class _Place:
             f" {self._packing_fraction():.4g}) do not fit on a {self.gas.arrangement} lattice: {found}{denser}"
         )
 
-    def is_free(self, position: Floats) -> NDArray[np.bool_]:
-        """Which of these centres (M, 2) keep the disks clear of walls and others; touching is allowed."""
+    def _relative_free(self, drops: Floats, radii: Floats) -> NDArray[np.bool_]:
+        return self.is_free(drops + np.array(self.origin), radii)
+
+    def is_free(self, position: Floats, radii: Floats | None = None) -> NDArray[np.bool_]:
+        """Which of these centres (M, 2) keep the disks clear of walls and others; touching is allowed.
+
+        radii: (M,); None: all alike.
+        """
         relative = position - np.array(self.origin)
         # Rounding may lift a centre onto the end of a period, which is no place of its own.
         free: NDArray[np.bool_] = (relative < np.array(self.period)).all(axis=1)
-        for found in self.others.overlaps(relative, self.radius, self.mass):
+        for found in self.others.overlaps(relative, self.radius if radii is None else radii, self.mass):
             free[found.first[found.depth > self.rounding]] = False
-        radius = np.full(len(position), self.radius)
+        radius = np.full(len(position), self.radius) if radii is None else radii
+        if self.gas.container is not None:
+            inside = self.gas.container.contains(position)
+            free &= True if inside is None else inside
         for _, near, depth in wall_overlaps(self.parts, position, radius, self.origin, self.period):
             free[near[depth > self.rounding]] = False
         return free
 
     def _packing_fraction(self) -> float:
         x0, y0, x1, y1 = self.region
-        return self.gas.count * math.pi * self.radius**2 / ((x1 - x0) * (y1 - y0))
+        squares = self.gas.count * self.radius**2 if self.gas.radii is None else float((self.gas.radii**2).sum())
+        return math.pi * squares / ((x1 - x0) * (y1 - y0))
 
     def _extent(self) -> str:
         x0, y0, x1, y1 = self.region
@@ -168,8 +196,9 @@ class _Place:
 
     def _too_dense(self, placed: int | None) -> str:
         found = "" if placed is None else f" ({placed} found a place)"
+        of = "" if self.gas.radii is None else "up to "
         return (
-            f'{self.where}.arrangement = "random": {self.gas.count} disks of radius {self.radius:.6g} do not fit at'
+            f'{self.where}.arrangement = "random": {self.gas.count} disks of radius {of}{self.radius:.6g} do not fit at'
             f" random into {self._extent()}, packing fraction {self._packing_fraction():.4g}{found}; random insertion"
             ' works up to about 0.5 in all: use "compressed", "square" or "hexagonal"'
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -12,6 +12,8 @@ import numpy as np
 from eventsim.scene.disks import Floats
 from eventsim.scene.domain import Domain
 from eventsim.scene.numbers import RADII, is_length, is_place
+from eventsim.scene.sizes import Sizes
+from eventsim.scene.walls import Wall
 
 Region: TypeAlias = tuple[float, float, float, float]
 
@@ -23,33 +25,40 @@ MOST_DISKS = 50_000_000
 
 @dataclass(frozen=True, slots=True)
 class Gas:
-    """`count` equal disks; the fields are the keys of a [[gas]] table.
+    """`count` disks that differ at most in their radius; the fields are the keys of a [[gas]] table.
 
     Attributes:
         count: number of disks.
-        radius: length; or else packing_fraction, of the region.
+        radius: length, or the law of lengths; or else packing_fraction, of the region.
         mass: of each.
         temperature: kT, mass length^2 / time^2; or else speed, the same for all; neither: at rest.
         arrangement: "random", "square", "hexagonal", or "compressed": grown in place, together with the other gases of the
             region that are.
         region: x0, y0, x1, y1; None for the domain.
+        inside: the name of a closed wall in which disks lie; the region is then the rectangle around it.
         seed: of the random numbers.
+        radii: (count,) that have been drawn; no key.
+        container: the wall that `inside` names; no key.
     """
 
     count: int
-    radius: float | None = None
+    radius: float | Sizes | None = None
     packing_fraction: float | None = None
     mass: float = 1.0
     temperature: float | None = None
     speed: float | None = None
     arrangement: str = "random"
     region: Region | None = None
+    inside: str | None = None
     seed: int | None = None
+    radii: Floats | None = field(default=None, compare=False)
+    container: Wall | None = field(default=None, compare=False)
 
     @property
     def uses_chance(self) -> bool:
         """Whether the gas cannot be made without random numbers."""
-        return self.arrangement in ("random", "compressed") or bool(self.temperature) or bool(self.speed)
+        random = self.arrangement in ("random", "compressed") or isinstance(self.radius, Sizes)
+        return random or bool(self.temperature) or bool(self.speed)
 
 
 def region_of(gas: Gas, domain: Domain) -> Region | None:
@@ -62,10 +71,28 @@ def region_of(gas: Gas, domain: Domain) -> Region | None:
     return x, y, x + width, y + height
 
 
+def with_radii(gas: Gas, rng: np.random.Generator) -> Gas:
+    """The gas with radii drawn, where they follow a law."""
+    return replace(gas, radii=gas.radius.drawn(gas.count, rng)) if isinstance(gas.radius, Sizes) else gas
+
+
+def inside_of(gas: Gas, wall: Wall, domain: Domain) -> Gas:
+    """The gas with the wall that it lies in, its region the rectangle around that, as far as the domain goes."""
+    boxes = [part.bounds() for part in wall.parts("")]
+    low = [min(box[0][axis] for box in boxes) for axis in (0, 1)]
+    high = [max(box[1][axis] for box in boxes) for axis in (0, 1)]
+    if domain.size is not None:
+        low = [max(value, start) for value, start in zip(low, domain.origin, strict=True)]
+        high = [min(value, start + size) for value, start, size in zip(high, domain.origin, domain.size, strict=True)]
+    return replace(gas, region=(low[0], low[1], high[0], high[1]), container=wall)
+
+
 def disk_radius(gas: Gas, region: Region) -> float:
-    """The radius of each disk, from the packing fraction where that is given."""
+    """The radius of each disk, from the packing fraction where that is given; the largest, where radii were drawn."""
+    if gas.radii is not None:
+        return float(gas.radii.max())
     if gas.packing_fraction is None:
-        return gas.radius or 0.0
+        return gas.radius if isinstance(gas.radius, float) else 0.0
     x0, y0, x1, y1 = region
     return math.sqrt(gas.packing_fraction * (x1 - x0) * (y1 - y0) / (gas.count * math.pi))
 
@@ -84,8 +111,18 @@ def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -
     if (gas.radius is None) == (gas.packing_fraction is None):
         wrong = "needs radius or packing_fraction" if gas.radius is None else "has both radius and packing_fraction"
         yield f"{where}: {wrong}: give one of them"
-    if gas.radius is not None and gas.radius != 0.0 and not is_length(gas.radius):
+    if isinstance(gas.radius, Sizes):
+        yield from (f"{where}.radius.{problem}" for problem in gas.radius.problems())
+        if gas.arrangement in ("square", "hexagonal"):
+            rule = 'disks of many sizes lie on no lattice; use "random" or "compressed"'
+            yield f'{where}.arrangement = "{gas.arrangement}": {rule}'
+    elif gas.radius is not None and gas.radius != 0.0 and not is_length(gas.radius):
         yield f"{where}.radius = {gas.radius}: {RADII}"
+    if gas.inside is not None and (gas.region is not None or gas.packing_fraction is not None):
+        other = "region" if gas.region is not None else "packing_fraction"
+        yield f"{where}: has both inside and {other}: the wall is the region, and disks have a radius"
+    if gas.inside is not None and gas.arrangement == "compressed":
+        yield f'{where}.inside: "compressed" fills rectangles alone; use "random"'
     if gas.packing_fraction is not None and not 0.0 < gas.packing_fraction <= CLOSE_PACKING:
         rule = f"must be above 0 and at most {CLOSE_PACKING:.7f}..., the densest packing of equal disks"
         yield f"{where}.packing_fraction = {gas.packing_fraction}: {rule}"
@@ -107,7 +144,7 @@ def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -
 def _region_problems(gas: Gas, domain: Domain | None, where: str) -> Iterator[str]:
     """Rules for the region: an area, inside the domain."""
     if gas.region is None:
-        if domain is not None and domain.size is None:
+        if gas.inside is None and domain is not None and domain.size is None:
             yield f"{where}.region is missing: an open domain has no size that a gas could fill"
         return
     x0, y0, x1, y1 = gas.region

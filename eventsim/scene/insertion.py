@@ -68,6 +68,55 @@ def insert_at_random(
     return placed[:count]
 
 
+def insert_sizes(
+    radii: Floats,
+    mass: float,
+    low: Floats,
+    high: Floats,
+    wraps: tuple[bool, bool],
+    period: Point,
+    free: Callable[[Floats, Floats], NDArray[np.bool_]],
+    rng: np.random.Generator,
+) -> Floats:
+    """Centres (M, 2) of disks of these radii (N,), which descend: M < N when too many drops have failed.
+
+    In each round every disk that has no place yet is dropped some times; its first free drop is kept unless it overlaps that of
+    a larger one.
+
+    Args:
+        radii: of the disks, the largest first.
+        mass: of each; tracers (0) may overlap each other.
+        low, high: corners (2,) of the region, relative to the corner of the domain.
+        wraps: along which axes the region is a whole period, so that disks may reach out of it.
+        period: of the domain along x and y; inf where there is none.
+        free: which of centres (K, 2) with radii (K,) are in the domain, with nobody else and no wall in their way.
+        rng: where the numbers are drawn from.
+    """
+    count = len(radii)
+    centres, waiting = np.full((count, 2), np.nan), np.arange(count)
+    left = LEAST_DROPS + DROPS_PER_DISK * count
+    while len(waiting) and left > 0:
+        go_on("to place these disks at random")
+        each = max(1, LEAST_BATCH // len(waiting))
+        left -= each * len(waiting)
+        who = np.repeat(waiting, each)
+        margin = np.where(wraps, 0.0, radii[who, None])
+        drops = low + margin + (high - low - 2.0 * margin) * rng.random((len(who), 2))
+        good = free(drops, radii[who])
+        placed = np.flatnonzero(np.isfinite(centres[:, 0]))
+        present = Cells(centres[placed], radii[placed], np.full(len(placed), mass), period)
+        for found in present.overlaps(drops, radii[who], mass):
+            good[found.first] = False
+        chosen = np.flatnonzero(good)
+        chosen = chosen[np.unique(who[chosen], return_index=True)[1]]
+        fresh = Cells(drops[chosen], radii[who[chosen]], np.full(len(chosen), mass), period)
+        kept = chosen[_first_come(len(chosen), [(found.first, found.second) for found in fresh.pairs()])]
+        centres[who[kept]] = drops[kept]
+        waiting = np.flatnonzero(np.isnan(centres[:, 0]))
+    whole: Floats = centres[np.isfinite(centres[:, 0])]
+    return whole
+
+
 def _first_come(count: int, pairs: list[tuple[Indices, Indices]]) -> NDArray[np.bool_]:
     """Which of `count` drops are kept if each is kept unless it overlaps one kept before it.
 

@@ -31,6 +31,7 @@ EXAMPLES = {
     "speed": "speed = 1.0",
     "arrangement": 'arrangement = "random"',
     "region": "region = [1.3, 0.3, 1.9, 0.9]",
+    "inside": 'inside = "wall0"',
     "seed": "seed = 7",
     "path": 'path = "start.csv"',
     "frame": "frame = -1",
@@ -44,7 +45,7 @@ EXAMPLES = {
 }
 """A line for each key that a table may have."""
 
-TEXTS = ("name", "kind", "arrangement", "path")
+TEXTS = ("name", "kind", "arrangement", "path", "inside")
 WHOLES = ("events", "count", "seed", "frame")
 PAIRS = tuple(key for key, line in EXAMPLES.items() if re.fullmatch(r"\w+ = \[[^,]+, [^,]+\]", line))
 

@@ -11,6 +11,7 @@ from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFie
 
 from eventsim.scene.domain import DOMAINS
 from eventsim.scene.numbers import as_number, as_whole
+from eventsim.scene.sizes import RULES, Sizes
 from eventsim.scene.walls import WALLS
 from eventsim.scene.walls.wall import LENGTH, NAME, POINTS, keys_of
 from eventsim.scene.walls.wall import POINT as PLACE
@@ -57,6 +58,22 @@ def numbers(count: int, meaning: str) -> Callable[[object], tuple[float, ...]]:
             raise Invalid(f"must be {meaning}") from None
 
     return list_of_numbers
+
+
+def radius_or_sizes(value: object) -> float | Sizes:
+    """A radius, or the law of radii."""
+    if not isinstance(value, Mapping):
+        return number(value)
+    rules = ", ".join(f"{{{rule} = {meaning}}}" for rule, meaning in RULES.items())
+    wanted = Invalid(f"must be a number, or one of {rules}")
+    found = [rule for rule in RULES if rule in value]
+    if len(found) != 1 or value.keys() - {found[0], "weights"} or ("weights" in value and found != ["values"]):
+        raise wanted
+    given = value[found[0]], value.get("weights", ())
+    if not all(isinstance(listed, list | tuple) for listed in given) or (found != ["values"] and len(given[0]) != 2):
+        raise wanted
+    listed, weights = (tuple(map(number, each)) for each in given)
+    return Sizes(found[0], listed, weights)
 
 
 def points(value: object) -> tuple[tuple[float, ...], ...]:
@@ -121,13 +138,14 @@ DISK_KEYS = frozenset(map(str, DISK.schema))
 GAS = Schema(
     {
         Required("count"): whole(1),
-        Optional("radius"): number,
+        Optional("radius"): radius_or_sizes,
         Optional("packing_fraction"): number,
         Optional("mass"): mass,
         Optional("temperature"): number,
         Optional("speed"): number,
         Optional("arrangement"): one_of(*ARRANGEMENTS),
         Optional("region"): numbers(4, "four numbers [x0, y0, x1, y1]"),
+        Optional("inside"): text,
         Optional("seed"): whole(0),
     }
 )

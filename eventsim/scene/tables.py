@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,11 +16,11 @@ from eventsim.scene.disks import Disks, join
 from eventsim.scene.disks_file import read_disks_file
 from eventsim.scene.domain import DOMAINS, Domain, Open
 from eventsim.scene.fill import place_gas
-from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems, region_of
+from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems, inside_of, region_of
 from eventsim.scene.names import BlockNames
 from eventsim.scene.scene import Scene
 from eventsim.scene.validate import NO_DISKS, domain_problems, number_problems
-from eventsim.scene.walls import WALLS, Wall
+from eventsim.scene.walls import WALLS, Wall, wall_names
 
 DISK_STAND_IN = {"position": (0.0, 0.0), "radius": 0.0}
 DOMAIN_STAND_IN = {"size": (1.0, 1.0)}
@@ -38,7 +38,7 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Sce
     if seed is not None and seed < 0:
         problems.append(f"seed = {seed}: must be at least 0")
     found = _read_parts(data, base_dir, problems)
-    gases = _read_gases(data, found.domain, seed, problems)
+    gases = _read_gases(data, found.domain, found.walls, seed, problems)
     disks = join(found.disks)
     try:
         scene = found.scene(disks)
@@ -68,7 +68,7 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Sce
 
 def uses_chance(data: Mapping[str, Any]) -> bool:
     """Whether a [[gas]] table among these, as far as they can be read, cannot be placed without random numbers."""
-    return any(gas.uses_chance for _, gas in _read_gases(data, None, None, []))
+    return any(gas.uses_chance for _, gas in _read_gases(data, None, None, None, []))
 
 
 def _grows_with(gas: Gas, other: Gas, domain: Domain) -> bool:
@@ -192,9 +192,9 @@ def _read_disks_files(data: Mapping[str, Any], base_dir: Path, parts: _Parts, pr
 
 
 def _read_gases(
-    data: Mapping[str, Any], domain: Domain | None, seed: int | None, problems: list[str]
+    data: Mapping[str, Any], domain: Domain | None, walls: Sequence[Wall] | None, seed: int | None, problems: list[str]
 ) -> list[tuple[int, Gas]]:
-    """The [[gas]] tables that keep the rules, each with its index."""
+    """The [[gas]] tables that keep the rules, each with its index; walls: None where they are not known."""
     gases: list[tuple[int, Gas]] = []
     for i, entry in enumerate(_tables(data, "gas", problems)):
         values, broken = schema.read_table(schema.GAS, entry, f"gas[{i}]", problems)
@@ -206,6 +206,17 @@ def _read_gases(
         problems += [problem for problem in found if not problem.startswith(tuple(f"gas[{i}].{key}" for key in broken))]
         if not broken:
             gases.append((i, gas))
+    for place, (i, gas) in enumerate(gases):
+        if gas.inside is not None and walls is not None:
+            named = dict(zip(wall_names(walls), walls, strict=True))
+            wall = named.get(gas.inside)
+            if wall is None:
+                listed = ", ".join(named) or "none here"
+                problems.append(f'gas[{i}].inside = "{gas.inside}": must be the name of a wall ({listed})')
+            elif wall.contains(np.empty((0, 2))) is None:
+                problems.append(f'gas[{i}].inside = "{gas.inside}": must be a closed wall, and it is a {wall.kind}')
+            else:
+                gases[place] = i, inside_of(gas, wall, domain or Open())
     total = sum(gas.count for _, gas in gases)
     if len(gases) > 1 and total > MOST_DISKS:
         problems.append(f"gas: {total} disks in all: must be at most {MOST_DISKS}")

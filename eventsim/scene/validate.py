@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from itertools import islice
 from typing import Any
 
@@ -34,8 +36,8 @@ from eventsim.scene.overlaps import (
 from eventsim.scene.scale_rules import scale_problems
 from eventsim.scene.walls import Wall, parts_of, wall_names
 
-# Of many problems of one kind so many are written out; the rest are counted.
-WRITTEN_OUT = 3
+WRITTEN_OUT: ContextVar[int] = ContextVar("WRITTEN_OUT", default=3)
+"""Of many problems of one kind so many are written out; the rest are counted."""
 
 LIGHTEST = 1e-320
 """A mass that has a half."""
@@ -69,6 +71,16 @@ def find_problems(
             index = np.flatnonzero(sound)
             problems += _place_problems(disks.select(index), domain, walls, SelectedNames(names, index))
     return problems
+
+
+@contextmanager
+def all_written_out() -> Iterator[None]:
+    """Write out every problem of a kind, up to ENOUGH, where scenes are made inside."""
+    before = WRITTEN_OUT.set(ENOUGH)
+    try:
+        yield
+    finally:
+        WRITTEN_OUT.reset(before)
 
 
 def touching_notes(disks: Disks, domain: Domain, walls: Sequence[Wall]) -> list[str]:
@@ -143,7 +155,7 @@ def _point_wall_problems(disks: Disks, walls: Sequence[Wall], gravity: Point | N
         if gravity is not None and any(gravity):
             yield f"wall[{i}]: gravity = {list(gravity)}: points that fall cannot meet an {wall.kind}; leave gravity out"
         moving = np.isfinite(disks.mass) | (disks.velocity != 0.0).any(axis=1)
-        for k in np.flatnonzero(moving & (disks.radius > 0.0))[:WRITTEN_OUT]:
+        for k in np.flatnonzero(moving & (disks.radius > 0.0))[: WRITTEN_OUT.get()]:
             yield f"wall[{i}]: {names.disk(int(k))} has radius {disks.radius[k]}: only points (radius 0) can meet an {wall.kind}"
 
 
@@ -300,7 +312,8 @@ def _uncounted(count: int, kind: str) -> list[str]:
 
 def _written(count: int) -> int:
     """How many of so many things are written out: a single one more is, so that those that are counted are several."""
-    return count if count <= WRITTEN_OUT + 1 else WRITTEN_OUT
+    most = WRITTEN_OUT.get()
+    return count if count <= most + 1 else most
 
 
 def _at(disks: Disks, index: int) -> str:

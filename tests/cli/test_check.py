@@ -115,3 +115,11 @@ if __name__ == "__main__":
     PAGES.mkdir(exist_ok=True)
     for each in names():
         (PAGES / f"{each}.txt").write_text(page_of(each))
+
+
+def test_all_pairs_that_overlap_are_told_on_request(eventsim, scene_file):
+    disks = "".join(f"[[disk]]\nposition = [{k / 8}, 0.0]\nradius = 0.5\n" for k in range(6))
+    scene_file.write_text('[domain]\nkind = "open"\n' + disks)
+    assert eventsim("check", scene_file).stderr.count("overlap by") == 3
+    assert eventsim("check", scene_file, "--all").stderr.count("overlap by") == 15
+    assert eventsim("check", scene_file).stderr.count("overlap by") == 3

@@ -134,3 +134,84 @@ def test_a_mixture_is_placed_table_after_table():
 @pytest.mark.parametrize("arrangement", ["random", "hexagonal"])
 def test_twenty_thousand_disks_are_placed_and_validated(arrangement):
     place(Gas(20_000, packing_fraction=0.3, arrangement=arrangement, temperature=1.0), Periodic((1, 1)))
+
+
+def spread(sizes, arrangement="random", domain="box", count=300, **keys):
+    table = {"count": count, "radius": sizes, "seed": 3, "arrangement": arrangement, **keys}
+    return scene_from_dict({"domain": {"kind": domain, "size": [2.0, 1.0]}, "gas": [table]}).disks
+
+
+@pytest.mark.parametrize("domain", ["box", "periodic"])
+def test_radii_follow_their_law(domain):
+    uniform = spread({"uniform": [0.01, 0.02]}, domain=domain).radius
+    assert (uniform.min() >= 0.01, uniform.max() <= 0.02) == (True, True)
+    # 300 numbers: the mean has a standard error of 1 / sqrt(12 * 300) = .017 of the width; four of them
+    assert uniform.mean() == pytest.approx(0.015, abs=4 * 0.017 * 0.01)
+    lognormal = np.log(spread({"lognormal": [0.01, 0.3]}, domain=domain).radius / 0.01)
+    assert abs(lognormal.mean()) < 4 * 0.3 / math.sqrt(300)
+    assert lognormal.std() == pytest.approx(0.3, abs=4 * 0.3 / math.sqrt(600))
+    values = spread({"values": [0.02, 0.01], "weights": [1, 3]}, domain=domain).radius
+    assert set(values.tolist()) == {0.01, 0.02}
+    assert (values == 0.02).mean() == pytest.approx(0.25, abs=4 * math.sqrt(0.25 * 0.75 / 300))
+    # not sorted: that the largest are placed first does not show
+    assert not np.all(np.diff(uniform) <= 0.0)
+
+
+def test_sizes_come_dense_too():
+    disks = spread({"uniform": [0.03, 0.05]}, "compressed", "periodic", count=240)
+    share = math.pi * (disks.radius**2).sum() / 2.0
+    assert share > 0.55  # denser than random insertion comes
+
+
+@pytest.mark.parametrize(
+    ("wall", "area", "inside"),
+    [
+        ({"kind": "circle", "center": [1.0, 0.5], "radius": 0.5}, math.pi / 4, lambda x, y: np.hypot(x - 1, y - 0.5) < 0.5),
+        ({"kind": "polygon", "points": [[0, 0], [2, 0], [1, 1]]}, 1.0, lambda x, y: (y < x) & (y < 2 - x)),
+        (
+            {"kind": "ellipse", "center": [1.0, 0.5], "semi_axes": [0.5, 0.25], "direction": [0.0, 1.0]},
+            math.pi / 8,
+            lambda x, y: ((x - 1) / 0.25) ** 2 + ((y - 0.5) / 0.5) ** 2 < 1,
+        ),
+    ],
+)
+@pytest.mark.parametrize("kind", ["open", "box"])
+def test_points_lie_inside_a_closed_wall_evenly(kind, wall, area, inside):
+    domain = {"kind": "open"} if kind == "open" else {"kind": "box", "size": [2.0, 1.0]}
+    gas = {"count": 2000, "radius": 0.0, "mass": 0, "speed": 1.0, "inside": "table", "seed": 1}
+    x, y = scene_from_dict({"domain": domain, "wall": [{**wall, "name": "table"}], "gas": [gas]}).disks.position.T
+    assert inside(x, y).all()
+    lower = np.random.default_rng(2).random((200_000, 2)) * [2.0, 1.0]
+    expected = (inside(*lower.T) & (lower[:, 1] < 0.4)).sum() / inside(*lower.T).sum()
+    assert (y < 0.4).mean() == pytest.approx(expected, abs=4 * math.sqrt(0.25 / 2000) + 0.01)
+
+
+def test_disks_inside_a_wall_are_clear_of_it():
+    wall = {"kind": "polygon", "points": [[0, 0], [2, 0], [2, 1], [1, 0.2], [0, 1]]}
+    gas = {"count": 30, "radius": 0.03, "inside": "wall0", "seed": 1}
+    assert len(scene_from_dict({"domain": {"kind": "open"}, "wall": [wall], "gas": [gas]}).disks) == 30
+
+
+@pytest.mark.parametrize(
+    ("gas", "said"),
+    [
+        ({"radius": {"uniform": [0.2, 0.1]}}, "gas[0].radius.uniform = [0.2, 0.1]: must be lengths [least, largest]"),
+        ({"radius": {"lognormal": [0.1, -1.0]}}, "gas[0].radius.lognormal"),
+        ({"radius": {"values": [0.1], "weights": [1, 2]}}, "weights = [1.0, 2.0]: must be one for each of the 1 values"),
+        ({"radius": {"values": []}}, "at least one"),
+        ({"radius": {"normal": [0.1, 0.1]}}, "must be a number, or one of {uniform"),
+        ({"radius": {"uniform": [0.1, 0.1], "weights": [1]}}, "must be a number, or one of"),
+        ({"radius": {"uniform": [0.01, 0.02]}, "arrangement": "square"}, "lie on no lattice"),
+        ({"radius": 0.01, "inside": "left"}, 'must be the name of a wall (line)'),
+        ({"radius": 0.01, "inside": "line"}, "must be a closed wall, and it is a segment"),
+        ({"radius": 0.01, "inside": "line", "region": [0, 0, 1, 1]}, "has both inside and region"),
+        ({"radius": 0.01, "inside": "line", "arrangement": "compressed"}, "fills rectangles alone"),
+        ({"radius": {"uniform": [0.1, 0.2]}, "count": 40}, "do not fit at random"),
+    ],
+)
+def test_a_rule_that_cannot_be_kept_is_told(gas, said):
+    wall = {"kind": "segment", "start": [0.1, 0.1], "end": [0.2, 0.1], "name": "line"}
+    tables = {"domain": {"kind": "box", "size": [2.0, 1.0]}, "wall": [wall], "gas": [{"count": 3, "seed": 1, **gas}]}
+    with pytest.raises(SceneError) as raised:
+        scene_from_dict(tables)
+    assert said in str(raised.value)

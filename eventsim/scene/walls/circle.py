@@ -8,6 +8,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eventsim.formulas.walls.container import Container
 from eventsim.formulas.walls.shape import Shape
 from eventsim.scene.disks import Floats
@@ -63,6 +66,10 @@ class Circle(Part):
     def depth(self, position: Floats, radius: Floats | float) -> Floats:
         """How far disks at `position` (M, 2) of a `radius` reach out of it, (M,)."""
         return distances(position, self.center) + radius - self.radius
+
+    def contains(self, position: Floats) -> NDArray[np.bool_]:
+        """Which positions (M, 2) lie inside."""
+        return distances(position, self.center) < self.radius
 
     def length(self) -> float:
         """The length of the circle."""

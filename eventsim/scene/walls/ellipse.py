@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.formulas.walls import ellipse as numbers
 from eventsim.formulas.walls.shape import Shape
@@ -81,6 +82,15 @@ class Ellipse(Part):
         shape = self._shape(self.center)
         found = [shape.nearest(x, y)[2] for x, y in position.tolist()]
         return np.asarray(radius - np.minimum(found, min(self.semi_axes)))
+
+    def contains(self, position: Floats) -> NDArray[np.bool_]:
+        """Which positions (M, 2) lie inside."""
+        (a, b), (ex, ey) = self.semi_axes, self.direction
+        x, y = (position[:, axis] - self.center[axis] for axis in (0, 1))
+        norm = math.hypot(ex, ey)
+        u, w = (x * ex + y * ey) / (norm * a), (y * ex - x * ey) / (norm * b)
+        inside: NDArray[np.bool_] = u * u + w * w < 1.0
+        return inside
 
     def length(self) -> float:
         """Its perimeter, by the arithmetic-geometric mean."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.formulas.walls.face import Face, face
 from eventsim.formulas.walls.post import Post
@@ -120,6 +121,16 @@ class Polygon(_Chain):
     def edges(self) -> tuple[tuple[Point, Point], ...]:
         """The segments (start, end), one for each point."""
         return tuple(zip(self.points, self.points[1:] + self.points[:1], strict=True))
+
+    def contains(self, position: Floats) -> NDArray[np.bool_]:
+        """Which positions (M, 2) lie inside: a ray to the right crosses an odd number of edges."""
+        inside = np.zeros(len(position), dtype=np.bool_)
+        x, y = position.T
+        for (x0, y0), (x1, y1) in self.edges():
+            between = (y0 <= y) != (y1 <= y)
+            if y0 != y1:
+                inside ^= between & (x < x0 + (y - y0) * ((x1 - x0) / (y1 - y0)))
+        return inside
 
 
 @dataclass(frozen=True, slots=True)

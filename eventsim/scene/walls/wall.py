@@ -11,6 +11,7 @@ from itertools import product
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.errors import SceneError
 from eventsim.formulas.walls.shape import Shape
@@ -71,6 +72,10 @@ class Wall(ABC):
     @abstractmethod
     def pieces(self, moved: Callable[[Point], Point]) -> list[tuple[Shape, int]]:
         """The shapes that disks meet, each with the number of its part; `moved` says where a point is on the stage."""
+
+    def contains(self, position: Floats) -> NDArray[np.bool_] | None:
+        """Which positions (M, 2) lie inside of a closed wall; None for one that is not closed."""
+        return None
 
     @abstractmethod
     def shape_problems(self) -> Iterator[str]:
