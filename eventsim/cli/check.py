@@ -80,9 +80,8 @@ def command(
     if settings == () and seed is None and not horizon and is_log(scene):
         check_log(scene, as_json, quiet)
         return
-    from dataclasses import asdict
-
     from contextlib import nullcontext
+    from dataclasses import asdict
 
     from eventsim.cli.explain import explanation, page
     from eventsim.cli.needs import needs_of
