@@ -68,7 +68,7 @@ class Circle(Part):
         return distances(position, self.center) + radius - self.radius
 
     def contains(self, position: Floats) -> NDArray[np.bool_]:
-        """Which positions (M, 2) lie inside."""
+        """Which places `position` (M, 2) lie inside."""
         return distances(position, self.center) < self.radius
 
     def length(self) -> float:

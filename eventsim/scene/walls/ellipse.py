@@ -84,7 +84,7 @@ class Ellipse(Part):
         return np.asarray(radius - np.minimum(found, min(self.semi_axes)))
 
     def contains(self, position: Floats) -> NDArray[np.bool_]:
-        """Which positions (M, 2) lie inside."""
+        """Which places `position` (M, 2) lie inside."""
         (a, b), (ex, ey) = self.semi_axes, self.direction
         x, y = (position[:, axis] - self.center[axis] for axis in (0, 1))
         norm = math.hypot(ex, ey)

@@ -123,7 +123,7 @@ class Polygon(_Chain):
         return tuple(zip(self.points, self.points[1:] + self.points[:1], strict=True))
 
     def contains(self, position: Floats) -> NDArray[np.bool_]:
-        """Which positions (M, 2) lie inside: a ray to the right crosses an odd number of edges."""
+        """Which places `position` (M, 2) lie inside: a ray to the right crosses an odd number of edges."""
         inside = np.zeros(len(position), dtype=np.bool_)
         x, y = position.T
         for (x0, y0), (x1, y1) in self.edges():

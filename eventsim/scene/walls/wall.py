@@ -74,7 +74,7 @@ class Wall(ABC):
         """The shapes that disks meet, each with the number of its part; `moved` says where a point is on the stage."""
 
     def contains(self, position: Floats) -> NDArray[np.bool_] | None:
-        """Which positions (M, 2) lie inside of a closed wall; None for one that is not closed."""
+        """Which places `position` (M, 2) lie inside of a closed wall; None for one that is not closed."""
         return None
 
     @abstractmethod
