@@ -16,6 +16,8 @@ from eventsim.runner.options import RunOptions
 from eventsim.scene import Scene
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from eventsim.measure import Measures
     from eventsim.measure.trust import Trust
 
@@ -30,6 +32,14 @@ class Run(PastRun):
     reason: a sentence about that where there is more to say.  elapsed_s: simulating only; compile_s and write_s (waiting for rows
     to be written and measured) apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its
     log.
+
+    >>> import eventsim as es
+    >>> run = es.simulate(es.gallery("galperin", mass_ratio=100), engine="reference", log=True)
+    >>> run.counters.events, run.stopped
+    (31, 'quiet')
+    >>> before, after = run.state_at(0.0), run.state
+    >>> abs(after.energy / before.energy - 1.0) < 1e-13
+    True
     """
 
     measures: Measures | None = None
@@ -50,6 +60,18 @@ class Run(PastRun):
         if self.log is None:
             raise LogError("animate needs the log of the run: simulate(..., log=True)")
         animate_with(self.log, path, **options)
+
+    def plot(self, kind: str, ax: Axes | None = None) -> Axes:
+        """Draw a figure of the run, a `kind` of `eventsim figure` (trajectories, speeds, ...); its axes, the first of several.
+
+        ax: matplotlib's axes to draw on; None: those of a new figure of pyplot.  Raises LogError where no log was kept,
+        EventsimError for an unknown kind, or one of several panels where axes are given.
+        """
+        from eventsim.show.figures.write import plot  # loaded by who wants a picture
+
+        if self.log is None:
+            raise LogError("plot needs the log of the run: simulate(..., log=True)")
+        return plot(self.log, kind, ax)
 
     def _repr_html_(self) -> str | None:
         """Return the player for a notebook; None, and so the plain text, without a log or with too large a one."""

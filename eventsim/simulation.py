@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from inspect import signature
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -17,9 +17,10 @@ from eventsim.errors import CheckpointError, CollapseError, EventsimError, Scene
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, State, unchangeable
 from eventsim.record.provenance import Ending
-from eventsim.replay.log import EventLog
+from eventsim.replay.log import EventLog, load_log
 from eventsim.run import Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
+from eventsim.runner.keeping import Keeping
 from eventsim.runner.loop import run_scene
 from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions, stop_of
 from eventsim.runner.outcome import diagnosed, provenance_of, state_of
@@ -28,6 +29,9 @@ from eventsim.scene import Scene
 from eventsim.scene.numbers import FASTEST, LONGEST, number, point
 from eventsim.scene.scene import difference
 from eventsim.scene.stage import stage_of
+
+if TYPE_CHECKING:
+    from eventsim.measure import Measures
 
 STEP_BUDGET, FIRST_BUDGET = 4096, 32
 """Steps of an engine between two looks at whether the next event has come; between the first two, where somebody waits only so
@@ -149,7 +153,8 @@ def resume(
         raise CheckpointError(f"{path}: the run kept no log, so none can be continued")
     if saved.log is not None and saved.log.mark.rows != saved.counters.events:
         raise CheckpointError(f"{path}: {saved.log.mark.rows} rows of a log do not fit {saved.counters.events} events")
-    stop = saved.stop if until is None and events is None else stop_of(provenance.scene, until, events)
+    kept = until is None and events is None and saved.stop != Stop()  # who steps through a simulation has no stop
+    stop = saved.stop if kept else stop_of(provenance.scene, until, events)
     if stop != saved.stop:
         _demand_ahead(stop, saved, path)
     wanted = RunOptions(
@@ -201,23 +206,69 @@ class SavedSimulation:
 class Simulation:
     """A scene that is simulated step by step.
 
-    >>> sim = Simulation(scene)
-    >>> sim.step(); sim.advance_to(2.5); sim.set_velocity(0, (1.0, 0.0)); sim.log
+    log: True (in memory) or a path (.csv, .jsonl, .npz, .parquet), to which rows are streamed.  measure: the time at the
+    beginning that `measures` leave out; True: they find out.  checkpoint: a file that `resume` can go on from, replaced `every`
+    so many events or so much time, and at the end.  Files are complete once `close()` was called, or the end of `with` is
+    reached.  options: the engine's own.  Raises LogError and CheckpointError for files that cannot be written.
+
+    >>> import eventsim as es
+    >>> sim = es.Simulation(es.gallery("two-disks"), engine="reference")
+    >>> rows = sim.step()
+    >>> sim.advance_to(sim.time + 1.0); sim.set_velocity(0, (1.0, 0.0))  # doctest: +ELLIPSIS
+    array(...)
+    >>> sim.log[-1].kind
+    'kick'
     """
 
-    def __init__(self, scene: Scene, engine: str = "auto", **options: Any) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        engine: str = "auto",
+        log: bool | str | PathLike[str] = True,
+        measure: bool | float = False,
+        checkpoint: str | PathLike[str] | None = None,
+        every: int | str = "60s",
+        **options: Any,
+    ) -> None:
         chosen = engine_named(engine)
         self.scene = scene
         self.engine = chosen.name
         self._options = options
+        self._discard = None if isinstance(measure, bool) else measure
+        self._keeping: Keeping | None = None
+        self._closed = False
         self._session = chosen.open(stage_of(a_scene(scene)), options=chosen.options_from(options))
         self._provenance = provenance_of(self._session, self.engine, scene)
         self._blocks: list[Rows] = []
         self._time: float | None = None
         self._broken_off = False
+        self._in_memory = isinstance(log, bool)
+        if log is False:
+            raise EventsimError("a simulation that is stepped through keeps its log: log=True, or a path")
+        if checkpoint is not None and self._in_memory:
+            raise EventsimError("a log in memory does not outlive its run: with a checkpoint the log needs a file")
+        if not isinstance(log, bool):
+            self._keeping = Keeping(self._provenance, log, checkpoint, interval(every))
+
+    def __repr__(self) -> str:
+        return f"Simulation({self.scene.name or 'a scene without a name'}: {self.counters.events:,} events to t = {self.time!r})"
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Complete the files of the log and of the checkpoint; there is no going on after it.  Without files it does nothing."""
+        if self._keeping is not None and not self._closed:
+            self._closed = True
+            self._keeping.close(self._session)
 
     def __copy__(self) -> Simulation:
-        """A simulation that stands where this one does and goes on by itself."""
+        """A simulation that stands where this one does and goes on by itself.  Raises EventsimError where files are written."""
+        if self._keeping is not None:
+            raise EventsimError("a simulation that writes files has no copy: two would write the same")
         other = Simulation(self.scene, self.engine, **self._options)
         other._blocks = list(self._blocks)
         other.restore(self.snapshot())
@@ -237,17 +288,33 @@ class Simulation:
     @property
     def state(self) -> State:
         """Where all disks are now; looking changes nothing."""
-        state = state_of(self._session)
+        state = state_of(self._session, scene=self.scene)
         return state if self._time is None else replace(state, time=self._time)
 
     @property
     def log(self) -> EventLog:
-        """All that happened so far."""
+        """All that happened so far; of a log file, what is in it."""
+        if self._keeping is not None and self._keeping.log is not None:
+            file = self._keeping.log
+            if not self._closed:
+                file.sync()
+            return load_log(file.path if self._closed else file.part)
         sink = MemorySink(self._provenance)
         for block in self._blocks:
             sink.write(block)
         sink.close(Ending(*self._session.clock, "until"))
         return EventLog(*sink.recorded())
+
+    @property
+    def measures(self) -> Measures:
+        """What is measured in all that happened so far, from the log.  Raises EventsimError where there is nothing to measure."""
+        from eventsim.measure import measure  # only who measures pays for it
+
+        log = self.log
+        if log.provenance.ending is None:  # a file that grows
+            ended = replace(log.provenance, ending=Ending(*self._session.clock, "until"))
+            log = EventLog(ended, log.rows)
+        return measure(log, self._discard)
 
     @property
     def counters(self) -> Counters:
@@ -288,6 +355,8 @@ class Simulation:
             raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: must be finite, and at most {most}")
         self._session.kick(disk, vx, vy)
         self._keep()
+        if not self._in_memory:
+            self._blocks.clear()
 
     def snapshot(self) -> SavedSimulation:
         """A point to come back to."""
@@ -299,8 +368,10 @@ class Simulation:
     def restore(self, saved: SavedSimulation) -> None:
         """Go back to a snapshot; what happened since is forgotten.
 
-        Raises EventsimError for a snapshot of another scene.
+        Raises EventsimError for a snapshot of another scene, and where what happened since is in a file.
         """
+        if self._keeping is not None and saved.counters.events != self.counters.events:
+            raise EventsimError("what is in a log file cannot be taken back: keep the log in memory to restore snapshots")
         if saved.scene != self.scene:
             raise EventsimError("restore() takes what snapshot() of a simulation of the same scene gave")
         self._broken_off = False
@@ -340,9 +411,9 @@ class Simulation:
             while self._session.advance(Stop(until=begun), STEP_BUDGET) is None:
                 pass
             self._time = begun
-        blocks = self._blocks[before:]
-        self._blocks[before:] = [unchangeable(np.concatenate(blocks))]
-        return self._blocks[-1]
+        rows = unchangeable(np.concatenate(self._blocks[before:]))
+        self._blocks[before:] = [rows] if self._in_memory else []
+        return rows
 
     def _advanced(self, stop: Stop, budget: int) -> str | None:
         """A stint of the engine, which Ctrl-C may break off."""
@@ -353,12 +424,17 @@ class Simulation:
         return stopped
 
     def _demand_whole(self) -> None:
-        """Raise EventsimError after half an event, which is nothing to go on from."""
+        """Raise EventsimError after half an event, which is nothing to go on from, and after the end."""
+        if self._closed:
+            raise EventsimError("the simulation is closed: its files are complete; resume() goes on from a checkpoint")
         if self._broken_off:
             raise EventsimError("the simulation was broken off in the middle of an event: restore() a snapshot, or begin anew")
 
     def _keep(self) -> None:
-        self._blocks.append(unchangeable(self._session.take_rows()))
+        rows = unchangeable(self._session.take_rows())
+        self._blocks.append(rows)
+        if self._keeping is not None:
+            self._keeping.write(rows, self._session)
 
     def _row_count(self) -> int:
         return sum(len(block) for block in self._blocks)

@@ -12,6 +12,7 @@ from eventsim.measure.profile import Profile
 from eventsim.measure.series import TimeSeries
 from eventsim.measure.speeds import SpeedHistogram
 from eventsim.measure.words import table_text
+from eventsim.notebook import html_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +121,12 @@ class Measures:
 
     def __repr__(self) -> str:
         return f"Measures({len(self.quantities)} quantities of {self.disks} disks over {self.duration:g} units of time)"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (q.name, q.value, q.error, "" if q.theory is None else q.theory, q.unit, q.doubt or "") for q in self.quantities
+        ]
+        return html_table(repr(self), ("", "value", "error", "theory", "unit", "doubt"), rows)
 
     @property
     def equilibrated(self) -> bool:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Annotated, Any, NamedTuple, TypeAlias, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
+
+from eventsim.errors import EventsimError
+from eventsim.notebook import few, html_table
+
+if TYPE_CHECKING:
+    from eventsim.scene import Scene
 
 Rows: TypeAlias = NDArray[np.void]
 Floats: TypeAlias = NDArray[np.float64]
@@ -97,11 +103,11 @@ COMPACT_COLUMNS: tuple[str, ...] = tuple(name for name, field in FIELDS.items() 
 def blank_rows(count: int) -> Rows:
     """Return `count` rows in which everything is missing: zeros for event, epoch and kind, else -1 or NaN."""
     rows = np.zeros(count, dtype=ROW)
-    for name, field in FIELDS.items():
+    for name, layout in FIELDS.items():
         if ROW[name].kind == "f":
             rows[name] = np.nan
-        elif field.missing is not None:
-            rows[name] = field.missing
+        elif layout.missing is not None:
+            rows[name] = layout.missing
     return rows
 
 
@@ -112,14 +118,48 @@ def unchangeable(rows: Rows) -> Rows:
     return view
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class State:
     """Where all disks are at one time.
 
     time: on the scene's clock. position, velocity: float64 arrays (N, 2) on the scene's axes, as in a scene file;
-    along a period the position lies inside the domain.
+    along a period the position lies inside the domain.  scene: what the disks are; None where that is not known.
     """
 
     time: float
     position: Floats
     velocity: Floats
+    scene: Scene | None = field(default=None, compare=False)
+
+    def __repr__(self) -> str:
+        return f"State(time = {self.time!r}, {len(self.position)} disks)"
+
+    def _repr_html_(self) -> str:
+        columns = (*self.position.T.tolist(), *self.velocity.T.tolist())
+        rows = [["..."] * 5 if i < 0 else [i, *(column[i] for column in columns)] for i in few(len(self.position))]
+        return html_table(repr(self), ("disk", "x", "y", "vx", "vy"), rows)
+
+    @property
+    def energy(self) -> float:
+        """Kinetic and, under gravity, potential energy (0 at the point (0, 0)) of the disks of finite mass.
+
+        Raises EventsimError where a state was made without its scene.
+        """
+        mass = self._masses()
+        energy = 0.5 * float(mass @ (self.velocity**2).sum(axis=1))
+        if self.scene is not None and self.scene.gravity is not None:
+            energy -= float(mass @ (self.position @ np.array(self.scene.gravity)))
+        return energy
+
+    @property
+    def momentum(self) -> tuple[float, float]:
+        """The momentum (x, y) of the disks of finite mass.  Raises EventsimError where a state was made without its scene."""
+        x, y = (self._masses() @ self.velocity).tolist()
+        return x, y
+
+    def _masses(self) -> Floats:
+        """Masses (N,), 0 of what cannot be deflected."""
+        if self.scene is None:
+            raise EventsimError("the masses of this state are not known: it was made without its scene")
+        mass = self.scene.disks.mass
+        return np.where(np.isfinite(mass), mass, 0.0)

@@ -7,15 +7,17 @@ from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Protocol
-
-import numpy as np
+from typing import TYPE_CHECKING, Protocol, overload
 
 from eventsim.record.digest import digest_of
-from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Rows, unchangeable
+from eventsim.record.events import Rows
 from eventsim.record.files import open_log, open_sink, read_log
 from eventsim.record.provenance import Provenance
+from eventsim.replay.excerpt import Event, Excerpt
 from eventsim.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SAVE_BLOCK = 1 << 16
 
@@ -39,26 +41,27 @@ class Told(Protocol):
         """Yield the full rows block by block."""
 
 
-class EventLog(Columns):
+class EventLog(Excerpt):
     """An immutable log: its provenance and one row per impulse.
 
     Every column is an attribute holding a read-only array (`log.time`, `log.vxa`, ...): `log.kind` holds codes
     (`log.kinds` the text), `log.wall` indices into `log.provenance.wall_names` (`log.wall_name` the text).
+    `log[3]` is one event, `log[3:8]` are some, `log.to_pandas()` is a data frame.
     path: the file that it was read from, None where it comes from a run.
 
     In a compact log the columns that an engine computes again are missing (NaN); `expand()` gives the full log.
+
+    >>> import eventsim as es
+    >>> log = es.simulate(es.gallery("two-disks"), events=3, engine="reference", log=True).log
+    >>> len(log), log.kinds.tolist()
+    (3, ['pair', 'wall', 'pair'])
+    >>> log[1].a, log[1].wall
+    (1, 'right')
     """
 
     def __init__(self, provenance: Provenance, rows: Rows) -> None:
-        view = unchangeable(rows)
+        super().__init__(provenance, rows)
         self.path: Path | None = None
-        self.provenance = provenance
-        self.rows = view
-        for name in COLUMNS:
-            setattr(self, name, view[name])
-
-    def __len__(self) -> int:
-        return len(self.rows)
 
     def __repr__(self) -> str:
         ending = self.provenance.ending
@@ -77,20 +80,24 @@ class EventLog(Columns):
         return self.provenance.compact
 
     @cached_property
-    def kinds(self) -> Column:
-        """The kinds as text, an array of str (rows,)."""
-        texts: Column = np.array(LABELS)[self.kind]
-        return texts
-
-    @cached_property
-    def wall_name(self) -> Column:
-        """The names of the walls as text, an array of str (rows,), empty where there is none."""
-        texts: Column = np.array([*self.provenance.wall_names, ""])[self.wall]
-        return texts
-
-    @cached_property
     def _full(self) -> EventLog:
         return self.expand()
+
+    @overload
+    def __getitem__(self, place: int) -> Event: ...
+    @overload
+    def __getitem__(self, place: slice) -> Excerpt: ...
+
+    def __getitem__(self, place: int | slice) -> Event | Excerpt:
+        """One event, or some rows; a compact log is made full for it."""
+        return super(EventLog, self._full).__getitem__(place)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A pandas DataFrame with the columns of the full log: kinds and walls as names, places on the scene's axes.
+
+        Raises EventsimError without pandas.
+        """
+        return super(EventLog, self._full).to_pandas()
 
     def blocks(self) -> Generator[Rows]:
         """Yield the full rows block by block."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Self
 
 from eventsim.errors import LogError
@@ -45,7 +45,7 @@ class PastRun(Outcome):
                 raise LogError(
                     f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}"
                 )
-            return self.trajectory.state_at(time, self.start_time)
+            return replace(self.trajectory.state_at(time, self.start_time), scene=self.scene)
         log = self.log
         if log is None:
             raise LogError("state_at needs the log of the run: simulate(..., log=True)")

@@ -83,7 +83,7 @@ def run_session(session: Session, engine: Engine, scene: Scene, stop: Stop, want
     return Outcome(
         scene=scene,
         engine=session.at_work,  # of `auto`, the one that came last
-        state=state_of(session, stop, stopped),
+        state=state_of(session, stop, stopped, scene),
         counters=session.counters,
         residuals=residuals_of(session),
         stopped=stopped,

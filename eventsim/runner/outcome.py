@@ -82,8 +82,10 @@ def provenance_of(session: Session, engine: str, scene: Scene, command: str | No
     )
 
 
-def state_of(session: Session, stop: Stop | None = None, stopped: str | None = None) -> State:
-    """The state where a session stands; its time is exactly the stop time where that was reached."""
+def state_of(
+    session: Session, stop: Stop | None = None, stopped: str | None = None, scene: Scene | None = None
+) -> State:
+    """The state, of a scene, where a session stands; its time is exactly the stop time where that was reached."""
     stage = session.stage
     motion = session.motion()
     epoch, remainder = session.clock
@@ -96,4 +98,4 @@ def state_of(session: Session, stop: Stop | None = None, stopped: str | None = N
             on_scene_axes(motion.y, stage.corner[1], stage.period[1]),
         ]
     )
-    return State(time, position, np.column_stack([motion.vx, motion.vy]))
+    return State(time, position, np.column_stack([motion.vx, motion.vy]), scene)

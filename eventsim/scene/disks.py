@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eventsim.errors import SceneError
+from eventsim.notebook import few, html_table
 
 Floats: TypeAlias = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, init=False, eq=False)
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Disks:
     """N disks as read-only float64 arrays.
 
@@ -76,6 +77,15 @@ class Disks:
 
     def __len__(self) -> int:
         return len(self.position)
+
+    def __repr__(self) -> str:
+        kinds = len(species_among(self).count) if len(self) else 0
+        return f"Disks({len(self)} of {kinds} kind{'' if kinds == 1 else 's'} of radius and mass)"
+
+    def _repr_html_(self) -> str:
+        columns = (*self.position.T.tolist(), *self.velocity.T.tolist(), self.radius.tolist(), self.mass.tolist())
+        rows = [["..."] * 7 if i < 0 else [i, *(column[i] for column in columns)] for i in few(len(self))]
+        return html_table(repr(self), ("disk", "x", "y", "vx", "vy", "radius", "mass"), rows)
 
     def select(self, index: NDArray[np.int64]) -> Disks:
         """The disks with these numbers, in this order; index: (M,) whole numbers."""

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-import json
-import math
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import islice
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
-from eventsim.scene.disks import Disks
-from eventsim.scene.domain import Domain, Open
 from eventsim.scene.overrides import apply_overrides, is_shallow
 from eventsim.scene.scene import Scene
 from eventsim.scene.texts import tables_of_file, tables_of_toml, with_lines
-from eventsim.scene.walls.wall import Wall, keys_of
+from eventsim.scene.writing import (
+    DISKS_BESIDE,
+    scene_beside,
+    scene_beside_disks,
+    scene_texts,
+    scene_to_dict,
+    scene_to_json,
+    scene_to_toml,
+)
 
 __all__ = [
     "apply_overrides",
@@ -23,6 +26,7 @@ __all__ = [
     "listed_scene",
     "load_scene",
     "scene_beside",
+    "scene_beside_disks",
     "scene_from_dict",
     "scene_texts",
     "scene_to_dict",
@@ -31,10 +35,6 @@ __all__ = [
     "tables_of_toml",
     "with_lines",
 ]
-
-DISKS_IN_PIECE = 256
-DISKS_BESIDE = "disks.npz"
-
 
 def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
     """The scene of a .toml or .json file.
@@ -100,48 +100,6 @@ def scene_from_dict(
         raise SceneError(f"{source}: {problem}" for problem in error.problems) from None
 
 
-def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """The scene as tables for a scene file, every disk listed; scene_from_dict gives back every bit.
-
-    What has its default is left out. A mass of inf is written as "inf", so that the tables fit into JSON.
-    """
-    data = _tables(scene)
-    data["disk"] = _disk_tables(scene.disks)
-    return data
-
-
-def scene_to_json(scene: Scene) -> str:
-    """The same as one line of JSON, several times as fast as by way of tables."""
-    return "".join(scene_texts(scene))
-
-
-def scene_texts(scene: Scene) -> Iterator[str]:
-    """That line piece by piece, each a millisecond's work: of many disks it takes a while."""
-    before, after = json.dumps(_tables(scene)).split('"disk": []')
-    yield f'{before}"disk": ['
-    texts, separator = _disk_texts(scene.disks), ""
-    while piece := ", ".join(islice(texts, DISKS_IN_PIECE)):
-        yield separator + piece
-        separator = ", "
-    yield f"]{after}"
-
-
-def scene_beside(scene: Scene, folder: Path) -> str:
-    """The scene as JSON for a file in a folder, its disks in a disks_file beside: quickly written, every bit of many disks."""
-    # Nobody else needs what reads archives and tables.
-    from eventsim.scene.disks_file import write_disks_file
-
-    write_disks_file(folder / DISKS_BESIDE, scene.disks)
-    tables = _tables(scene)
-    del tables["disk"]
-    return json.dumps({**tables, "disks_file": [{"path": DISKS_BESIDE}]})
-
-
-def scene_beside_disks(scene: Scene) -> str:
-    """All of a scene but its disks, as JSON."""
-    return json.dumps(_tables(scene))
-
-
 def listed_scene(data: Mapping[str, Any], folder: Path | None = None) -> Scene:
     """The scene of a log or checkpoint, which lists its disks: no other file is opened for it, and no gas is made.
 
@@ -159,85 +117,3 @@ def listed_scene(data: Mapping[str, Any], folder: Path | None = None) -> Scene:
         if table in data:
             raise SceneError(f"{table}: a log lists its disks; it makes none and reads no other file")
     return scene_from_dict(data, folder)
-
-
-def _tables(scene: Scene) -> dict[str, Any]:
-    """The tables of a scene in their order, that of the disks still empty."""
-    data: dict[str, Any] = {}
-    for key in ("name", "until", "events", "contact_duration", "equilibration"):
-        value = getattr(scene, key)
-        if value is not None:
-            data[key] = value
-    if not _is_default(scene.start_time, 0.0):
-        data["start_time"] = scene.start_time
-    if scene.gravity is not None:
-        data["gravity"] = list(scene.gravity)
-    if scene.restitution is not None:
-        data["restitution"] = {"pair": scene.restitution.pair, "wall": scene.restitution.wall}
-    data["domain"] = _domain_table(scene.domain)
-    data["disk"] = []
-    if scene.walls:
-        data["wall"] = [_wall_table(wall) for wall in scene.walls]
-    return data
-
-
-def scene_to_toml(scene: Scene) -> str:
-    """The text of a scene file for the scene, every disk listed."""
-    import tomli_w
-
-    data = scene_to_dict(scene)
-    for disk in data["disk"]:
-        if disk.get("mass") == "inf":
-            disk["mass"] = math.inf
-    return tomli_w.dumps(data)
-
-
-def _domain_table(domain: Domain) -> dict[str, Any]:
-    if isinstance(domain, Open):
-        return {"kind": domain.kind}
-    table: dict[str, Any] = {"kind": domain.kind, "size": list(domain.size)}
-    if not all(_is_default(value, 0.0) for value in domain.origin):
-        table["origin"] = list(domain.origin)
-    return table
-
-
-def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
-    tables: list[dict[str, Any]] = []
-    columns = (disks.position.tolist(), disks.velocity.tolist(), disks.radius.tolist(), disks.mass.tolist())
-    for position, velocity, radius, mass in zip(*columns, strict=True):
-        table = {"position": position, "velocity": velocity, "radius": radius}
-        if _is_default(velocity[0], 0.0) and _is_default(velocity[1], 0.0):
-            del table["velocity"]
-        if mass != 1.0:
-            table["mass"] = "inf" if math.isinf(mass) else mass
-        tables.append(table)
-    return tables
-
-
-def _disk_texts(disks: Disks) -> Iterator[str]:
-    """The tables of disks as JSON."""
-    columns = (*disks.position.T, *disks.velocity.T, disks.radius, disks.mass)
-    for x, y, vx, vy, radius, mass in zip(*(column.tolist() for column in columns), strict=True):
-        moves = not (_is_default(vx, 0.0) and _is_default(vy, 0.0))
-        velocity = f', "velocity": [{vx!r}, {vy!r}]' if moves else ""
-        weight = "" if mass == 1.0 else f', "mass": {repr(mass) if mass < math.inf else json.dumps("inf")}'
-        yield f'{{"position": [{x!r}, {y!r}]{velocity}, "radius": {radius!r}{weight}}}'
-
-
-def _wall_table(wall: Wall) -> dict[str, Any]:
-    table: dict[str, Any] = {"kind": wall.kind}
-    for key in keys_of(type(wall)):
-        value = getattr(wall, key)
-        if value is not None:
-            table[key] = _lists(value)
-    return table
-
-
-def _lists(value: Any) -> Any:
-    """Tuples as lists, as TOML and JSON have them."""
-    return [_lists(item) for item in value] if isinstance(value, tuple) else value
-
-
-def _is_default(value: float, default: float) -> bool:
-    """Whether a value may be left out: equal in every bit (-0.0 is not 0.0)."""
-    return value == default and math.copysign(1.0, value) == math.copysign(1.0, default)

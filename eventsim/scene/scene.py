@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
+from eventsim.notebook import html_table
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import DOMAINS, Domain
-from eventsim.scene.names import DiskNames
+from eventsim.scene.names import DiskNames, plural
 from eventsim.scene.numbers import Point, number, optional_number, optional_whole, point
 from eventsim.scene.restitution import Restitution, as_restitution
 from eventsim.scene.validate import find_problems, scalar_problems, touching_notes
 from eventsim.scene.walls import WALLS, Wall
 
 
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True, init=False, repr=False)
 class Scene:
     """Disks in a domain with walls, and the rules of their motion; valid once it exists.
 
@@ -32,6 +35,11 @@ class Scene:
         events: number of events to stop after, or None.
         start_time: what the clock shows at the start.
         name: what the scene is called, or None.
+
+    >>> import eventsim as es
+    >>> disks = es.Disks(position=[(0.5, 0.5), (1.5, 0.5)], velocity=[(1, 0), (0, 0)], radius=0.1, mass=[1, 2])
+    >>> es.Scene(disks, es.Box((2, 1)), gravity=(0, -1), until=3)
+    Scene(2 disks, domain: box 2 x 1, gravity: (0.0, -1.0), until: 3.0)
     """
 
     disks: Disks
@@ -90,6 +98,37 @@ class Scene:
         problems = find_problems(disks, domain, self.walls, self.gravity, names, list(scalar_problems(given)))
         if problems:
             raise SceneError(problems)
+
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the scene to `path`, .toml or .json, every disk listed; `load_scene` gives back every bit.
+
+        Raises:
+            SceneError: for another suffix, or where it cannot be written.
+        """
+        from eventsim.scene.writing import save_scene  # only who saves pays for it
+
+        save_scene(self, Path(path))
+
+    def __repr__(self) -> str:
+        return f"Scene({', '.join(f'{key}: {value}' if key else value for key, value in self._facts())})"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.name or "a scene without a name", (), [(key or "disks", value) for key, value in self._facts()])
+
+    def _facts(self) -> Iterator[tuple[str, str]]:
+        """What there is to say in short, by key."""
+        if self.name is not None:
+            yield "name", self.name
+        yield "", plural(len(self.disks), "disk")
+        size = self.domain.size
+        yield "domain", self.domain.kind if size is None else f"{self.domain.kind} {size[0]:g} x {size[1]:g}"
+        if self.walls:
+            yield "walls", str(len(self.walls))
+        for key in ("gravity", "restitution", "contact_duration", "equilibration", "until", "events"):
+            value = getattr(self, key)
+            if value is not None:
+                yield key, str(value)
 
 
 def _demand_types(disks: object, domain: object, walls: Sequence[object], name: object) -> None:

@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from typing import Any, NamedTuple
 
-from voluptuous import Invalid, MultipleInvalid, Optional, Required, RequiredFieldInvalid, Schema
-
 from eventsim.scene.domain import DOMAINS
+from eventsim.scene.keys import Invalid, Optional, Required, Schema
 from eventsim.scene.numbers import as_number, as_whole
 from eventsim.scene.sizes import RULES, Sizes
 from eventsim.scene.walls import WALLS
@@ -199,20 +198,20 @@ def read_table(schema: Schema, table: object, where: str, problems: list[str]) -
     prefix = f"{where}." if where else ""
     known = [str(key) for key in schema.schema]
     report_unknown(table, known, prefix, problems)
-    given = {key: value for key, value in table.items() if key in known}
-    try:
-        return Read(schema(given))
-    except MultipleInvalid as invalid:
-        broken = set()
-        for error in invalid.errors:
-            key = str(error.path[0])
-            broken.add(key)
-            if isinstance(error, RequiredFieldInvalid):
-                problems.append(f"{prefix}{key} is missing")
-            else:
-                problems.append(f"{prefix}{key} = {shown(table[key])}: {error.error_message}")
-    fitting = Schema({Optional(str(key)): kept for key, kept in schema.schema.items()})
-    return Read(fitting({key: value for key, value in given.items() if key not in broken}), frozenset(broken))
+    values: dict[str, Any] = {}
+    broken: set[str] = set()
+    for key, read in schema.schema.items():
+        name = str(key)
+        if name in table:
+            try:
+                values[name] = read(table[name])
+            except Invalid as invalid:
+                broken.add(name)
+                problems.append(f"{prefix}{name} = {shown(table[name])}: {invalid}")
+        elif isinstance(key, Required):
+            broken.add(name)
+            problems.append(f"{prefix}{name} is missing")
+    return Read(values, frozenset(broken))
 
 
 def read_kind(schemas: Mapping[str, Schema], table: object, where: str, problems: list[str]) -> Read:
@@ -226,7 +225,7 @@ def read_kind(schemas: Mapping[str, Schema], table: object, where: str, problems
     try:
         kind = one_of(*schemas)(table["kind"])
     except Invalid as error:
-        problems.append(f"{where}.kind = {shown(table['kind'])}: {error.error_message}")
+        problems.append(f"{where}.kind = {shown(table['kind'])}: {error}")
         return NOTHING
     return read_table(schemas[kind], table, where, problems)
 

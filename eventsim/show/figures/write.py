@@ -6,8 +6,10 @@ from collections.abc import Callable
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
+from typing import Any, cast
 
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -16,8 +18,57 @@ from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import Told
 from eventsim.show.figures import TITLES
-from eventsim.show.figures.style import new_figure
+from eventsim.show.figures.style import SIZE, new_figure
 from eventsim.show.output import suffix_of
+
+
+class OnAxes:
+    """Stands in for an empty figure where a drawing of one panel goes onto axes that somebody has."""
+
+    def __init__(self, axes: Axes, kind: str) -> None:
+        self._axes, self._kind = axes, kind
+
+    def add_subplot(self, **how: Any) -> Axes:
+        """Give the axes."""
+        self._axes.set(**how)
+        return self._axes
+
+    def subplots(self, *panels: int, **how: Any) -> Axes:
+        """Give the axes where one panel is wanted; EventsimError for more."""
+        if panels:
+            raise EventsimError(f"the figure {self._kind} has several panels: leave ax out, and it makes a figure of its own")
+        return self.add_subplot(**how)
+
+    def set_size_inches(self, *size: float) -> None:
+        """Leave the size to whoever made the axes."""
+
+
+def plot(log: Told, kind: str, ax: Axes | None = None) -> Axes:
+    """Draw a kind of figure of a log; the axes, of several panels the first.
+
+    ax: where to; None: in a new figure of pyplot.  Raises EventsimError as `write_figure`, and for axes where panels are needed.
+    """
+    draw = drawing_of(kind)
+    if ax is not None:
+        draw(cast(Figure, OnAxes(ax, kind)), log)
+        return ax
+    from matplotlib import pyplot  # it chooses a window system, which files need not
+
+    figure = pyplot.figure(figsize=SIZE, layout="constrained")
+    try:
+        draw(figure, log)
+    except BaseException:
+        pyplot.close(figure)
+        raise
+    return figure.axes[0]
+
+
+def drawing_of(kind: str) -> Callable[[Figure, Told], None]:
+    """Return the function that draws a kind of figure; EventsimError where there is none."""
+    if kind not in TITLES:
+        raise EventsimError(f"there is no figure {kind!r}; there are {', '.join(TITLES)}")
+    draw: Callable[[Figure, Told], None] = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw
+    return draw
 
 
 def write_figure(log: Told, kind: str, path: str | PathLike[str]) -> None:
@@ -26,10 +77,8 @@ def write_figure(log: Told, kind: str, path: str | PathLike[str]) -> None:
     Raises EventsimError where there is no such kind, the log does not hold what the figure shows, the suffix is unknown
     or the file cannot be written.
     """
-    if kind not in TITLES:
-        raise EventsimError(f"there is no figure {kind!r}; there are {', '.join(TITLES)}")
-    module = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}")
-    save_figure(lambda figure: module.draw(figure, log), Path(path))
+    draw = drawing_of(kind)
+    save_figure(lambda figure: draw(figure, log), Path(path))
 
 
 def save_figure(draw: Callable[[Figure], None], file: Path) -> None:

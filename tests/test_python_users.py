@@ -1,0 +1,232 @@
+"""What Python users have in hand: short words for objects, tables, figures as axes, data frames, streamed simulations."""
+
+import doctest
+import importlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eventsim as es
+from eventsim.measure import Measures
+
+PLAIN = """
+import eventsim as es
+scene = es.Scene(es.Disks([(0.5, 0.5), (1.5, 0.5)], [(1, 0), (0, 0)], 0.1), es.Box((2, 1)))
+run = es.simulate(scene, until=4.0, log="run.csv")
+run = es.simulate(scene, until=4.0, log=True, measure=True)
+assert len(es.load_log("run.csv")) == len(run.log) > 0
+assert len(run.measures.keys()) > 5
+scene.save("scene.json")
+sim = es.Simulation(es.gallery("gas", n=20))
+sim.advance_to(0.1)
+"""
+
+
+def test_simulating_needs_numpy_and_sortedcontainers_alone(tmp_path):
+    packages = tmp_path / "packages"  # an environment with nothing else
+    packages.mkdir()
+    for name in ("numpy", "numpy.libs", "sortedcontainers"):
+        for place in map(Path, sys.path):
+            if (place / name).is_dir():
+                (packages / name).symlink_to(place / name)
+                break
+    program = [sys.executable, "-S", "-c", PLAIN]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(packages), str(Path(__file__).parents[1])])}
+    done = subprocess.run(
+        program, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.fixture(scope="module")
+def run():
+    return es.simulate(es.gallery("gas", n=20), events=200, engine="reference", log=True, measure=True)
+
+
+def test_objects_say_in_a_line_what_they_are(run):
+    sim = es.Simulation(run.scene, engine="reference")
+    for thing in (run, run.scene, run.scene.disks, run.state, run.log, run.log[3], run.log[3:9], run.measures, sim):
+        assert len(repr(thing)) < 160
+        assert "\n" not in repr(thing)
+        assert " at 0x" not in repr(thing)
+
+
+def test_objects_are_tables_in_notebooks(run):
+    for thing in (run.scene, run.scene.disks, run.state, run.log, run.measures):
+        shown = thing._repr_html_()
+        assert shown.startswith("<table>")
+        assert len(shown) < 20_000
+    named = es.Scene(run.scene.disks, run.scene.domain, name="<b>")
+    assert "&lt;b&gt;" in named._repr_html_()
+    assert "<b>" not in named._repr_html_()
+
+
+def test_rows_are_on_the_scenes_axes():
+    scene = es.Scene(es.Disks([(-7, 1), (-5, 1)], [(1, 0), (0, 0)], 0.25), es.Box((4, 2), (-8, 0)))
+    log = es.simulate(scene, events=2, engine="reference", log=True).log
+    first = log[0]
+    assert (first.kind, first.a, first.b, first.wall, first.xa, first.ya) == ("pair", 0, 1, "", -5.5, 1.0)
+    assert log.xa[0] == 2.5  # as it is stored
+    assert (log[1].kind, log[1].wall, log[1].b) == ("wall", "right", -1)
+    assert repr(log[-1]) == repr(log[1])
+    assert log[0:2][0] == first
+    assert len(log[1:]) == 1
+    with pytest.raises(IndexError, match="there is no row 2"):
+        log[2]
+
+
+def test_a_log_is_a_data_frame(run):
+    pd = pytest.importorskip("pandas")
+    frame = run.log.to_pandas()
+    assert list(frame["kind"]) == list(run.log.kinds)
+    assert frame["wall"].isna().sum() == (run.log.kinds == "pair").sum()
+    assert set(frame["wall"].dropna()) == set(run.log.wall_name) - {""}
+    assert frame["xa"].tolist() == [run.log[k].xa for k in range(len(run.log))]
+    assert frame["vxb"].isna().equals(frame["b"] == -1)
+    assert isinstance(run.log[5:8].to_pandas(), pd.DataFrame)
+    assert run.log[5:8].to_pandas()["event"].tolist() == [5, 6, 7]
+
+
+def test_files_of_logs_are_read_by_data_frame_libraries(run, tmp_path):
+    polars = pytest.importorskip("polars")
+    run.log.save(tmp_path / "log.csv")
+    assert polars.read_csv(tmp_path / "log.csv", comment_prefix="#")["xa"].to_list() == run.log.xa.tolist()
+    pytest.importorskip("pyarrow")
+    run.log.save(tmp_path / "log.parquet")
+    assert polars.read_parquet(tmp_path / "log.parquet")["time"].to_list() == run.log.time.tolist()
+
+
+def test_a_compact_log_is_made_full_to_be_looked_at(tmp_path):
+    scene = es.gallery("gas", n=8)
+    run = es.simulate(scene, events=30, engine="reference", log=tmp_path / "a.csv", compact=True)
+    full = es.simulate(scene, events=30, engine="reference", log=True).log
+    assert run.log.compact
+    assert run.log[4].xa == full[4].xa
+
+
+def test_states_know_energy_and_momentum():
+    fall = es.Scene(es.Disks([(0.5, 0.75)], [(1.0, 0.0)], 0.125, [2.0]), es.Box((4, 1)), gravity=(0.0, -2.0))
+    run = es.simulate(fall, until=0.25, engine="reference", log=True)
+    assert run.state_at(0.0).energy == 0.5 * 2 * 1 + 2 * 2 * 0.75
+    assert run.state.energy == run.state_at(0.0).energy  # all of these numbers are short
+    assert run.state.momentum == (2.0, -1.0)
+    posts = es.Scene(es.Disks([(1, 1), (2, 1)], [(1, 0), (1, 0)], 0.1, [np.inf, 3.0]), es.Open())
+    state = es.Simulation(posts, engine="reference").state
+    assert (state.energy, state.momentum) == (1.5, (3.0, 0.0))
+    with pytest.raises(es.EventsimError, match="made without its scene"):
+        _ = es.State(0.0, state.position, state.velocity).energy
+
+
+@pytest.mark.parametrize("suffix", [".toml", ".json"])
+def test_a_scene_is_saved(tmp_path, suffix):
+    scene = es.gallery("funnel")
+    scene.save(tmp_path / f"scene{suffix}")
+    assert es.load_scene(tmp_path / f"scene{suffix}") == scene
+    assert [path.name for path in tmp_path.iterdir()] == [f"scene{suffix}"]
+    with pytest.raises(es.SceneError, match=r"ends in \.toml or \.json"):
+        scene.save(tmp_path / "scene.txt")
+    with pytest.raises(es.SceneError, match="cannot be written"):
+        scene.save(tmp_path / "nowhere" / "scene.toml")
+
+
+def test_figures_are_axes(run, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("Agg")
+    figure, (left, right) = pyplot.subplots(1, 2)
+    for kind, ax in (("speeds", left), ("trajectories", right)):
+        assert run.plot(kind, ax) is ax
+        assert ax.get_xlabel()
+    assert figure.axes == [left, right]
+    fresh = run.plot("series")
+    assert fresh.figure.number in pyplot.get_fignums()
+    with pytest.raises(es.EventsimError, match="series has several panels: leave ax out"):
+        run.plot("series", left)
+    with pytest.raises(es.EventsimError, match="there is no figure 'speed'"):
+        run.plot("speed")
+    with pytest.raises(es.LogError, match="plot needs the log"):
+        es.simulate(run.scene, events=5, engine="reference").plot("speeds")
+    pyplot.close("all")
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".npz"])
+def test_a_simulation_streams_its_log_and_goes_on_from_its_checkpoint(tmp_path, suffix):
+    scene = es.gallery("gas", n=20)
+    path, checkpoint = tmp_path / f"log{suffix}", tmp_path / "run.ckpt"
+
+    def begun(**wishes):
+        sim = es.Simulation(scene, engine="reference", **wishes)
+        sim.advance_to(0.25)
+        sim.set_velocity(3, (1.0, 0.5))
+        return sim
+
+    plain = begun()
+    with begun(log=path, checkpoint=checkpoint, every=10) as sim:
+        assert not path.exists()
+        assert sim.log.digest() == plain.log.digest()  # of what is in the file so far
+        assert np.array_equal(sim.step(), plain.step())
+        assert isinstance(sim.measures, Measures)
+    assert es.load_log(path).digest() == plain.log.digest()
+    with pytest.raises(es.EventsimError, match="the simulation is closed"):
+        sim.step()
+    plain.advance_to(1.0)
+    assert scene.until == 1.0
+    assert es.resume(checkpoint, scene=scene).log.digest() == plain.log.digest()
+
+
+def test_what_a_simulation_wrote_is_not_taken_back(tmp_path):
+    sim = es.Simulation(es.gallery("gas", n=8), engine="reference", log=tmp_path / "log.csv")
+    saved = sim.snapshot()
+    sim.step()
+    with pytest.raises(es.EventsimError, match="cannot be taken back"):
+        sim.restore(saved)
+    sim.close()
+    for wishes in ({"log": False}, {"checkpoint": tmp_path / "a.ckpt"}):
+        with pytest.raises(es.EventsimError):
+            es.Simulation(es.gallery("gas", n=8), engine="reference", **wishes)
+
+
+def test_measures_of_a_simulation_are_those_of_its_log():
+    sim = es.Simulation(es.gallery("gas", n=20), engine="reference", measure=0.125)
+    sim.advance_to(0.5)
+    found = sim.measures
+    assert found.discarded == 0.125
+    assert found["collision_rate"].value > 0.0
+
+
+@pytest.mark.parametrize("name", ["eventsim", "eventsim.simulation", "eventsim.scene.scene", "eventsim.replay.log", "eventsim.run"])
+def test_examples_in_docstrings_run(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = doctest.testmod(importlib.import_module(name), optionflags=doctest.NORMALIZE_WHITESPACE)
+    assert done.attempted > 0
+    assert done.failed == 0
+
+
+SCRIPT = Path(__file__).parent / "typed" / "user_script.py"
+
+
+@pytest.mark.slow
+def test_a_script_of_a_user_is_clean_to_a_strict_type_checker(tmp_path):
+    pytest.importorskip("basedpyright")
+    settings = {"typeCheckingMode": "strict", "include": [str(SCRIPT)], "extraPaths": [str(SCRIPT.parents[2])]}
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings))
+    program = [sys.executable, "-m", "basedpyright", "-p", str(tmp_path)]
+    done = subprocess.run(program, capture_output=True, text=True, timeout=280, check=False)
+    assert done.returncode == 0, done.stdout
+    assert "0 errors" in done.stdout
+
+
+@pytest.mark.slow
+def test_the_script_of_a_user_runs(tmp_path):
+    pytest.importorskip("pandas")
+    environment = {**os.environ, "PYTHONPATH": str(SCRIPT.parents[2]), "MPLBACKEND": "Agg"}
+    done = subprocess.run(
+        [sys.executable, str(SCRIPT)], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=280, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "no such file" in done.stdout
