@@ -199,7 +199,10 @@ def test_measures_of_a_simulation_are_those_of_its_log():
     assert found["collision_rate"].value > 0.0
 
 
-@pytest.mark.parametrize("name", ["eventsim", "eventsim.simulation", "eventsim.scene.scene", "eventsim.replay.log", "eventsim.run"])
+DOCUMENTED = ("eventsim", "eventsim.simulation", "eventsim.scene.scene", "eventsim.replay.log", "eventsim.run")
+
+
+@pytest.mark.parametrize("name", DOCUMENTED)
 def test_examples_in_docstrings_run(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = doctest.testmod(importlib.import_module(name), optionflags=doctest.NORMALIZE_WHITESPACE)
