@@ -27,7 +27,7 @@ from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.measure import Measures
-    from eventsim.measure.found import Found
+    from eventsim.measure.found import Columns, Found
     from eventsim.measure.structure import Structure
     from eventsim.replay.log import Told
 
@@ -180,9 +180,20 @@ def _given(option: Any) -> tuple[float, ...]:
     return () if option is True else option if isinstance(option, tuple) else (option,)
 
 
+MOST_LINES = 40
+"""Of a table of a study that are shown."""
+
+
+def _beginning_of(columns: Columns) -> str:
+    """A table, or as much of it as can be read."""
+    lines = max(map(len, columns.values()), default=0)
+    more = f"\n  ... {lines:,} lines; --out FILE.csv has all" if lines > MOST_LINES else ""
+    return table_of({name: column[:MOST_LINES] for name, column in columns.items()}) + more
+
+
 def found_text(found: Found) -> str:
     """What a study found, as aligned lines."""
-    tables = [table_of(columns) for columns in found.tables.values()]
+    tables = [_beginning_of(columns) for columns in found.tables.values()]
     words = [f"  {note}" for note in found.notes]
     return "\n".join([table_text(found.quantities), *words, *tables])
 

@@ -13,22 +13,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
+from eventsim.measure.sides import CLOSE, Bow, Line, Point, Side, crossings, joined, line_crossings
 from eventsim.record.events import Floats
 from eventsim.scene.domain import Box, Channel, Open
 from eventsim.scene.scene import Scene
 from eventsim.scene.walls import Arc, Circle, Ellipse, Part, Segment, parts_of
 
-Point: TypeAlias = tuple[float, float]
-
 MOST_PIECES = 800
 """More pieces of boundary than this are not cut with each other: it takes a second."""
-
-CLOSE = 1e-9
-"""Share of the table's size below which places are one: some 2^22 times what their rounding makes."""
 
 LOOKS = 16
 """Directions in which a disk looks for walls."""
@@ -46,89 +42,6 @@ class Table(NamedTuple):
         return math.pi * self.area / self.perimeter if self.perimeter > 0.0 else math.inf
 
 
-class _Line(NamedTuple):
-    """From (x0, y0) to (x1, y1), the table to the left; `hard`: not the border of a period."""
-
-    x0: float
-    y0: float
-    x1: float
-    y1: float
-    hard: bool
-
-    def at(self, share: float) -> Point:
-        return self.x0 + share * (self.x1 - self.x0), self.y0 + share * (self.y1 - self.y0)
-
-    def normal(self, _share: float) -> Point:
-        """To the inside of the table, of length 1; the same all along."""
-        return (self.y0 - self.y1) / self.length, (self.x1 - self.x0) / self.length
-
-    def cut(self, low: float, high: float) -> _Line:
-        return _Line(*self.at(low), *self.at(high), self.hard)
-
-    @property
-    def length(self) -> float:
-        return math.hypot(self.x1 - self.x0, self.y1 - self.y0)
-
-    @property
-    def area(self) -> float:
-        """Its part of the line integral of (x dy - y dx) / 2."""
-        return 0.5 * (self.x0 * self.y1 - self.x1 * self.y0)
-
-    def share_of(self, x: float, y: float) -> float:
-        """Where along it the foot of a place lies."""
-        dx, dy = self.x1 - self.x0, self.y1 - self.y0
-        return ((x - self.x0) * dx + (y - self.y0) * dy) / (dx * dx + dy * dy)
-
-    def off(self, x: float, y: float) -> float:
-        """How far a place is from its continuation."""
-        nx, ny = self.normal(0.0)
-        return abs(nx * (x - self.x0) + ny * (y - self.y0))
-
-
-class _Bow(NamedTuple):
-    """About (x, y), from angle `start` over `turn`; the table to the left: turn > 0 has it inside, turn < 0 outside."""
-
-    x: float
-    y: float
-    radius: float
-    start: float
-    turn: float
-    hard: bool = True
-
-    def at(self, share: float) -> Point:
-        angle = self.start + share * self.turn
-        return self.x + self.radius * math.cos(angle), self.y + self.radius * math.sin(angle)
-
-    def normal(self, share: float) -> Point:
-        angle = self.start + share * self.turn
-        sign = -1.0 if self.turn > 0.0 else 1.0
-        return sign * math.cos(angle), sign * math.sin(angle)
-
-    def cut(self, low: float, high: float) -> _Bow:
-        return self._replace(start=self.start + low * self.turn, turn=(high - low) * self.turn)
-
-    @property
-    def length(self) -> float:
-        return self.radius * abs(self.turn)
-
-    @property
-    def area(self) -> float:
-        (x0, y0), (x1, y1) = self.at(0.0), self.at(1.0)
-        return 0.5 * (self.radius**2 * self.turn + self.x * (y1 - y0) - self.y * (x1 - x0))
-
-    def off(self, x: float, y: float) -> float:
-        return abs(math.hypot(x - self.x, y - self.y) - self.radius)
-
-    def share_of(self, x: float, y: float) -> float:
-        angle = math.copysign(1.0, self.turn) * (math.atan2(y - self.y, x - self.x) - self.start) % (2.0 * math.pi)
-        if 2.0 * math.pi - angle < CLOSE:  # just before its start
-            angle -= 2.0 * math.pi
-        return angle / abs(self.turn)
-
-
-_Piece: TypeAlias = _Line | _Bow
-
-
 def table_of(scene: Scene, radius: float, starts: Floats) -> Table | None:
     """The table that centres of a radius at places (K, 2) live in, in one or several parts.
 
@@ -137,17 +50,46 @@ def table_of(scene: Scene, radius: float, starts: Floats) -> Table | None:
     curved = [wall for wall in parts_of(scene.walls) if not isinstance(wall, Circle | Arc | Segment)]
     if curved:
         return _oval_table(scene, curved, starts)
+    lined = _lined_parts(scene, radius, starts)
+    if lined is None:
+        return None
+    parts, seen = lined
+    area = sum(part.area for k, part in enumerate(parts) if k in seen or not part.hard)
+    perimeter = sum(part.length for k, part in enumerate(parts) if k in seen and part.hard)
+    return Table(area, perimeter) if area > 0.0 else None
+
+
+def sides_of_table(scene: Scene, radius: float, starts: Floats) -> list[Side] | None:
+    """The sides of the same table, each with the table to its left, in the order in which one goes on where another ends.
+
+    None where it has no straight and round sides alone, and wherever `table_of` gives None.
+    """
+    if any(not isinstance(wall, Circle | Arc | Segment) for wall in parts_of(scene.walls)):
+        return None
+    lined = _lined_parts(scene, radius, starts)
+    if lined is None:
+        return None
+    left = [lined[0][k] for k in sorted(lined[1]) if lined[0][k].hard]
+    found: list[Side] = []
+    while left:
+        here = found[-1].at(1.0) if found else left[0].at(0.0)
+        nearest = min(range(len(left)), key=lambda k: math.dist(here, left[k].at(0.0)))
+        goes_on = math.dist(here, left[nearest].at(0.0)) < 8.0 * CLOSE * _Reach(scene, radius).size
+        side = left.pop(nearest if goes_on else 0)
+        both = joined(found[-1], side) if goes_on and found else None
+        found[-1 if both else len(found) :] = [both or side]
+    return found
+
+
+def _lined_parts(scene: Scene, radius: float, starts: Floats) -> tuple[list[Side], set[int]] | None:
+    """All parts of boundaries that a centre may touch, and which of them line the table of some places; None as above."""
     pieces = list(dict.fromkeys(_pieces(scene, radius)))  # edges that meet have one end
     if len(pieces) > MOST_PIECES:
         return None
     reach = _Reach(scene, radius)
     parts = [part for piece in pieces for part in _parts(piece, pieces, reach)]
     lined = _seen_from(parts, starts, reach)
-    if lined is None:
-        return None
-    area = sum(part.area for k, part in enumerate(parts) if k in lined or not part.hard)
-    perimeter = sum(part.length for k, part in enumerate(parts) if k in lined and part.hard)
-    return Table(area, perimeter) if area > 0.0 else None
+    return None if lined is None else (parts, lined)
 
 
 def _oval_table(scene: Scene, curved: list[Part], starts: Floats) -> Table | None:
@@ -161,7 +103,7 @@ def _oval_table(scene: Scene, curved: list[Part], starts: Floats) -> Table | Non
     return Table(math.pi * a * b, wall.length()) if inside else None
 
 
-def _pieces(scene: Scene, r: float) -> Iterator[_Piece]:
+def _pieces(scene: Scene, r: float) -> Iterator[Side]:
     """All boundaries of centres of radius r, not cut yet."""
     domain = scene.domain
     if not isinstance(domain, Open):
@@ -171,14 +113,14 @@ def _pieces(scene: Scene, r: float) -> Iterator[_Piece]:
         ix, iy = (r if hard_x else 0.0), (r if hard_y else 0.0)
         corners = [(x0 + ix, y0 + iy), (x1 - ix, y0 + iy), (x1 - ix, y1 - iy), (x0 + ix, y1 - iy)]
         for k, hard in enumerate((hard_y, hard_x, hard_y, hard_x)):
-            yield _Line(*corners[k], *corners[(k + 1) % 4], hard)
+            yield Line(*corners[k], *corners[(k + 1) % 4], hard)
     for shift in _shifts(scene):
         for wall in parts_of(scene.walls):
             yield from _around(wall, r, shift)
         disks = scene.disks
         for k in np.flatnonzero(np.isinf(disks.mass)).tolist():
             place = disks.position[k] + shift
-            yield _Bow(float(place[0]), float(place[1]), float(disks.radius[k]) + r, math.pi, -2.0 * math.pi)
+            yield Bow(float(place[0]), float(place[1]), float(disks.radius[k]) + r, math.pi, -2.0 * math.pi)
 
 
 def _shifts(scene: Scene) -> list[Floats]:
@@ -192,12 +134,12 @@ def _shifts(scene: Scene) -> list[Floats]:
     return [np.array([dx, dy]) for dx in along[0] for dy in along[1]]
 
 
-def _around(wall: Part, r: float, shift: Floats) -> Iterator[_Piece]:
+def _around(wall: Part, r: float, shift: Floats) -> Iterator[Side]:
     """What a wall keeps a centre away from."""
     sx, sy = float(shift[0]), float(shift[1])
     if isinstance(wall, Circle):
         if not shift.any():
-            yield _Bow(wall.center[0], wall.center[1], wall.radius - r, -math.pi, 2.0 * math.pi)
+            yield Bow(wall.center[0], wall.center[1], wall.radius - r, -math.pi, 2.0 * math.pi)
         return
     if not isinstance(wall, Arc | Segment):  # alone (`_oval_table`), or no table at all
         return
@@ -206,18 +148,18 @@ def _around(wall: Part, r: float, shift: Floats) -> Iterator[_Piece]:
         (ax, ay), (bx, by) = ends
         length = math.hypot(bx - ax, by - ay)
         nx, ny = -(by - ay) / length * r, (bx - ax) / length * r
-        yield _Line(ax + nx, ay + ny, bx + nx, by + ny, hard=True)
-        yield _Line(bx - nx, by - ny, ax - nx, ay - ny, hard=True)
+        yield Line(ax + nx, ay + ny, bx + nx, by + ny, hard=True)
+        yield Line(bx - nx, by - ny, ax - nx, ay - ny, hard=True)
     else:
         (x, y), radius, start, turn = wall.sweep()
         if radius > r:
-            bow = _Bow(x + sx, y + sy, radius - r, start, turn)
+            bow = Bow(x + sx, y + sy, radius - r, start, turn)
             yield bow if turn > 0.0 else bow.cut(1.0, 0.0)
-        bow = _Bow(x + sx, y + sy, radius + r, start, turn)
+        bow = Bow(x + sx, y + sy, radius + r, start, turn)
         yield bow if turn < 0.0 else bow.cut(1.0, 0.0)
     if r > 0.0:
         for x, y in ends:
-            yield _Bow(x, y, r, math.pi, -2.0 * math.pi)
+            yield Bow(x, y, r, math.pi, -2.0 * math.pi)
 
 
 class _Reach:
@@ -275,19 +217,19 @@ def _distance(wall: Segment | Arc, x: float, y: float) -> float:
     """From a place to a wall."""
     ends = min(math.hypot(x - px, y - py) for px, py in (wall.start, wall.end))
     if isinstance(wall, Segment):
-        line = _Line(*wall.start, *wall.end, hard=True)
+        line = Line(*wall.start, *wall.end, hard=True)
         share = line.share_of(x, y)
         if 0.0 < share < 1.0:
             px, py = line.at(share)
             return math.hypot(x - px, y - py)
         return ends
     (cx, cy), radius, start, turn = wall.sweep()
-    if _Bow(cx, cy, radius, start, turn).share_of(x, y) <= 1.0:
+    if Bow(cx, cy, radius, start, turn).share_of(x, y) <= 1.0:
         return min(ends, abs(math.hypot(x - cx, y - cy) - radius))
     return ends
 
 
-def _parts(piece: _Piece, pieces: Iterable[_Piece], reach: _Reach) -> Iterator[_Piece]:
+def _parts(piece: Side, pieces: Iterable[Side], reach: _Reach) -> Iterator[Side]:
     """The parts of a piece that bound the table."""
     if not piece.length > reach.tolerance:
         return
@@ -295,7 +237,7 @@ def _parts(piece: _Piece, pieces: Iterable[_Piece], reach: _Reach) -> Iterator[_
     for other in pieces:
         if other is not piece:
             ends = [p for p in (other.at(0.0), other.at(1.0)) if piece.off(*p) < reach.tolerance]  # where they touch
-            cuts.update(share for p in _crossings(piece, other) + ends if 0.0 < (share := piece.share_of(*p)) < 1.0)
+            cuts.update(share for p in crossings(piece, other) + ends if 0.0 < (share := piece.share_of(*p)) < 1.0)
     ordered = sorted(cuts)
     for low, high in pairwise(ordered):
         part = piece.cut(low, high)
@@ -303,37 +245,7 @@ def _parts(piece: _Piece, pieces: Iterable[_Piece], reach: _Reach) -> Iterator[_
             yield part
 
 
-def _crossings(one: _Piece, other: _Piece) -> list[Point]:
-    """Where two pieces, or their continuations, meet."""
-    if isinstance(one, _Line):
-        return _line_crossings(one, other)
-    if isinstance(other, _Line):
-        return _line_crossings(other, one)
-    dx, dy = other.x - one.x, other.y - one.y
-    d2 = dx * dx + dy * dy
-    if d2 == 0.0 or d2 > (one.radius + other.radius) ** 2 or d2 < (one.radius - other.radius) ** 2:
-        return []
-    along = 0.5 * (d2 + one.radius**2 - other.radius**2) / d2
-    across = math.sqrt(max(one.radius**2 / d2 - along * along, 0.0))
-    return [(one.x + along * dx - s * across * dy, one.y + along * dy + s * across * dx) for s in (1.0, -1.0)]
-
-
-def _line_crossings(line: _Line, other: _Piece) -> list[Point]:
-    dx, dy = line.x1 - line.x0, line.y1 - line.y0
-    if isinstance(other, _Line):
-        ex, ey = other.x1 - other.x0, other.y1 - other.y0
-        cross = dx * ey - dy * ex
-        if abs(cross) <= CLOSE * math.hypot(dx, dy) * math.hypot(ex, ey):
-            return []
-        share = ((other.x0 - line.x0) * ey - (other.y0 - line.y0) * ex) / cross
-        return [line.at(share)]
-    a, fx, fy = dx * dx + dy * dy, line.x0 - other.x, line.y0 - other.y
-    b, c = fx * dx + fy * dy, fx * fx + fy * fy - other.radius**2
-    root = b * b - a * c
-    return [] if root < 0.0 else [line.at((-b + s * math.sqrt(root)) / a) for s in (1.0, -1.0)]
-
-
-def _seen_from(parts: list[_Piece], starts: Floats, reach: _Reach) -> set[int] | None:
+def _seen_from(parts: list[Side], starts: Floats, reach: _Reach) -> set[int] | None:
     """Which hard parts line the table of some places; None where one looks into the open.
 
     Looks go on from every part that was seen: straight away from it and to both sides; and the part that goes on where it
@@ -368,7 +280,7 @@ def _seen_from(parts: list[_Piece], starts: Floats, reach: _Reach) -> set[int] |
     return seen
 
 
-def _next(parts: list[_Piece], k: int, reach: _Reach) -> list[int]:
+def _next(parts: list[Side], k: int, reach: _Reach) -> list[int]:
     """The parts that meet part k at its ends, where there is but one that can."""
     found = []
     for here, there in ((1.0, 0.0), (0.0, 1.0)):
@@ -382,7 +294,7 @@ def _next(parts: list[_Piece], k: int, reach: _Reach) -> list[int]:
     return found
 
 
-def _first_hit(parts: list[_Piece], x: float, y: float, dx: float, dy: float, far: float, reach: _Reach) -> int | None:
+def _first_hit(parts: list[Side], x: float, y: float, dx: float, dy: float, far: float, reach: _Reach) -> int | None:
     """The part that a look meets first; in a periodic domain it goes on in the images."""
     best, found = math.inf, None
     size = reach.scene.domain.size
@@ -391,11 +303,11 @@ def _first_hit(parts: list[_Piece], x: float, y: float, dx: float, dy: float, fa
         spans = [(-2, -1, 0, 1, 2) if wraps else (0,) for wraps in reach.scene.domain.periodic]
         images = [(i * size[0], j * size[1]) for i in spans[0] for j in spans[1]]
     for sx, sy in images:
-        line = _Line(x - sx, y - sy, x - sx + far * dx, y - sy + far * dy, hard=False)
+        line = Line(x - sx, y - sy, x - sx + far * dx, y - sy + far * dy, hard=False)
         for k, part in enumerate(parts):
             if not part.hard:
                 continue
-            for p in _line_crossings(line, part):
+            for p in line_crossings(line, part):
                 share = line.share_of(*p)
                 along = part.share_of(*p)
                 if not (0.0 < share < best and -CLOSE <= along <= 1.0 + CLOSE):

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eventsim.measure.billiard_table import Table, table_of
+from eventsim.measure.billiard_table import Table, sides_of_table, table_of
+from eventsim.measure.sides import Side
 from eventsim.record.events import Floats
 from eventsim.scene.disks import species_among
 from eventsim.scene.domain import Box, Channel, Open, Periodic
@@ -219,6 +220,11 @@ class Ensemble:
         radii = np.unique(self.scene.disks.radius[self.movers])
         return self._table(float(radii[0])) if len(radii) == 1 else None
 
+    @property
+    def sides(self) -> list[Side]:
+        """The sides of that table, see `sides_of_table`; none where there is no table, or it is an ellipse."""
+        return [] if self.table is None else sides_of_table(self.scene, self._smallest, self._places) or []
+
     @cached_property
     def area(self) -> float | None:
         """Area that disks can cover, length^2: posts and what walls shut off left out; None where nothing bounds it."""
@@ -234,10 +240,14 @@ class Ensemble:
     def _smallest(self) -> float:
         return float(self.scene.disks.radius[self.movers].min())
 
-    def _table(self, radius: float) -> Table | None:
+    @property
+    def _places(self) -> Floats:
+        """(K, 2) of movers, from where the table is explored."""
         places = self.scene.disks.position[self.movers]
-        picked = np.unique(np.linspace(0, len(places) - 1, LOOKED_FROM).astype(np.int64))
-        return table_of(self.scene, radius, places[picked])
+        return places[np.unique(np.linspace(0, len(places) - 1, LOOKED_FROM).astype(np.int64))]
+
+    def _table(self, radius: float) -> Table | None:
+        return table_of(self.scene, radius, self._places)
 
     @cached_property
     def packing_fraction(self) -> float | None:

@@ -140,7 +140,7 @@ def test_it_stops_at_a_cluster_and_has_no_meaning_where_something_is_forgotten()
     for values, words in (((0,), "at least 1"), ((), "asks for K")):
         with pytest.raises(EventsimError, match=words):
             study(run_log(fluid(), 10), "lyapunov", *values)
-    with pytest.raises(EventsimError, match="there are lyapunov"):
+    with pytest.raises(EventsimError, match="there is no study"):
         study(run_log(fluid(), 10), "liapunov")
 
 

@@ -24,6 +24,13 @@ def fluid():
 
 
 @pytest.fixture(scope="session")
+def shown_in(fluid):
+    """The log that a kind of figure is tried on."""
+    billiard = log_of("stadium", events=200)
+    return lambda kind: billiard if kind == "boundary" else fluid
+
+
+@pytest.fixture(scope="session")
 def still():
     """A log in which no time passes."""
     return log_of("break", events=0)

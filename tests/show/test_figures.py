@@ -25,11 +25,11 @@ from tests.measure.ways import displacements
 
 @pytest.mark.parametrize("kind", TITLES)
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
-def test_every_kind_is_written_in_every_format(fluid, tmp_path, kind, suffix):
+def test_every_kind_is_written_in_every_format(shown_in, tmp_path, kind, suffix):
     path = tmp_path / f"a{suffix}"
-    write_figure(fluid, kind, path)
+    write_figure(shown_in(kind), kind, path)
     first = path.read_bytes()
-    write_figure(fluid, kind, path)
+    write_figure(shown_in(kind), kind, path)
     assert path.read_bytes() == first  # a figure depends on the log alone
     assert list(tmp_path.iterdir()) == [path]
 
@@ -110,7 +110,7 @@ def test_gaps_at_contact_are_nought_to_rounding(fluid):
 
 
 @pytest.mark.parametrize("kind", TITLES)
-def test_no_text_is_cut_off_or_printed_over_another(fluid, kind):
+def test_no_text_is_cut_off_or_printed_over_another(shown_in, kind):
     from importlib import import_module
 
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -119,7 +119,7 @@ def test_no_text_is_cut_off_or_printed_over_another(fluid, kind):
 
     figure: Figure = new_figure()
     canvas = FigureCanvasAgg(figure)
-    import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw(figure, fluid)
+    import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw(figure, shown_in(kind))
     canvas.draw()
     shown = figure.bbox
     for axes in figure.axes:

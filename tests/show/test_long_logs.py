@@ -56,5 +56,5 @@ def test_three_million_rows_are_looked_at_within_400_megabytes(suffix: str, tmp_
     long_log.write(Path(path), millions=3)
     assert long_log.megabytes("state", path, "--frames", "5", "--out", str(tmp_path / "s.csv")) < 400
     assert long_log.megabytes("animate", path, "--out", str(tmp_path / "s.png"), "--trails") < 400
-    for kind in TITLES:
+    for kind in set(TITLES) - {"boundary"}:  # that one is of billiards
         assert long_log.megabytes("figure", path, "--kind", kind, "--out", str(tmp_path / "f.png")) < 400, kind

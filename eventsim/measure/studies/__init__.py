@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from eventsim.errors import EventsimError
 from eventsim.measure.found import Found
-from eventsim.measure.studies import lyapunov
+from eventsim.measure.studies import boundary, escape, lyapunov, recurrence
 from eventsim.replay.log import Told
 
 
@@ -32,6 +32,9 @@ class Study(NamedTuple):
 
 STUDIES = (
     Study("lyapunov", {"K": int}, "the K largest Lyapunov exponents, per time and per contact of a disk", lyapunov.found),
+    Study("boundary", {}, "the boundary map of a billiard: arc length and sine of the angle of each contact", boundary.found),
+    Study("escape", dict.fromkeys(("X0", "Y0", "X1", "Y1"), float), "escapes through a segment: rate, survivors", escape.found),
+    Study("recurrence", {}, "recurrence times of a billiard: how long until a contact comes back", recurrence.found),
 )
 """The table of studies."""
 
