@@ -15,6 +15,9 @@ from eventsim.measure import sums
 FEW_ROWS = 1 << 15
 """Rows up to which plain Python is done before a compiler is even loaded."""
 
+ALONE = {"error_model": "numpy", "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Of what kernels alone call: nothing is allocated, so no references are counted, and there is no way in from Python."""
+
 VERY_FEW_ROWS = 1 << 11
 """The same where the compiler has been loaded for the run itself."""
 
@@ -47,7 +50,7 @@ PLAIN = Kernels(
 
 @cache
 def _compiled() -> Kernels:
-    """Nothing is allocated, so no references are counted (`_nrt`), which would take most of the time."""
+    """Counting references would take most of the time."""
     from numba import njit
     from numba.extending import register_jitable
 
@@ -55,26 +58,20 @@ def _compiled() -> Kernels:
         sums.first_pair,
         sums.first_wall,
         sums.first_speed,
-        sums.merge,
         sums.reach,
         sums.turn,
         sums.slot_of,
-        sums.hold,
         sums.swap,
-        sums.spread,
-        sums.fall,
-        sums.fly,
         sums.nearest,
-        sums.side_of,
-        sums.sample,
         sums.sample_before,
-        sums.mark,
         sums.leave,
+        sums.fly,
         sums.meet,
-        sums.strike,
     ):
-        register_jitable(error_model="numpy", forceinline=True, _nrt=False)(part)
-    register_jitable(error_model="numpy", _nrt=False)(sums.widen)  # rare, and long
+        register_jitable(**ALONE, forceinline=True)(part)
+    # rare, or long: calls of their own
+    for rare in (sums.widen, sums.merge, sums.mark, sums.sample, sums.hold, sums.spread, sums.fall, sums.side_of, sums.strike):
+        register_jitable(**ALONE)(rare)
     whole = (sums.take, sums.finish, sums.hold_all)
     try:
         return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False, cache=True)(part) for part in whole))

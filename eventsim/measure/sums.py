@@ -351,7 +351,7 @@ def sample(sums: Sums, time: float) -> None:
     """Put displacement and velocity of the watched disks at a time into the buffer."""
     disks, place = sums.disks, sums.counts[FILLED]
     for w in range(len(sums.watched)):
-        i = sums.watched[w]
+        i = int(sums.watched[w])
         lag = time - disks[i, TIME]
         vx, vy, gx, gy = disks[i, VX], disks[i, VY], disks[i, GX], disks[i, GY]
         sums.way[place, w, 0] = disks[i, WX] + lag * (vx + 0.5 * lag * gx)
@@ -447,7 +447,7 @@ def take(block: Block, first: int, plan: Plan, sums: Sums) -> int:
         if not sample_before(sums, time):
             return row
         reach(sums, time - numbers[ORIGIN])
-        kind, a, b, wall = block.kind[row], block.a[row], block.b[row], block.wall[row]
+        kind, a, b, wall = int(block.kind[row]), int(block.a[row]), int(block.b[row]), int(block.wall[row])
         vx, vy = block.vxa[row], block.vya[row]
         change = leave(plan, sums, a, time, vx, vy)
         if b >= 0:
