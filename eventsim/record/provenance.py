@@ -27,6 +27,9 @@ BITS = 2
 
 UNCHECKED = "a log of format 1 does not vouch for its scene: nothing tells whether a mass, a start or a row was changed since"
 
+SUM = "metadata_digest"
+"""The last key of the metadata; see `metadata_digest`."""
+
 BEFORE_SCENE = '{"scene": '
 
 Kick = tuple[int, float, float]
@@ -129,7 +132,7 @@ def text_after_scene(provenance: Provenance) -> str:
         },
         "rows": provenance.rows,
     }
-    return f", {json.dumps(data)[1:]}"
+    return f", {json.dumps({**data, SUM: metadata_digest(data)})[1:]}"
 
 
 def provenance_from_text(text: str, source: str, folder: Path | None = None) -> Provenance:
@@ -163,6 +166,11 @@ def provenance_from_text(text: str, source: str, folder: Path | None = None) -> 
             raise LogError(
                 f"{source}: its scene is not the one of its run: a disk, a wall, a rule or the frame of the clock was changed "
                 "since. Take the file as it was written, or run the scene again"
+            )
+        if data["format"] == FORMAT and data[SUM] != metadata_digest(data):
+            raise LogError(
+                f"{source}: its metadata are not those that its run wrote: what wrote it, a kick, the ending or the number of "
+                "rows was changed since. Take the file as it was written, or run the scene again"
             )
         return provenance
     except (KeyError, TypeError, ValueError, OverflowError) as error:
@@ -207,6 +215,12 @@ def scene_digest(provenance: Provenance) -> str:
         sha.update(np.ascontiguousarray(column, "<f8").data)
     sha.update(json.dumps([frame.bits, frame.epoch_length, frame.corner, list(frame.wall_names)]).encode())
     return sha.hexdigest()
+
+
+def metadata_digest(data: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of the metadata beside the scene, whose digest is among them, and the command, which nothing reads."""
+    beside = {key: value for key, value in data.items() if key not in ("scene", "command", SUM)}
+    return hashlib.sha256(json.dumps(beside).encode()).hexdigest()
 
 
 def _ending(data: Mapping[str, Any], form: int) -> Ending:

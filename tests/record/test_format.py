@@ -64,6 +64,14 @@ EDITS: dict[str, Callable[[dict[str, Any]], Any]] = {
 }
 
 
+OTHER_EDITS: dict[str, Callable[[dict[str, Any]], Any]] = {
+    "reason": lambda data: data["ending"].update(reason="quiet"),
+    "end": lambda data: data["ending"].update(remainder=data["ending"]["remainder"] / 2.0),
+    "version": lambda data: data.update(version="0.9.0"),
+    "kicks": lambda data: data.update(kicks=[[1, 0.5, 0.0]]),
+}
+
+
 @pytest.mark.parametrize("suffix", LOGS)
 @pytest.mark.parametrize("compact", [False, True])
 def test_a_log_whose_scene_was_changed_is_refused_by_every_reader(tmp_path: Path, suffix: str, compact: bool) -> None:
@@ -77,6 +85,11 @@ def test_a_log_whose_scene_was_changed_is_refused_by_every_reader(tmp_path: Path
         for read in (es.load_log, stream_log, open_log, audit):
             with pytest.raises(LogError, match=r"log\..*its scene is not the one of its run"):
                 read(path)
+    for edit in OTHER_EDITS.values():
+        path.write_bytes(whole.read_bytes())
+        rewritten(path, edit)
+        with pytest.raises(LogError, match=r"log\..*its metadata are not those that its run wrote"):
+            es.load_log(path)
     path.write_bytes(whole.read_bytes())
     rewritten(path, lambda data: data.update(command="another word"))
     assert es.load_log(path).digest() == es.load_log(whole).digest()
@@ -134,7 +147,7 @@ def test_a_log_of_format_1_is_read_with_a_note(tmp_path: Path) -> None:
 
     def aged(data: dict[str, Any]) -> None:
         data["format"] = 1
-        for key in ("bits", "corner", "scene_digest"):
+        for key in ("bits", "corner", "scene_digest", "metadata_digest"):
             del data[key]
         data["ending"]["digest"] = "0" * 64
         del data["ending"]["stored"]

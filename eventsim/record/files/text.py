@@ -7,6 +7,7 @@ import shutil
 from abc import abstractmethod
 from collections.abc import Callable, Generator
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -82,7 +83,9 @@ class TextSink(FileSink):
         metadata = head.removeprefix(self.prefix.encode())
         if TAIL not in metadata or not metadata.isascii():
             raise LogError(f"{self.part}: not an event log: the first line does not hold its scene")
-        demand_same(provenance_from_text(metadata.decode(), str(self.part)), self.provenance, self.part)
+        found = provenance_from_text(metadata.decode(), str(self.part))
+        demand_same(found, self.provenance, self.part)
+        self.provenance = replace(self.provenance, engine=found.engine)  # it stands before the cut
         self._cut = head.rindex(TAIL)
         self._room = len(head) - self._cut
         self._file.truncate(self._end_of_row(rows))
