@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import os
 import signal
 import sys
@@ -14,7 +15,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 if TYPE_CHECKING:
     from eventsim.runner.options import Interrupt
 
-Handler: TypeAlias = Callable[[int, FrameType | None], Any]
+Handler: TypeAlias = Callable[[bool], Any]
+"""Called with whether this is said once more, since what the handler raised was lost."""
+
+SHORTLY = 0.05
+"""Seconds until a signal is said once more."""
 
 HANGUP = getattr(signal, "SIGHUP", None)
 """The terminal has gone; there is no such signal everywhere."""
@@ -39,33 +44,57 @@ def interruptible() -> Iterator[Interrupt]:
     from eventsim.runner.options import Interrupt
 
     interrupt = Interrupt()
-    with _handled((signal.SIGINT, *ENDING), lambda number, frame: interrupt.break_in()):
+    with _handled((signal.SIGINT, *ENDING), interrupt.break_in):
         yield interrupt
 
 
-def _raise(number: int, frame: FrameType | None) -> None:
+def _raise(once_more: bool) -> None:
     raise KeyboardInterrupt
 
 
 @contextmanager
 def _handled(numbers: tuple[signal.Signals, ...], handler: Handler) -> Iterator[None]:
-    """Handle signals; where they do not come, in other threads, leave them alone."""
+    """Handle signals; where they do not come, in other threads, leave them alone.
+
+    A signal may be heard inside a function that machine code calls, as LLVM does while it compiles. What a handler raises there
+    is lost, and Python writes a traceback. So it is said once more, until it is heard elsewhere.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    terminals = _terminals()
+    terminals, usual_hook = _terminals(), sys.unraisablehook
+    raised: tuple[int, BaseException | None] = 0, None
+    once_more = False
 
     def handle(number: int, frame: FrameType | None) -> None:
+        nonlocal raised, once_more
         if number == HANGUP:
             _leave(terminals)
-        handler(number, frame)
+        repeated, once_more = once_more, False
+        try:
+            handler(repeated)
+        except BaseException as error:
+            raised = number, error
+            raise
+
+    def lost(unraisable: Any) -> None:
+        nonlocal once_more
+        if unraisable.exc_value is not raised[1]:
+            usual_hook(unraisable)
+            return
+        once_more = True
+        again = threading.Timer(SHORTLY, _thread.interrupt_main, raised[:1])
+        again.daemon = True
+        again.start()
 
     # nohup lets a command ignore that its terminal goes
     wanted = [number for number in numbers if number != HANGUP or signal.getsignal(number) is not signal.SIG_IGN]
     before = {number: signal.signal(number, handle) for number in wanted}
+    sys.unraisablehook = lost
     try:
         yield
     finally:
+        sys.unraisablehook = usual_hook
         for number, usual in before.items():
             signal.signal(number, usual)
 

@@ -104,8 +104,11 @@ class Motion(NamedTuple):
     wraps_y: NDArray[np.int64]
 
 
-class BrokenOffError(Exception):
-    """A session was interrupted while it only prepared itself (see `Session.prepares`), and has changed nothing."""
+class BrokenOffError(BaseException):
+    """A session was interrupted while it only prepared itself (see `Session.prepares`), and has changed nothing.
+
+    As KeyboardInterrupt it is no Exception: compilers catch these.
+    """
 
 
 class Session(ABC):

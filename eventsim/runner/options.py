@@ -92,12 +92,13 @@ class Interrupt:
         """Ask the run to end, from wherever."""
         self.asked = True
 
-    def break_in(self) -> None:
+    def break_in(self, once_more: bool = False) -> None:
         """Ask from a signal handler: what only prepares itself is broken off at once, and so is all by a second call.
 
+        once_more: what the call before raised was lost, so that this is no second one.
         Raises KeyboardInterrupt, or BrokenOffError into a session that prepares itself.
         """
-        again, self.asked = self.asked, True
+        again, self.asked = self.asked and not once_more, True
         if again or self.session is None:
             raise KeyboardInterrupt
         if self.session.prepares:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import multiprocessing
 import os
@@ -17,6 +18,8 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.cli.signals import interruptible, terminable
+from eventsim.engines.base import BrokenOffError
 from eventsim.suffixes import LOGS
 
 LONG = 2400
@@ -173,6 +176,25 @@ main()
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
+
+
+def test_a_signal_that_is_heard_inside_a_function_called_by_machine_code_is_not_lost(capfd):
+    """As inside LLVM while it compiles: a traceback was written, and the run went on for a minute."""
+
+    def heard_inside(number):
+        ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(number))()
+        time.sleep(20)
+
+    class Preparing:
+        prepares = True
+
+    with interruptible() as interrupt:
+        interrupt.session = Preparing()
+        with pytest.raises(BrokenOffError):
+            heard_inside(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt), terminable():
+        heard_inside(signal.SIGTERM)
+    assert capfd.readouterr().err == ""
 
 
 ENDING = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]

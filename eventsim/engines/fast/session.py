@@ -62,13 +62,14 @@ class FastSession(ExactSession):
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
         self._machine.take_counters(self.counters)
         try:
-            return super().advance(stop, budget)
+            stopped = super().advance(stop, budget)
         finally:
             self._machine.tell_counters(self.counters)
-            machine = self._machine
-            if machine.grid.deep != self._marked:  # the one thing in a kind that a run may change
-                mark_warm(kind_of(self.stage, machine.grids, machine.keep_rows))
-                self._marked = machine.grid.deep
+        machine = self._machine
+        if machine.grid.deep != self._marked:  # the one thing in a kind that a run may change
+            mark_warm(kind_of(self.stage, machine.grids, machine.keep_rows))
+            self._marked = machine.grid.deep
+        return stopped
 
     @property
     def prepares(self) -> bool:
