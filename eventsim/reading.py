@@ -26,6 +26,9 @@ LONGEST_REASON = 200
 DENSEST = 1032
 """Bytes that one byte of a deflated text can stand for.  Source: zlib's technical details, "Maximum Compression Factor"."""
 
+MOST_HELD = 1 << 32
+"""Bytes of all that is read of a file at once: a packed one of a few MB may stand for many times the memory that there is."""
+
 WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 """Opening a pipe without it would wait for a writer."""
 
@@ -82,6 +85,7 @@ class Npz:
     def __init__(self, file: IO[bytes]) -> None:
         """Look at what there is; zipfile's errors are the caller's to tell."""
         self._archive = zipfile.ZipFile(file)
+        self._held = 0
 
     @property
     def names(self) -> list[str]:
@@ -98,8 +102,11 @@ class Npz:
         return ArrayReader(self._archive, f"{name}.npy")
 
     def read(self, name: str) -> NDArray[Any]:
-        """Return a whole array; raises KeyError or ValueError."""
+        """Return a whole array; raises KeyError or ValueError, also where with those before it is more than is held at once."""
         reader = self.open(name)
+        self._held += reader.size
+        if self._held > MOST_HELD:
+            raise ValueError(f"its arrays have more than {MOST_HELD} bytes")
         flat = reader.read(reader.count)
         return flat.reshape(reader.shape[::-1]).T if reader.along_columns else flat.reshape(reader.shape)
 
@@ -110,6 +117,7 @@ class ArrayReader:
     Attributes:
         shape: of the array.
         count: of its numbers, or texts.
+        size: their bytes.
         along_columns: whether the first index runs fastest.
     """
 
@@ -122,10 +130,10 @@ class ArrayReader:
         read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
         self.shape, self.along_columns, self._dtype = read(self._file)
         self.count = math.prod(self.shape)
-        size = self._dtype.itemsize
+        self.size = self.count * self._dtype.itemsize
         if self._dtype.hasobject:
             raise ValueError(f"{name} holds pickled objects, which are not read")
-        if size == 0 or self._file.tell() + self.count * size != entry.file_size:
+        if self._dtype.itemsize == 0 or self._file.tell() + self.size != entry.file_size:
             raise ValueError(f"{name} is not as long as it says")
 
     def read(self, count: int) -> NDArray[Any]:

@@ -16,13 +16,15 @@ from eventsim.errors import EventsimError
 from eventsim.readers.columns import samples_of
 from eventsim.readers.csv import csv_columns
 from eventsim.readers.npz import npz_columns
-from eventsim.readers.samples import Columns, Samples
+from eventsim.readers.samples import Column, Columns, Samples
+from eventsim.reading import told_as
 
 TABLES = {".csv": csv_columns, ".npz": npz_columns}
+SHORT = {"t": "time", "id": "disk"}
 
 
 def read_columns(path: Path) -> Columns:
-    """The columns of a .csv, .npz or .parquet file by their names, in small letters.
+    """The columns of a .csv, .npz or .parquet file by their names, in small letters and the longer one of two.
 
     Raises:
         EventsimError: naming the file, for what cannot be read.
@@ -31,10 +33,18 @@ def read_columns(path: Path) -> Columns:
     if suffix == ".parquet":
         from eventsim.readers.parquet import parquet_columns
 
-        return parquet_columns(path)
-    if suffix not in TABLES:
+        found = parquet_columns(path)
+    elif suffix in TABLES:
+        found = TABLES[suffix](path)
+    else:
         raise EventsimError(f"{path}: a table ends in {', '.join(suffixes.READ_TABLES)}")
-    return TABLES[suffix](path)
+    columns: dict[str, Column] = {}
+    for name, column in found:
+        known = SHORT.get(name.strip().lower(), name.strip().lower())
+        if known in columns:
+            raise EventsimError(f"{path}: has more than one column {known}")
+        columns[known] = column
+    return columns
 
 
 def read_samples(path: Path, dt: float | None = None, least: int = 2) -> Samples:
@@ -49,21 +59,22 @@ def read_samples(path: Path, dt: float | None = None, least: int = 2) -> Samples
         EventsimError: naming the file, for what cannot be read or is not the same disks at each time.
     """
     suffix = path.suffix.lower()
-    if suffix == ".xyz":
-        from eventsim.readers.xyz import read_xyz
+    with told_as(path, EventsimError, "does not tell positions at times"):
+        if suffix == ".xyz":
+            from eventsim.readers.xyz import read_xyz
 
-        return read_xyz(path, dt, least)
-    if suffix == ".gsd":
-        from eventsim.readers.gsd import read_gsd
+            return read_xyz(path, dt, least)
+        if suffix == ".gsd":
+            from eventsim.readers.gsd import read_gsd
 
-        return read_gsd(path, dt, least)
-    if suffix in suffixes.DUMPS:
-        from eventsim.readers.lammps import read_dump
+            return read_gsd(path, dt, least)
+        if suffix in suffixes.DUMPS:
+            from eventsim.readers.lammps import read_dump
 
-        return read_dump(path, dt, least)
-    if suffix not in suffixes.READ_TABLES:
-        raise EventsimError(f"{path}: positions at times are read from {', '.join(suffixes.TRAJECTORIES)}")
-    return samples_of(read_columns(path), str(path), dt)
+            return read_dump(path, dt, least)
+        if suffix not in suffixes.READ_TABLES:
+            raise EventsimError(f"{path}: positions at times are read from {', '.join(suffixes.TRAJECTORIES)}")
+        return samples_of(read_columns(path), str(path), dt)
 
 
 def read_start(path: Path, frame: int | None = None) -> Samples:
@@ -79,7 +90,8 @@ def read_start(path: Path, frame: int | None = None) -> Samples:
     if path.suffix.lower() in suffixes.LAMMPS_DATA:
         from eventsim.readers.lammps import read_data
 
-        samples = read_data(path)
+        with told_as(path, EventsimError, "is no whole data file"):
+            samples = read_data(path)
     else:
         samples = read_samples(path, 1.0, 1)
     count = len(samples.times)

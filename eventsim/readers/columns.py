@@ -4,26 +4,25 @@
     time, x0, y0, x1, y1, ... [, vx0, vy0, ...]      a row for each time
     time (T,), position (T, n, 2) [, velocity], or x, y (T, n) [, vx, vy]     arrays, in .npz
 
-`t` is another name of `time`, `id` of `disk`.
+`t` is another name of `time`, `id` of `disk` (`read_columns`).
 """
 
 from __future__ import annotations
 
 import re
-from typing import Any
+from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
-from eventsim.readers.samples import Columns, Floats, Samples, checked, last_digit, times_of_frames
+from eventsim.readers.samples import Column, Columns, Floats, Samples, checked, last_digit, times_of_frames
 
-SHORT = {"t": "time", "id": "disk"}
+NUMBERS = "iufUSO"
+"""Kinds of columns that hold numbers, or texts and objects that may be some; nothing is guessed of dates, complex numbers, ..."""
 
 
-def samples_of(columns: Columns, source: str, dt: float | None = None) -> Samples:
+def samples_of(named: Columns, source: str, dt: float | None = None) -> Samples:
     """The samples that columns hold; EventsimError, naming the source, where they are of no such kind."""
-    named = {SHORT.get(name, name): column for name, column in columns.items()}
     if "position" in named or ("x" in named and named["x"].ndim == 2):
         return _of_arrays(named, source, dt)
     if "x" in named and "y" in named:
@@ -31,7 +30,7 @@ def samples_of(columns: Columns, source: str, dt: float | None = None) -> Sample
     if "x0" in named and "y0" in named:
         return _of_times(named, source, dt)
     raise EventsimError(
-        f"{source}: has the columns {', '.join(columns)}; positions are time, disk, x, y (a row for each disk and time) "
+        f"{source}: has the columns {', '.join(named)}; positions are time, disk, x, y (a row for each disk and time) "
         "or time, x0, y0, x1, y1, ... (a row for each time)"
     )
 
@@ -66,6 +65,7 @@ def _of_rows(named: Columns, source: str) -> Samples:
     """A row for each disk and time."""
     if "time" not in named:
         raise EventsimError(f"{source}: lacks a column time")
+    demand_alike(named, ("time", "disk", "x", "y", "vx", "vy", "radius", "mass"), source)
     time = _numbers(named, "time", source)
     if len(time) == 0:
         raise EventsimError(f"{source}: holds no row")
@@ -114,8 +114,17 @@ def _numbers(named: Columns, name: str, source: str) -> Floats:
     return numbers_of(named[name], name, source)
 
 
-def numbers_of(column: NDArray[Any], name: str, source: str) -> Floats:
+def demand_alike(named: Columns, names: Iterable[str], source: str) -> None:
+    """Raise EventsimError where columns that share their rows have not one number for each."""
+    shapes = {name: named[name].shape for name in names if name in named}
+    if len(set(shapes.values())) > 1 or any(len(shape) != 1 for shape in shapes.values()):
+        raise EventsimError(f"{source}: columns must be equally long, not {shapes}")
+
+
+def numbers_of(column: Column, name: str, source: str) -> Floats:
     """A column as numbers; EventsimError, with the first row, where there are others in it."""
+    if column.dtype.kind not in NUMBERS:
+        raise EventsimError(f"{source}: {name} has values of the type {column.dtype}: must be numbers")
     try:
         return np.asarray(column, dtype=np.float64)
     except (ValueError, TypeError):

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.readers import read_columns
-from eventsim.readers.columns import SHORT, numbers_of
-from eventsim.readers.samples import Floats
+from eventsim.readers.columns import demand_alike, numbers_of
+from eventsim.readers.samples import Columns, Floats
+from eventsim.reading import told_as
 
 CONTACTS = ("pair", "wall")
 """Kinds of rows of an event log that are contacts."""
@@ -38,17 +39,22 @@ class Told:
 
 def read_contacts(path: Path, n: int) -> Told:
     """The contacts between n disks and with walls; EventsimError, naming the file, for what is no such table."""
-    named = {SHORT.get(name, name): column for name, column in read_columns(path).items()}
+    with told_as(path, EventsimError, "does not tell contacts"):
+        return _told(read_columns(path), path, n)
+
+
+def _told(named: Columns, path: Path, n: int) -> Told:
     missing = [name for name in ("time", "a", "b") if name not in named]
     if missing:
         raise EventsimError(f"{path}: lacks {', '.join(missing)}: contacts have the columns time, a, b (-1: a wall), wall")
+    demand_alike(named, ("time", "a", "b", "wall", "kind"), str(path))
     kept = np.ones(len(named["time"]), dtype=bool)
     if "kind" in named:
-        kept = np.isin(named["kind"].astype(np.str_), CONTACTS)
+        kept = np.isin(list(map(str, named["kind"].tolist())), CONTACTS)
     b = named["b"][kept]
-    if b.dtype.kind == "U":
+    if b.dtype.kind in "UO":
         b = np.where(b == "", "-1", b)
-    wall = named["wall"][kept].astype(np.str_).tolist() if "wall" in named else [""] * int(kept.sum())
+    wall = list(map(str, named["wall"][kept].tolist())) if "wall" in named else [""] * int(kept.sum())
     time, a, b = (
         numbers_of(column, name, str(path))
         for name, column in (("time", named["time"][kept]), ("a", named["a"][kept]), ("b", b))
@@ -58,6 +64,9 @@ def read_contacts(path: Path, n: int) -> Told:
 
 def told_from(time: Floats, a: Floats, b: Floats, wall: Sequence[str], n: int, source: str) -> Told:
     """Contacts from columns; EventsimError where they name disks that there are not."""
+    if not np.all(np.isfinite(time)):
+        row = int(np.argmin(np.isfinite(time)))
+        raise EventsimError(f"{source}: row {row}: time = {time[row]}: must be finite")
     for name, column, least in (("a", a, 0), ("b", b, -1)):
         wrong = ~((column >= least) & (column < n) & (column == np.floor(column)))
         if wrong.any():

@@ -12,7 +12,11 @@ from numpy.typing import NDArray
 from eventsim.errors import EventsimError
 
 Floats: TypeAlias = NDArray[np.float64]
-Columns: TypeAlias = Mapping[str, NDArray[Any]]
+Column: TypeAlias = NDArray[Any]
+Named: TypeAlias = list[tuple[str, Column]]
+"""The columns of a file under the names that it gives them."""
+
+Columns: TypeAlias = Mapping[str, Column]
 """Name, in small letters, -> numbers or texts."""
 
 
@@ -67,6 +71,11 @@ def checked(samples: Samples, least: int = 2) -> Samples:
         raise EventsimError(f"{samples.source}: holds {len(samples.times)} times; a motion has at least two")
     if samples.velocity is not None and samples.velocity.shape != shape:
         raise EventsimError(f"{samples.source}: velocities {samples.velocity.shape} of positions {shape}: must be alike")
+    for name, values in (("radius", samples.radius), ("mass", samples.mass)):
+        if values is not None and values.shape != shape[1:2]:
+            raise EventsimError(f"{samples.source}: {name} {values.shape} of {shape[1]} disks: must be ({shape[1]},)")
+        if values is not None and not np.all(values >= 0.0):
+            raise EventsimError(f"{samples.source}: {name} of disk {int(np.argmin(values >= 0.0))}: must be at least 0")
     for name, values in (("times", samples.times), ("positions", samples.position), ("velocities", samples.velocity)):
         if values is not None and not np.all(np.isfinite(values)):
             place = tuple(np.argwhere(~np.isfinite(values))[0].tolist())

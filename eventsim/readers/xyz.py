@@ -64,7 +64,7 @@ def _frames(path: Path, lines: list[str]) -> Iterator[Frame]:
         try:
             n = int(lines[first])
         except ValueError:
-            raise EventsimError(f"{path} line {first + 1}: {lines[first]!r}: must be a number of disks") from None
+            raise EventsimError(f"{path} line {first + 1}: {lines[first][:40]!r}: must be a number of disks") from None
         if not 0 < n <= len(lines) - first - 2:
             raise EventsimError(f"{path} line {first + 1}: announces {n} disks, and {len(lines) - first - 2} lines follow")
         comment, rows = lines[first + 1], [line.split() for line in lines[first + 2 : first + 2 + n]]
@@ -90,7 +90,7 @@ def _columns(path: Path, line: int, comment: str, rows: list[list[str]]) -> dict
     columns: dict[str, Floats] = {}
     place = 0
     for name, kind, count in zip(words[::3], words[1::3], words[2::3], strict=False):
-        width = int(count) if count.isdigit() else 1
+        width = int(count) if re.fullmatch("[1-9][0-9]{0,3}", count) else 1
         if kind in "RI":
             for number, row in enumerate(rows):
                 if len(row) < place + min(width, 2):

@@ -24,6 +24,7 @@ from eventsim.reading import Npz, reading
 from eventsim.record.digest import CHUNK, RECORD, Progress
 from eventsim.record.events import ROW, Kind, Rows
 from eventsim.record.files import Mark
+from eventsim.record.files.atomic import demand_place
 from eventsim.record.provenance import BITS, Provenance, provenance_from_text
 from eventsim.runner.snapshots import Arrays, demand_fit, packed, unpacked
 from eventsim.scene.stage import stage_of
@@ -167,6 +168,7 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
 def place_for(path: str | PathLike[str]) -> Path:
     """Where checkpoints are to be written; CheckpointError for a file that is there and is none: it may be dear to somebody."""
     place = Path(path)
+    demand_place(place, CheckpointError)
     if place.exists() and not _is_checkpoint(place):
         raise CheckpointError(f"{place}: is there and is not a checkpoint, so no checkpoint takes its place")
     return place

@@ -12,7 +12,7 @@ from pathlib import Path
 from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.reading import reading
-from eventsim.record.files.atomic import atomic_write
+from eventsim.record.files.atomic import atomic_write, demand_place
 from eventsim.sweep.task import Cell, Row
 
 FORMAT = 1
@@ -22,6 +22,7 @@ def check_suffix(path: Path) -> Path:
     """The path of a table; EventsimError where it is none that can be written."""
     if path.suffix.lower() not in suffixes.TABLES:
         raise EventsimError(f"{path}: a table is written as {' or '.join(suffixes.TABLES)}")
+    demand_place(path)
     if not path.parent.is_dir():
         raise EventsimError(f"{path}: there is no directory {path.parent}")
     return path

@@ -25,6 +25,7 @@ import numpy as np
 
 import eventsim as es
 from eventsim.errors import LogWarning
+from eventsim.record.files import open_sink
 from eventsim.record.provenance import Provenance
 from eventsim.scene.disks_file import read_disks_file, write_disks_file
 from eventsim.simulation import resume
@@ -66,6 +67,9 @@ def targets(place: Path) -> dict[str, Target]:
             name = f"{'compact' if compact else 'full'}{suffix}"
             es.simulate(scene, events=EVENTS, engine="reference", log=place / name, compact=compact)
             found[name] = Target(place / name, read_log)
+    for suffix, name in (("npz", "runs"), ("parquet", "eventsim"), ("npz", "xa"), ("csv", None)):
+        part = growing(place / f"growing-{name}.{suffix}", place / "compact.csv")
+        found[f"growing {name or suffix}"] = Target(part / name if name else part, read_log if name is None else read_journal)
     es.simulate(scene, events=EVENTS, engine="reference", checkpoint=place / "run.checkpoint")
     found["run.checkpoint"] = Target(place / "run.checkpoint", read_checkpoint)
     write_disks_file(place / "disks.npz", scene.disks)
@@ -80,6 +84,19 @@ def _text_of(scene: es.Scene, suffix: str) -> str:
     from eventsim.scene.files import scene_to_json, scene_to_toml
 
     return scene_to_toml(scene) if suffix == ".toml" else scene_to_json(scene)
+
+
+def growing(path: Path, log: Path) -> Path:
+    """What a run that was killed would leave of a log."""
+    whole = es.load_log(log).expand()
+    sink = open_sink(path, whole.provenance)
+    sink.write(whole.rows)
+    sink.leave()
+    return sink.part
+
+
+def read_journal(path: Path) -> list[tuple[str, Any]]:
+    return read_log(path.parent)
 
 
 def read_log(path: Path) -> list[tuple[str, Any]]:
@@ -108,23 +125,21 @@ def flips(chosen: dict[str, Target], count: int, seed: int) -> Iterator[Flip]:
         name = list(chosen)[number % len(chosen)]
         whole, right = wholes[name]
         place, bit = chance.randrange(len(whole)), chance.randrange(8)
-        with flipped(chosen[name].file.with_name(f"flipped-{name}"), whole, place, bit) as path:
-            yield Flip(name, place, bit, *outcome(chosen[name].read, path, right))
+        with flipped(chosen[name].file, whole, place, bit):
+            yield Flip(name, place, bit, *outcome(chosen[name].read, chosen[name].file, right))
 
 
 @contextmanager
-def flipped(path: Path, whole: bytes, place: int, bit: int) -> Iterator[Path]:
-    """A copy with one bit flipped; the copy stays, so that the next flip writes two bytes and not a file."""
-    if not path.exists():
-        path.write_bytes(whole)
+def flipped(path: Path, whole: bytes, place: int, bit: int) -> Iterator[None]:
+    """Flip a bit of a file inside: that writes two bytes and not a file."""
     with path.open("r+b", buffering=0) as file:
-        for byte in (whole[place] ^ 1 << bit, whole[place]):
-            file.seek(place)
-            file.write(bytes([byte]))
-            if byte != whole[place]:
-                yield path
-        if not os.path.samestat(os.fstat(file.fileno()), path.stat()):
-            path.unlink()  # a run that goes on has put its checkpoint there
+        file.seek(place)
+        file.write(bytes([whole[place] ^ 1 << bit]))
+        yield
+        file.seek(place)
+        file.write(whole[place : place + 1])
+        if not os.path.samestat(os.fstat(file.fileno()), path.stat()):  # a run that goes on has put its checkpoint there
+            path.write_bytes(whole)
 
 
 def outcome(read: Callable[[Path], list[tuple[str, Any]]], path: Path, right: list[tuple[str, Any]]) -> tuple[str, str]:
@@ -144,8 +159,9 @@ def outcome(read: Callable[[Path], list[tuple[str, Any]]], path: Path, right: li
 
 
 def is_silent(flip: Flip) -> bool:
-    """Whether another story was read and nothing said; only files of scenes, which people write, carry no digests."""
-    return flip.outcome in ("rows", "scene") and not flip.target.startswith("scene.")
+    """Whether another story was read and nothing said; scenes, which people write, and rows that still come have no digests."""
+    free = {"rows": ("scene.", "growing"), "scene": ("scene.",)}
+    return flip.outcome in free and not flip.target.startswith(free[flip.outcome])
 
 
 def _same(one: Any, other: Any) -> bool:

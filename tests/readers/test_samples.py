@@ -80,6 +80,60 @@ def test_what_is_no_motion_is_told_with_the_file(name, text, said, tmp_path):
     assert name in str(raised.value)
 
 
+LYING = {
+    "of no length": ({"time": TIMES, "x": np.array(1.0), "y": np.array(1.0)}, "columns must be equally long"),
+    "of other lengths": ({"time": TIMES, "x": np.arange(5.0), "y": np.arange(5.0)}, "columns must be equally long"),
+    "complex": ({"time": TIMES, "position": PLACES + 1j}, "position has values of the type complex128"),
+    "dates": ({"time": TIMES.astype("M8[s]"), "position": PLACES}, "time has values of the type datetime64"),
+    "truths": ({"time": TIMES, "position": PLACES > 1.0}, "position has values of the type bool"),
+    "twice": ({"time": TIMES, "position": PLACES, "Position": PLACES + 1.0}, "more than one column position"),
+    "two clocks": ({"time": TIMES, "t": TIMES, "position": PLACES}, "more than one column time"),
+    "radii of others": ({"time": TIMES, "position": PLACES, "radius": np.ones(7)}, "radius (7,) of 4 disks"),
+    "mass of nothing": ({"time": TIMES, "position": PLACES, "mass": np.full(4, np.nan)}, "mass of disk 0"),
+}
+
+
+@pytest.mark.parametrize(("arrays", "said"), LYING.values(), ids=LYING)
+def test_columns_that_fit_nothing_are_not_guessed(arrays, said, tmp_path):
+    """Imaginary parts, rows beyond the times and the first of two columns were dropped without a word."""
+    np.savez(tmp_path / "a.npz", **arrays)
+    with pytest.raises(es.EventsimError) as raised:
+        read_samples(tmp_path / "a.npz")
+    assert said in str(raised.value)
+    assert "a.npz" in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.csv", "time,disk,x,y\n0,0," + "1" * 200_000 + ",1\n"),
+        ("a.xyz", "1\nProperties=pos:R:\u00b2 time=0\n1 2 3\n"),
+        ("a.xyz", "9" * 6000 + "\n"),
+    ],
+)
+def test_what_breaks_a_parser_is_told_in_a_line(name, text, tmp_path):
+    """csv.Error, ValueError: whatever is raised over a file is one error."""
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(es.EventsimError, match=name) as raised:
+        read_samples(tmp_path / name)
+    assert len(str(raised.value)) < 500
+
+
+@pytest.mark.parametrize(("time", "rows"), [(TIMES, 5), (TIMES + np.nan, 3)])
+def test_contacts_of_columns_that_do_not_fit_are_refused(time, rows, tmp_path):
+    np.savez(tmp_path / "a.npz", time=time, a=np.zeros(rows), b=np.ones(rows))
+    with pytest.raises(es.EventsimError, match=r"a\.npz: (columns must be equally long|row 0: time = nan)"):
+        read_contacts(tmp_path / "a.npz", 2)
+
+
+def test_a_small_file_that_stands_for_more_than_the_memory_is_refused(tmp_path, monkeypatch):
+    np.savez_compressed(tmp_path / "a.npz", time=TIMES, position=np.zeros((3, 10_000, 2)))
+    assert read_samples(tmp_path / "a.npz").n == 10_000
+    monkeypatch.setattr("eventsim.reading.MOST_HELD", 100_000)
+    with pytest.raises(es.EventsimError, match=r"a\.npz: .*have more than 100000 bytes"):
+        read_samples(tmp_path / "a.npz")
+
+
 def test_frames_without_times_are_a_step_apart(tmp_path):
     (tmp_path / "a.xyz").write_text("1\n\nAr 0 0 0\n1\n\nAr 1 0 0\n")
     assert read_samples(tmp_path / "a.xyz", dt=0.5).times.tolist() == [0.0, 0.5]

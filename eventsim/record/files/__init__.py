@@ -14,6 +14,7 @@ import numpy as np
 
 from eventsim import suffixes
 from eventsim.errors import LogError
+from eventsim.reading import told_as
 from eventsim.record.events import Rows, blank_rows
 from eventsim.record.files import csv, jsonl, npz
 from eventsim.record.files.sink import FileSink, Format, Mark, Opened, demand_same, part_of
@@ -108,14 +109,15 @@ def open_log(path: Path, verify: bool = True) -> Opened:
     """
     growing = path.suffix == PART
     form = _format_of(Path(path.stem) if growing else path)
-    if not path.exists():
-        written = part_of(path)
-        hint = f"; {written} is there, what a run has written so far" if written.exists() else ""
-        raise LogError(f"{path}: no such file{hint}")
-    if not growing:
-        if not path.is_file():
-            raise LogError(f"{path}: not a file")
-        _demand_magic(path)
+    with told_as(path, LogError, "not a name of a file"):
+        if not path.exists():
+            written = part_of(path)
+            hint = f"; {written} is there, what a run has written so far" if written.exists() else ""
+            raise LogError(f"{path}: no such file{hint}")
+        if not growing:
+            if not path.is_file():
+                raise LogError(f"{path}: not a file")
+            _demand_magic(path)
     provenance, blocks = (form.open_part if growing else form.open_whole)(path)
     sound = checked(provenance, blocks, path)
     return Opened(provenance, verified(provenance, sound, path) if verify else sound)

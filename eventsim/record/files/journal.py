@@ -18,6 +18,7 @@ from typing import IO, TypeAlias
 import numpy as np
 
 from eventsim.errors import LogError
+from eventsim.reading import reading, told_as
 from eventsim.record.events import FIELDS, ROW, Column, Rows, blank_rows
 from eventsim.record.files.runs import columns_of_runs, cut_runs, rows_in_runs, runs_of
 from eventsim.record.files.sink import FileSink, Opened, demand_same
@@ -53,6 +54,8 @@ ROOM = 512
 
 GROUP = 1 << 17
 """Rows held at a time."""
+
+DAMAGED = "not an event log that grows, or damaged"
 
 Columns: TypeAlias = dict[str, Column]
 """The columns of a block of rows by their names, each (n,) and contiguous: taken apart once, for all that is done with them."""
@@ -184,10 +187,8 @@ def _part_from_others(path: Path) -> None:
 
 def journal_provenance(part: Path) -> Provenance:
     """The metadata of a log that grows, or grew until its run was killed; LogError where there are none."""
-    try:
-        text = (part / METADATA).read_text(encoding="ascii")
-    except (OSError, UnicodeDecodeError):
-        raise LogError(f"{part}: not an event log that grows: it has no readable metadata") from None
+    with reading(part / METADATA, LogError, DAMAGED) as file:
+        text = file.read().decode("ascii")
     return provenance_from_text(text, str(part), part)
 
 
@@ -198,12 +199,10 @@ def raw(columns: Iterable[str]) -> tuple[str, ...]:
 
 def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
     """How many rows are whole; LogError where a file is missing."""
-    try:
+    with told_as(part, LogError, DAMAGED):
         sizes = {name: max((part / name).stat().st_size - ROOM, 0) for name in raw(columns)}
         counts = [size // ROW[name].itemsize for name, size in sizes.items()]
         return min(*counts, rows_in_runs(part / RUNS))
-    except OSError as error:
-        raise LogError(f"{part}: not an event log that grows: {error.strerror}: {error.filename}") from None
 
 
 def columns_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterator[Columns]:
@@ -220,11 +219,12 @@ def columns_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterat
 
 def blocks_of_journal(part: Path, names: tuple[str, ...], count: int) -> Generator[Rows]:
     """The first `count` rows, in blocks."""
-    for columns in columns_of_journal(part, names, count):
-        rows = blank_rows(len(columns["event"]))
-        for name, column in columns.items():
-            rows[name] = column
-        yield rows
+    with told_as(part, LogError, DAMAGED):
+        for columns in columns_of_journal(part, names, count):
+            rows = blank_rows(len(columns["event"]))
+            for name, column in columns.items():
+                rows[name] = column
+            yield rows
 
 
 def open_journal(part: Path) -> Opened:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from eventsim.errors import LogError
 from eventsim.record.digest import StoredDigester
 from eventsim.record.events import Rows
+from eventsim.record.files.atomic import demand_place
 from eventsim.record.files.claim import Claim
 from eventsim.record.provenance import Ending, Kick, Provenance, columns_kept, kicks_of
 from eventsim.suffixes import PART
@@ -47,6 +48,7 @@ class FileSink(ABC):
         self._kicks = list(kicks or ()) if mark is None else list(mark.kicks)
         self._count = 0 if mark is None else mark.rows
         self._stored = StoredDigester(self.columns)
+        demand_place(path, LogError)
         if path.is_dir():
             raise LogError(f"{path}: is a directory, so no log can be written there")
         if not path.parent.is_dir():

@@ -84,7 +84,7 @@ def checked(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Gene
         for rows in blocks:
             for first in range(0, len(rows), BLOCK):
                 block = rows[first : first + BLOCK]
-                for rule, broken in _rules(block, count + first, epoch, len(provenance.scene.disks)).items():
+                for rule, broken in _rules(block, count + first, epoch, provenance).items():
                     if broken.any():
                         raise LogError(f"{path}: row {count + first + int(np.argmax(broken))}: {rule}")
                 epoch = block["epoch"][-1]
@@ -113,14 +113,17 @@ def verified(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Gen
         warnings.warn(words, LogWarning, stacklevel=2)
 
 
-def _rules(rows: Rows, first: int, epoch: int, count: int) -> dict[str, Column]:
+def _rules(rows: Rows, first: int, epoch: int, provenance: Provenance) -> dict[str, Column]:
     """What rows (n,) may not be, and which are; the one before them is row `first` - 1, of that epoch."""
+    count, walls = len(provenance.scene.disks), len(provenance.wall_names)
     has_wall = (rows["kind"] == Kind.WALL) | (rows["kind"] == Kind.REST)
     clock = rows["epoch"], rows["remainder"]
     return {
         "events are not numbered 0, 1, 2, ...": rows["event"] != np.arange(first, first + len(rows)),
         f"column a names no disk of the scene (0 to {count - 1})": (rows["a"] < 0) | (rows["a"] >= count),
         f"column b names no disk of the scene (0 to {count - 1})": (rows["b"] < -1) | (rows["b"] >= count),
+        "kind is none of a log": (rows["kind"] < 0) | (rows["kind"] >= len(LABELS)),
+        "wall is none of the scene": (rows["wall"] < -1) | (rows["wall"] >= walls),
         "a pair needs a second disk and only a pair has one": (rows["b"] >= 0) != (rows["kind"] == 0),
         "a pair needs two different disks": rows["a"] == rows["b"],
         "a contact with a wall needs its name and only such a contact has one": (rows["wall"] >= 0) != has_wall,
