@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import re
 import sys
+from collections.abc import Sequence
 
 import click
 
 from eventsim.letters import is_letter
 
 LINE = "\n"
+
+
+_broken: list[str] = []
+
+
+def keep_in_line(arguments: Sequence[str]) -> None:
+    """Let no name that was typed break a line of what is said: a line break in one of these is written as an escape."""
+    parts = (part for argument in arguments if LINE in argument for part in re.split("[/=]", argument))
+    _broken[:] = sorted({part for part in parts if LINE in part}, key=len, reverse=True)
 
 
 def say(text: str, err: bool = False) -> None:
@@ -20,6 +31,8 @@ def visible(text: str) -> str:
     """A text in which control characters and halves of pairs are written as escapes; lines stay lines."""
     if text.isascii() and text.isprintable():
         return text
+    for part in _broken:
+        text = text.replace(part, part.replace(LINE, r"\n"))
     return "".join(_visible(letter) for letter in text)
 
 

@@ -11,7 +11,7 @@ from importlib import import_module
 import click
 
 from eventsim import __version__
-from eventsim.cli.output import BAD_INPUT, DONE, INTERRUPTED, say, visible, write_what_is_known
+from eventsim.cli.output import BAD_INPUT, DONE, INTERRUPTED, keep_in_line, say, visible, write_what_is_known
 from eventsim.cli.signals import terminable
 from eventsim.errors import EventsimError, LogWarning, SceneError, did_you_mean
 
@@ -70,6 +70,7 @@ class Program(click.Group):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Keep the command line as it was typed: logs say by which they were written."""
         ctx.obj = shlex.join(["eventsim", *args])
+        keep_in_line(args)
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> object:

@@ -14,7 +14,7 @@ from eventsim.cli.output import visible
 from tests.cli.conftest import SCENE
 
 RED = "\x1b[31m"
-ODD = (f"a{RED}b", "line\nend", "bell\x07", "half a pair \ud800", "next\x85line", "\u2028")
+ODD = (f"a{RED}b", "line\nend", "bell\x07", "half a pair \ud800", "next\x85line", "\u2028", "turned \u202e round")
 
 
 @pytest.mark.parametrize("name", ODD, ids=ascii)
@@ -47,6 +47,20 @@ def test_a_path_with_control_characters_is_shown_and_not_obeyed(eventsim, tmp_pa
     assert result.exit_code == 0
     assert "\\x1b[31mtwo.toml" in result.stdout
     assert RED not in result.output
+
+
+def test_a_line_break_in_a_path_breaks_no_line(eventsim, tmp_path):
+    place = tmp_path / "two\nall is well.toml"
+    place.write_text(SCENE)
+    log = tmp_path / "log\nmore.csv"
+    result = eventsim("run", place, f"--log={log}")
+    assert result.exit_code == 0
+    assert log.exists()
+    assert "two\\nall is well.toml" in result.stdout
+    assert "log\\nmore.csv: " in result.stdout
+    gone = eventsim("state", tmp_path / "gone\nand lost.csv", "--at", 1)
+    assert "gone\\nand lost.csv: no such file" in gone.stderr
+    assert visible("two\nlines") == "two\nlines"
 
 
 def test_what_is_printed_keeps_its_lines_and_letters():
