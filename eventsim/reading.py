@@ -29,6 +29,9 @@ DENSEST = 1032
 MOST_HELD = 1 << 32
 """Bytes of all that is read of a file at once: a packed one of a few MB may stand for many times the memory that there is."""
 
+NUMBERS = "iufUSO"
+"""Kinds of arrays that hold numbers, or texts and objects that may be some."""
+
 WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 """Opening a pipe without it would wait for a writer."""
 
@@ -77,6 +80,14 @@ def reason_of(problem: Exception) -> str:
     """What a library has to say about a file, on one line; a bare key says nothing to a reader."""
     said = "" if isinstance(problem, LookupError) else " ".join(str(problem).split())
     return said[:LONGEST_REASON] or type(problem).__name__
+
+
+def as_floats(values: Any) -> NDArray[np.float64]:
+    """Numbers, or texts of numbers, as floats; ValueError for complex numbers, dates, truths, of which NumPy would make some."""
+    dtype = getattr(values, "dtype", None)
+    if dtype is not None and dtype.kind not in NUMBERS:
+        raise ValueError(f"values of the type {dtype} are no numbers")
+    return np.asarray(values, dtype=np.float64)
 
 
 class Npz:

@@ -16,9 +16,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.readers.samples import Column, Columns, Floats, Samples, checked, last_digit, times_of_frames
-
-NUMBERS = "iufUSO"
-"""Kinds of columns that hold numbers, or texts and objects that may be some; nothing is guessed of dates, complex numbers, ..."""
+from eventsim.reading import NUMBERS, as_floats
 
 
 def samples_of(named: Columns, source: str, dt: float | None = None) -> Samples:
@@ -126,7 +124,7 @@ def numbers_of(column: Column, name: str, source: str) -> Floats:
     if column.dtype.kind not in NUMBERS:
         raise EventsimError(f"{source}: {name} has values of the type {column.dtype}: must be numbers")
     try:
-        return np.asarray(column, dtype=np.float64)
+        return as_floats(column)
     except (ValueError, TypeError):
         for row, value in enumerate(column.ravel().tolist()):
             try:

@@ -13,7 +13,7 @@ import numpy as np
 from eventsim import suffixes
 from eventsim.errors import EventsimError, SceneError
 from eventsim.readers import read_start
-from eventsim.reading import Npz, reading
+from eventsim.reading import Npz, as_floats, reading
 from eventsim.scene.cells import Indices
 from eventsim.scene.disks import Disks, Floats
 from eventsim.scene.domain import Domain
@@ -155,7 +155,7 @@ def _read_npz(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dic
     longest = max(arrays.open(name).count for name in wanted)
     if longest > MOST_DISKS:
         raise SceneError(f"{path}: holds {longest} disks: must be at most {MOST_DISKS}")
-    columns = {name: np.asarray(arrays.read(name), dtype=np.float64) for name in wanted}
+    columns = {name: as_floats(arrays.read(name)) for name in wanted}
     shapes = {name: array.shape for name, array in columns.items() if name != "time"}
     if len(set(shapes.values())) > 1 or len(shapes["x"]) != 1:
         listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())

@@ -135,6 +135,20 @@ def test_an_array_that_claims_more_numbers_than_it_has_is_refused_before_any_mem
         Npz(file).read("x")
 
 
+@pytest.mark.parametrize("dtype", [complex, "M8[s]", bool])
+def test_what_is_no_number_is_not_taken_for_one(tmp_path, dtype):
+    """The imaginary part of a place was dropped."""
+    random_log(5).save(tmp_path / "log.npz")
+    for name, column, read in (("log.npz", "xa", es.load_log), ("disks.npz", "x", disks_file.read_disks_file)):
+        if name == "disks.npz":
+            disks_file.write_disks_file(tmp_path / name, es.gallery("two-disks").disks)
+        with np.load(tmp_path / name) as archive:
+            arrays = {key: archive[key] for key in archive.files}
+        np.savez(tmp_path / name, **(arrays | {column: np.zeros(len(arrays[column])).astype(dtype)}))
+        with pytest.raises(es.EventsimError, match="are no numbers"):
+            read(tmp_path / name)
+
+
 def test_an_object_in_a_log_is_not_unpickled(tmp_path):
     random_log(5).save(tmp_path / "log.npz")
     with np.load(tmp_path / "log.npz") as archive:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.errors import LogError, LogWarning
+from eventsim.reading import as_floats
 from eventsim.record.digest import StoredDigester
 from eventsim.record.events import COLUMNS, FIELDS, LABELS, ROW, Column, Kind, Rows, blank_rows
 from eventsim.record.provenance import UNCHECKED, Provenance, columns_kept
@@ -45,7 +46,7 @@ def _values(column: Sequence[object] | Column, name: str, provenance: Provenance
     labels = labels_of(name, provenance.wall_names)
     if labels is not None:
         return codes_of(np.asarray(column, dtype=np.str_), labels, name)
-    return np.asarray(column, dtype=np.float64) if ROW[name].kind == "f" else integers_of(column, ROW[name])
+    return as_floats(column) if ROW[name].kind == "f" else integers_of(column, ROW[name])
 
 
 def codes_of(texts: Column, labels: Column, name: str) -> Column:
