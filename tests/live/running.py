@@ -44,7 +44,9 @@ def header_of(block: bytes):
 
 
 class Client:
-    """A bare connection that keeps what it hears."""
+    """A bare connection that keeps what it hears; patience: seconds within which something comes."""
+
+    patience = 20
 
     def __init__(self, socket):
         self.socket = socket
@@ -55,7 +57,7 @@ class Client:
     async def hear(self, kind, most=200, **wanted):
         """Return the header of the next packet of a kind, with these fields, among the next `most` packets."""
         for _ in range(most):
-            message = await asyncio.wait_for(self.socket.receive(), 20)
+            message = await asyncio.wait_for(self.socket.receive(), self.patience)
             assert isinstance(message.data, bytes), message
             header = header_of(message.data)
             if header["type"] == kind and all(header[key] == value for key, value in wanted.items()):
