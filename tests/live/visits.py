@@ -32,7 +32,7 @@ async def visit(session: aiohttp.ClientSession, address: str, chance: random.Ran
     """Open a world, watch it for a moment, throw a disk, leave."""
     async with session.ws_connect(address + "socket", max_msg_size=0) as socket:
         client = Client(socket)
-        client.patience = 300  # on a busy machine that compiles
+        client.patience = 900  # on a busy machine that compiles
         await client.hear("hello")
         changes = {"count": chance.choice([20, 200, 800]), "seed": chance.randrange(1000), "gravity": chance.choice([0, 100])}
         await client.tell({**menu(**changes), "rate": chance.choice([None, None, 60])})
