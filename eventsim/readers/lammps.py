@@ -101,6 +101,8 @@ def _numbers(path: Path, line: int, names: list[str], rows: list[list[str]]) -> 
     wrong = next((number for number, row in enumerate(rows) if len(row) < len(names)), None)
     if wrong is not None:
         raise EventsimError(f"{path} line {line + 1 + wrong}: has {len(rows[wrong])} words under {len(names)} names")
+    if len(set(names)) < len(names):
+        raise EventsimError(f"{path} line {line}: has a column twice: {' '.join(names)}")
     columns: dict[str, Floats] = {}
     for place, name in enumerate(names):
         try:
@@ -109,7 +111,10 @@ def _numbers(path: Path, line: int, names: list[str], rows: list[list[str]]) -> 
             if name not in ("element", "typelabel"):
                 raise EventsimError(f"{path}: the atoms from line {line} on: {name} must be numbers") from None
     order = np.argsort(columns.setdefault("id", np.arange(len(rows), dtype=np.float64)), kind="stable")
-    return {name: column[order] for name, column in columns.items()}
+    ordered = {name: column[order] for name, column in columns.items()}
+    if np.any(np.diff(ordered["id"]) == 0.0):
+        raise EventsimError(f"{path}: the atoms from line {line} on: an id is there twice")
+    return ordered
 
 
 def _two(frame: Frame, x: str, y: str) -> Floats:

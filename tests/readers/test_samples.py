@@ -119,6 +119,17 @@ def test_what_breaks_a_parser_is_told_in_a_line(name, text, tmp_path):
     assert len(str(raised.value)) < 500
 
 
+@pytest.mark.parametrize(
+    ("names", "rows", "said"),
+    [("id x y", "1 0 0\n1 1 1\n", "an id is there twice"), ("id x y x", "1 0 0 5\n2 1 1 5\n", "a column twice")],
+)
+def test_a_dump_that_tells_something_twice_is_refused(names, rows, said, tmp_path):
+    head = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 3\n0 3\n0 1\n"
+    (tmp_path / "a.dump").write_text(f"{head}ITEM: ATOMS {names}\n{rows}")
+    with pytest.raises(es.EventsimError, match=said):
+        read_samples(tmp_path / "a.dump", 0.1, 1)
+
+
 @pytest.mark.parametrize(("time", "rows"), [(TIMES, 5), (TIMES + np.nan, 3)])
 def test_contacts_of_columns_that_do_not_fit_are_refused(time, rows, tmp_path):
     np.savez(tmp_path / "a.npz", time=time, a=np.zeros(rows), b=np.ones(rows))
