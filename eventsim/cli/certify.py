@@ -67,6 +67,7 @@ def command(
       float64_stopped, float64_reason   why it did (collapse, digits, ...); null where it did not
       agreed                   events that float64 has in the same order
       surplus                  events that float64 has beyond the last true one
+      near_ties                agreed contacts that share a disk with the next one and that only last bits part from it
       time_deviation           its largest error of a time at the agreed contacts
       deviation                its largest error of a coordinate at these contacts, and
       deviation_share          the same as a part of the scene's largest length
@@ -138,6 +139,7 @@ def _data(asked: str, proof: Proof, log: Path | None) -> dict[str, object]:
         "float64_reason": float64.reason,
         "agreed": float64.agreed,
         "surplus": float64.surplus,
+        "near_ties": float64.near_ties,
         "time_deviation": float64.time_deviation,
         "deviation": float64.deviation,
         "deviation_share": float64.deviation_share,
@@ -188,13 +190,14 @@ def _float64(proof: Proof) -> str:
     from eventsim.scene.names import plural
 
     float64 = proof.float64
+    close = f"; {plural(float64.near_ties, 'near tie')} among them, which only last bits part" if float64.near_ties else ""
     if float64.difference is None:
         extra = f", and then {plural(float64.surplus, 'event')} that there are not" if float64.surplus else ""
-        return f"has {plural(float64.agreed, 'event')} in the same order{extra}"
+        return f"has {plural(float64.agreed, 'event')} in the same order{close}{extra}"
     assert proof.difference_time is not None
     place = f"event {float64.difference}, t = {short(proof.difference_time)}"
     if float64.stopped is None:
-        return f"first differs at {place}"
+        return f"first differs at {place}{close}"
     why = float64.reason or STOPPED.get(float64.stopped, float64.stopped)
     return f"has {plural(float64.agreed, 'event')} in the same order, then stopped ({float64.stopped}) before {place}: {why}"
 

@@ -64,7 +64,7 @@ def command(
       until, events, engine       the stop of the scene; what auto chooses
       horizon                     null without --horizon; {event, time} of the first contact that runs from
                                   starts a last bit apart disagree on (null: none; exact ties part them at
-                                  once), {events, until} compared
+                                  once), {events, until} compared, near_ties until then
       explanation                 topic -> words, as the text prints them
 
     

@@ -18,6 +18,7 @@ from eventsim.record.compare import Comparison
 from eventsim.record.events import Floats
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
+from eventsim.validation.near_ties import WatchfulSession
 
 SHADOWS, SEED = 4, 1
 """Shadows, and the seed of the last bits that they differ by."""
@@ -35,12 +36,14 @@ class Horizon:
 
     event, time: of the first row that differs in a shadow, or that only one of both has (time on the scene's clock); None where
     none differs in the `events` rows that were compared, up to the time `until`.
+    near_ties: contacts until then that share a disk and that only last bits part.
     """
 
     event: int | None
     time: float | None
     events: int
     until: float
+    near_ties: int = 0
 
 
 def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
@@ -50,7 +53,7 @@ def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
     """
     stage = stage_of(scene)
     rng = np.random.default_rng(SEED)
-    true: Session = ReferenceSession(stage)
+    true = WatchfulSession(stage, keep_rows=True)
     shadows: list[Session] = [ReferenceSession(_moved(stage, rng)) for _ in range(SHADOWS)]
     comparisons = [Comparison() for _ in shadows]
     limit = farthest * stage.n if stop.events is None else min(farthest * stage.n, stop.events)
@@ -72,9 +75,9 @@ def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
         if found:
             first, times = min(found), np.concatenate(seen)
             at = float(times[min(first, len(times) - 1)]) if len(times) else time  # a surplus row comes behind the last one
-            return Horizon(first, at, done, float(times[-1]) if len(times) else time)
+            return Horizon(first, at, done, float(times[-1]) if len(times) else time, true.near_ties_until(at))
         time = float(rows["time"][-1]) if len(rows) else time
-    return Horizon(None, None, done, time)
+    return Horizon(None, None, done, time, len(true.near_ties))
 
 
 def _advance(session: Session, until: float | Fraction | None, events: int) -> str | None:

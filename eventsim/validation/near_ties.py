@@ -50,9 +50,13 @@ def near_ties(scene: Scene) -> tuple[NearTie, ...] | None:
 class WatchfulSession(ReferenceSession):
     """The reference engine, which before it resolves an instant looks at what comes next."""
 
-    def __init__(self, stage: Stage) -> None:
-        super().__init__(stage, keep_rows=False)
+    def __init__(self, stage: Stage, keep_rows: bool = False) -> None:
+        super().__init__(stage, keep_rows)
         self.near_ties: list[NearTie] = []
+
+    def near_ties_until(self, time: float) -> int:
+        """How many near ties there were up to a time of the scene's clock."""
+        return sum(tie.time <= time for tie in self.near_ties)
 
     def _resolve_instant(self) -> str | None:
         first = self.calendar.first()

@@ -12,7 +12,6 @@ from eventsim.engines import ENGINES
 from eventsim.engines.base import Stop
 from eventsim.engines.certified import FIRST_BITS, MOST_BITS, CertifiedOptions
 from eventsim.engines.certified.session import Attempt, CertifiedSession
-from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.formulas.clock import clock_time
 from eventsim.formulas.expansion import two_sum
 from eventsim.record.compare import VELOCITIES, agreement, deviations, time_differences
@@ -23,6 +22,7 @@ from eventsim.runner.options import Interrupt, Progress, RunOptions
 from eventsim.runner.outcome import diagnosed
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
+from eventsim.validation.near_ties import WatchfulSession
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +113,7 @@ class Rounded:
         velocity_deviation: largest distance of a component of a velocity after an agreed contact, length / time.
         velocity_deviation_share: the same as a part of the fastest speed.
         time_deviation: largest difference of the times of an agreed contact, time.
+        near_ties: contacts among the agreed ones that share a disk with another one and that only its last bits part from it.
     """
 
     difference: int | None
@@ -125,6 +126,7 @@ class Rounded:
     velocity_deviation: float
     velocity_deviation_share: float
     time_deviation: float
+    near_ties: int
 
 
 def rounded(
@@ -134,7 +136,7 @@ def rounded(
 
     size: of its domain, None on the open plane.  ended: whether the proof came to the end of the scene, or to its stop time.
     """
-    session = ReferenceSession(stage)
+    session = WatchfulSession(stage, keep_rows=True)
     stopped = session.advance(Stop(until, len(certified) + AHEAD * stage.n), 1 << 62)
     assert stopped is not None
     plain = session.take_rows()
@@ -155,6 +157,7 @@ def rounded(
         velocity_deviation=velocities,
         velocity_deviation_share=_share(velocities, _fastest(stage, certified, plain)),
         time_deviation=float(time_differences(certified, plain, pairs, stage.epoch_length).max(initial=0.0)),
+        near_ties=session.near_ties_until(float(plain["time"][pairs[-1][1]])) if len(pairs) else 0,
     )
 
 

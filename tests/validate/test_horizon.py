@@ -1,13 +1,17 @@
 """The horizon of float64, against the first event at which float64 leaves the proven order."""
 
+import math
+
 import pytest
 
+import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.certified.session import CertifiedSession
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
 from eventsim.validation.horizon import horizon
+from eventsim.validation.proof import prove
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 
 SHAPES = ((8, 0.2), (16, 0.3), (24, 0.4), (16, 0.5), (12, 0.1))
@@ -58,3 +62,12 @@ def test_a_run_that_ends_before_has_no_horizon():
 def test_the_horizon_is_the_same_twice():
     scene = lattice_gas(8, 0.3, seed=4)
     assert horizon(scene, Stop(None, 500)) == horizon(scene, Stop(None, 500))
+
+
+def test_near_ties_up_to_the_horizon_are_counted():
+    """A disk between two others that come from both sides, a last bit apart: the shadows part there."""
+    disks = es.Disks([(-3.0, 0.0), (0.0, 0.0), (math.nextafter(3.0, 4.0), 0.0)], [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)], 0.5)
+    scene = es.Scene(disks, es.Open(), until=10.0)
+    assert horizon(scene, Stop(10.0, None)).near_ties == 1
+    assert prove(scene, Stop(10.0, None)).float64.near_ties == 1
+    assert horizon(lattice_gas(16, 0.3, seed=1), Stop(None, 100)).near_ties == 0
