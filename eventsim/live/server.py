@@ -51,6 +51,7 @@ PAGE = {"/": ("live/page", "live.html", "text/html")} | {
         ("live/page", "link.js", "text/javascript"),
         ("live/page", "menu.js", "text/javascript"),
         ("live/page", "readouts.js", "text/javascript"),
+        ("live/page", "series.js", "text/javascript"),
         ("live/page", "matching.js", "text/javascript"),
         ("live/page", "comparison.js", "text/javascript"),
         ("live/page", "hand.js", "text/javascript"),

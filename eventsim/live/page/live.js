@@ -47,6 +47,7 @@ class LivePlayer extends Player {
     this.impulses.cut(count);
     this.horizons[0] = time;
     this.ended = null;
+    this.app.series.cut(time);
     this.duration = Math.min(this.duration, time);
     this.seek(this.view.time);
   }
@@ -166,13 +167,15 @@ class LivePlayer extends Player {
   _connect() {
     this.hand = new Hand(this, (disk, dx, dy) => this.app.dragged(disk, dx, dy));
     super._connect();
-    this.part("reset").addEventListener("click", () => { this.pause(); this.seek(0); });
+    this.part("reset").addEventListener("click", () => this.app.reset());
     for (const name of ["play", "back", "forward", "reverse", "canvas", "reset"]) this.part(name).addEventListener("click", () => this.app.controlled());
     for (const name of ["scrub", "speed"]) this.part(name).addEventListener("change", () => this.app.controlled());
   }
 
   _key(event) {
     if (this.part("menu").contains(event.target)) return;
+    const app = { u: () => this.app.undo(), f: () => this.app.full(), "?": () => this.app.keys(), Escape: () => this.app.keys(false) };
+    if (event.key in app && !event.ctrlKey && !event.metaKey && !event.altKey) { app[event.key](); return; }
     if (event.target.tagName === "BUTTON" && event.key === " ") return; // it presses the button
     super._key(event);
     this.app.controlled();

@@ -74,6 +74,8 @@ class Readouts {
     const none = gas.noPressure || pressure === null || !temperature;
     tell("p V / N kT", none ? "–" : number((pressure * gas.area) / (found.count * temperature)));
     this.values.get("p V / N kT").title = gas.noPressure || "";
+    this.energy = found.energy;
+    this.temperature = temperature;
     this._drawSpeeds(world, state, temperature || (found.count ? found.kinetic / found.count : 0), gas.maxwell, view.dark ? stage.palettes.dark : stage.palettes.light);
   }
 

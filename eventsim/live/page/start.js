@@ -9,14 +9,18 @@ class LiveView {
     this.part = (name) => root.querySelector(`[data-part="${name}"]`);
     this.menu = new Menu(this.part("menu"), this.part, () => this.size());
     this.readouts = new Readouts(this.part("readouts"), this.part("histogram"));
+    this.series = new Series(this.part("series"));
     this.player = null;
     this.acts = [];
+    this.gone = null;
+    this.joined = false; // a world that somebody else began: how, this page does not know
     this.world = null;
     this.edition = -1;
     this.resume = null;
     this.link = new Link((header, columns) => this._hear(header, columns), (replaced) => this._lost(replaced));
     this.menu.form.addEventListener("submit", (event) => { event.preventDefault(); this.init(); });
     this.part("fold").addEventListener("click", () => this._fold(!root.classList.contains("folded")));
+    for (const name of ["undo", "full", "help"]) this.part(name).addEventListener("click", () => (name === "help" ? this.keys() : this[name]()));
     this.part("file").addEventListener("change", () => this._read(this.part("file").files[0]));
     window.addEventListener("hashchange", () => { if (location.hash.slice(1) !== this.address) this._openAddress(); });
     window.addEventListener("keydown", (event) => {
@@ -37,6 +41,35 @@ class LiveView {
     this._open(this.menu.message(size || this.size()));
   }
 
+  /* Back to the start; what was thrown or moved is forgotten. */
+  reset() {
+    if (this.acts.length && !this.joined) this._again([]);
+    else { this.player.pause(); this.player.seek(0); }
+  }
+
+  /* Take back the last throw or move: the same start and the acts before it give the world that was. */
+  undo() {
+    if (this.acts.length && !this.joined) this._again(this.acts.slice(0, -1));
+  }
+
+  _again(acts) {
+    const last = acts.length < this.acts.length && acts.length ? acts[acts.length - 1] : null;
+    this._open(this.current);
+    for (const act of acts) this._act(act);
+    this.resume = { time: last && last.type === "throw" ? last.time : 0, playing: false };
+  }
+
+  full() {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else this.root.requestFullscreen().catch(() => this._notice("This browser gives no full screen."));
+  }
+
+  /* Show or hide the keys. */
+  keys(yes = this.part("keys").hidden) {
+    this.part("keys").hidden = !yes;
+    this.part("help").setAttribute("aria-expanded", String(yes));
+  }
+
   /* What the player tells. */
 
   report(player) {
@@ -46,6 +79,8 @@ class LiveView {
 
   tell(player) {
     this.readouts.show(player.world, player.stage, player.gas, player.impulses, player.view);
+    this.series.take(player.view.time, this.readouts.energy, this.readouts.temperature);
+    this.series.draw(player.view.dark ? player.stage.palettes.dark : player.stage.palettes.light, player.view.time);
     const done = player.ended !== null && player.view.time >= player.duration;
     if (done !== this.done) { this.done = done; this._notice(done ? player.ended : null); }
     if (!player.comparison) return;
@@ -86,7 +121,9 @@ class LiveView {
 
   _open(message) {
     this.current = message;
+    this.joined = false;
     this.acts = [];
+    this._undoable();
     this.asked = this.size();
     this._address(message);
     clearTimeout(this.waiting);
@@ -96,6 +133,7 @@ class LiveView {
 
   _act(message) {
     this.acts.push(message);
+    this._undoable();
     // Done once there is a connection again; all but a throw begin a new run, whose time begins there.
     if (this.resume && message.type !== "throw") this.resume.time = 0;
     this.link.ask(message);
@@ -110,7 +148,13 @@ class LiveView {
       rows: () => this.player.take(header.track, columns, header.horizon, header.ended),
       cut: () => this.player.cut(header.count, header.time),
       control: () => this._follow(header),
-      error: () => { this._notice(header.text); if (this.joining) { this.joining = false; this.init(); } },
+      error: () => {
+        this._notice(header.text);
+        if (!this.joining) return;
+        this.joining = false;
+        this.gone = `The world of this link is gone (${header.text}); this is a new one.`;
+        this.init();
+      },
       done: () => { clearTimeout(this.waiting); if (this.link.pending === 0 && this.resume) { const { time, playing } = this.resume; this.resume = null; this.player.await(time, playing); } },
     };
     heard[header.type]();
@@ -128,7 +172,7 @@ class LiveView {
   _openAddress() {
     const address = location.hash.slice(1), world = new URLSearchParams(address).get("world");
     if (world !== null) {
-      this.joining = true;
+      this.joining = this.joined = true;
       this.current = this.menu.message();
       this.link.ask({ type: "join", world });
       return;
@@ -142,19 +186,22 @@ class LiveView {
     const begin = () => new World({ ...header.scene, disks: { x, y, vx, vy, radius, mass } });
     const stage = { ...header.stage, species }, playing = this.player && this.player.playing && header.why === "resize";
     if (this.current && this.current.scene === "menu" && header.resizable) stage.shown = [-MARGIN, -MARGIN, stage.size[0] + MARGIN, stage.size[1] + MARGIN];
-    const description = { ...header, stage, begin, app: this, colour: "mass", dark: false, trails: false, flash: false, arrows: false };
+    const alike = header.stage.masses[0] === header.stage.masses[1];
+    const description = { ...header, stage, begin, app: this, colour: alike ? "index" : "mass", dark: false, trails: false, flash: false, arrows: false };
     clearTimeout(this.waiting);
     this.joining = false;
     this.done = false;
     this.edition = header.edition;
     this._compared(header.tracks > 1 || (header.rate !== null && header.notice === null));
+    if (this.player && header.why !== "resize") this.series.forget();
     if (this.player) this.player.open(begin(), description);
     else this.player = new LivePlayer(this.root, begin(), description);
     this.player.resizable = header.resizable;
     this.player._key_of_colours();
     this.player._label();
     this.player.show();
-    this._notice(header.notice);
+    this._notice(this.gone || header.notice);
+    this.gone = null;
     this.part("settings").hidden = header.settings === null;
     this.part("settings").textContent = header.settings || "";
     this.part("title").textContent = header.title;
@@ -189,6 +236,8 @@ class LiveView {
     this.address = Menu.address(message) || "";
     history.replaceState(null, "", this.address ? `#${this.address}` : location.pathname);
   }
+
+  _undoable() { this.part("undo").disabled = this.joined || !this.acts.length; }
 
   _notice(text) {
     this.part("notice").hidden = text === null;

@@ -124,7 +124,8 @@ class Player {
     this.part("play").textContent = this.playing ? "❚❚" : this.direction > 0 ? "▶" : "◀";
     this.part("play").title = this.playing ? "Pause (space)" : "Play (space)";
     this.part("reverse").setAttribute("aria-pressed", String(this.direction < 0));
-    this.part("rate").textContent = `× ${Number((this.view.speed / this.usualSpeed).toPrecision(2))}`;
+    this.part("rate").textContent = `× ${Number(this.view.speed.toPrecision(2))}`;
+    this.part("rate").title = "So much of the scene's clock passes in a second: × 1 is real time, if its unit is a second (key 1)";
   }
 
   _connect() {
@@ -181,6 +182,7 @@ class Player {
       ArrowDown: () => this.setSpeed((0.5 * this.view.speed) / this.usualSpeed),
       Home: () => this.seek(0),
       End: () => this.seek(this.duration),
+      1: () => this.setSpeed(1 / this.usualSpeed),
       r: () => this.reverse(),
     };
     if (!(event.key in actions) || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
