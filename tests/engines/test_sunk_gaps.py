@@ -134,3 +134,14 @@ def test_hops_that_digits_can_tell_go_on(wall, engine):
     hops = [b - a for a, b in pairwise(run.log.time.tolist())][1:]
     assert len(hops) > 200
     assert hops == pytest.approx([4.8 * math.sin(1e-5)] * len(hops), rel=1e-4)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("wall", ROUND)
+@pytest.mark.parametrize("restitution", [1.0, 0.9])
+def test_what_begins_to_slide_down_a_round_wall_does_not_stand_still(wall, restitution, engine):
+    """At rest where the wall is upright: pressed onto it as soon as it falls, in hops of 1e-60 at first."""
+    scene = es.Scene(es.Disks([(2.4, 0.0)], radius=0.3), es.Open(), [ROUND[wall]], (0.0, 1.0), restitution, until=1.0)
+    run = es.simulate(scene, events=1000, engine=engine)
+    assert run.stopped == "digits"
+    assert run.counters.events < 5

@@ -58,6 +58,7 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
             raise BeyondError("a large cluster")
         after, impulses, unique = parted(together, before, run.table.mass)
         map_cluster(run, cluster, normals, es, before, after, impulses, pulls)
+    after = {i: _without_noise(v, before[i]) for i, v in after.items()}
     run.group += 1
     touches: dict[int, dict[tuple[int, ...], bool]] = {i: {} for i in disks}
     for m, e in zip(cluster, es, strict=True):
@@ -294,6 +295,12 @@ def map_cluster(
             matrix[index[i] : index[i] + 2, column] = unit[index[i] : index[i] + 2] + gap * dt
             matrix[index[i] + 2 : index[i] + 4, column] = new[2 * k : 2 * k + 2]
     run.doubt.map(disks, matrix)
+
+
+def _without_noise(velocity: Vector, before: Vector) -> Vector:
+    """A velocity without what the digits of a round leave of a component that is 0."""
+    least = NONE * (abs(before[0]) + abs(before[1]))
+    return (ZERO if abs(velocity[0]) <= least else velocity[0], ZERO if abs(velocity[1]) <= least else velocity[1])
 
 
 def _turned(velocity: Vector, e: Decimal) -> Vector:

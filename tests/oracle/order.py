@@ -10,15 +10,18 @@ import math
 from collections.abc import Sequence
 from decimal import Decimal
 
-from tests.oracle.digits import UNIT, sign
+from tests.oracle.digits import sign
 from tests.oracle.doubt import SAFE, NoDoubt
-from tests.oracle.search import LEAVE, LOOK, REST, Call, Found, Meeting
+from tests.oracle.search import IMPACT, LEAVE, LOOK, REST, Call, Found, Meeting
 from tests.oracle.state import State, size
 from tests.oracle.story import BeyondError, CollapseError
 from tests.oracle.table import Line
 
 LOST = 1e-4
 """Errors of this part of the scene's size are no small deviations any more."""
+
+NONE = 1e-8
+"""What is left of errors that cancel, in maps that are known as well as that."""
 
 ROUND, ENDLESS = 20, Decimal("1e-250")
 """So many contacts within such a part of the time are taken for the end of infinitely many."""
@@ -34,12 +37,20 @@ def first_of(run: State) -> Meeting | None:
     for meeting in run.rest_due.values():
         if first is None or meeting.time <= first.time:
             first = meeting
-    return first if first is None or not first.at_end else _leaving(run, first)
+    return first if first is None or not (first.at_end or first.how == LEAVE) else _leaving(run, first)
 
 
 def _leaving(run: State, first: Meeting) -> Meeting:
-    """A point that slides to the end of its wall leaves it there: only then it is beside what else ends there."""
-    if run.flights[first.a].held is None or run.is_in_corner(first):
+    """A point that slides to the end of its wall leaves it there: only then it is beside what else ends there.
+
+    Unless that makes a corner with its wall.
+    """
+    if run.flights[first.a].held is None or run.table.radius[first.a] > 0:
+        return first
+    for other in meetings_of(run, {first.a}):
+        if other.b < 0 and other.how == IMPACT and may_tie(run, other, first) and run.is_in_corner(other):
+            return other
+    if first.how == LEAVE:
         return first
     leaves = [other for other in meetings_of(run, {first.a}) if other.how == LEAVE and may_tie(run, other, first)]
     return leaves[0] if leaves else first
@@ -110,7 +121,8 @@ def is_doubtful(run: State, call: Call, a: int, b: int) -> bool:
     size = max(1.0, math.hypot(*call.pull))
     if SAFE * bound * size <= call.margin:
         return False
-    return SAFE * run.doubt.spread(terms) > call.margin
+    spread = run.doubt.spread(terms)
+    return SAFE * spread > call.margin and spread > NONE * bound * size
 
 
 def demand_calls(run: State, time: Decimal) -> None:
@@ -241,15 +253,20 @@ def demand_order(run: State, first: Meeting, disks: set[int], cluster: list[Meet
             continue
         spread = run.doubt.spread(merged(both))
         if other in cluster:
-            if spread > 4 * UNIT * bound and not at_right_angles(run, first, other):
+            if spread > NONE * bound and not at_right_angles(run, first, other):
                 raise BeyondError("a tie of what has been rounded")
         elif SAFE * spread > later and spread > 0.0:
             raise BeyondError("order")
 
 
 def is_shut_in(run: State, other: Meeting, first: Meeting) -> bool:
-    """Whether a point slides to an end of its wall that is exactly on what it meets there: it does not leave it."""
-    if other.how != LEAVE or first.how == LEAVE or run.flights[other.a].held is None or run.table.radius[other.a] > 0:
+    """Whether a point slides to an end of its wall that is exactly on what it meets there: it does not leave it.
+
+    Nor does it meet what only begins there, where it leaves.
+    """
+    if (other.how == LEAVE) == (first.how == LEAVE) or run.flights[other.a].held is None or run.table.radius[other.a] > 0:
+        return False
+    if first.how == LEAVE and not other.at_end:
         return False
     return may_tie(run, other, first) and sign(other.time - first.time, abs(first.time)) == 0
 

@@ -11,7 +11,10 @@ from tests.oracle.digits import UNIT, ZERO, exact, is_float, root
 from tests.oracle.doubt import Doubt, NoDoubt, last_bits
 from tests.oracle.search import Flight, Found, Meeting, Search, wall_key
 from tests.oracle.story import Kick, Part, Row
-from tests.oracle.table import Bow, Line, Oval, Ring, Tip, Vector, names_of, table_of
+from tests.oracle.table import Bow, Line, Oval, Ring, Tip, Vector, across, ends_of, names_of, table_of
+
+NOTHING = 1e-40
+"""A smaller part of a change of velocity is 0, but for the digits of a round."""
 
 IDLE = 64.0
 """An engine's clock begins anew after a spell without contacts that is so many times longer than what it has counted.
@@ -183,7 +186,8 @@ class State:
         late = 0.0 if is_float(self.now) else UNIT * clock
         sigma = [late * abs(float(a - b)) for a, b in zip(after, before, strict=True)]
         for a, b in zip(after, before, strict=True):
-            sigma.append(0.0 if a == b or is_float(a) else UNIT * (change + abs(float(a))))
+            is_exact = a == b or is_float(a) or abs(float(a)) <= NOTHING * change
+            sigma.append(0.0 if is_exact else UNIT * (change + abs(float(a))))
         self.doubt.round(i, sigma)
 
     def part(self, i: int, time: Decimal) -> Part:
@@ -210,6 +214,9 @@ class State:
         f, shape = self.flights[m.a], self.table.shapes[m.shape]
         if f.held is None or not isinstance(shape, Line | Bow):
             return False
+        if isinstance(shape, Line) and shape.length2 is None:
+            held = self.table.shapes[f.held[0]]
+            return any(across(shape, end) == 0 for end, _ in ends_of(held))
         along = {wall_key(f.held[0], (0, 0), f.held[1]): True}
         return bool(self.search.shut_ends(m.shape, shape, (f.x, f.y), along, m.image))
 

@@ -189,3 +189,16 @@ def test_engines_agree_on_points_and_compact_logs_hold(family, tmp_path, monkeyp
 def test_the_judge_knows_inside_from_outside():
     assert is_inside(SQUARE, 5.0, 5.0)
     assert not is_inside(SQUARE, 8.0, 5.0)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("below", [es.Segment((1.5, -1.0), (1.5, 0.0)), es.Arc((1.5, 0.0), (1.6, -0.5), (1.5, -1.0))])
+def test_a_wall_that_hangs_below_a_straight_joint_does_not_open_it(below, engine):
+    """A point that hit the joint exactly was let through: of three walls there each left it to the others."""
+    walls = [es.Segment((0.0, 0.0), (1.5, 0.0)), below, es.Segment((4.0, 0.0), (1.5, 0.0))]
+    for slope in (0.0, 0.5, -0.5):
+        for miss in (0.0, 2.0**-40, -(2.0**-40)):
+            disk = es.Disks([(1.5 - slope + miss, 1.0)], [(slope, -1.0)], 0.0)
+            run = es.simulate(es.Scene(disk, es.Open(), walls, until=1.5), engine=engine)
+            assert run.state.velocity.tolist() == [[slope, 1.0]]
+            assert run.state.position[0, 1] == pytest.approx(0.5, abs=1e-12)

@@ -72,8 +72,8 @@ class Sunk:
         state, i = self._state, event.a
         if event.b >= 0 or not is_hollow(self._stage, -1 - event.b):
             return None
-        if state.met[i] and all(met[0] != event.b for met in state.met[i]):
-            return None
+        if state.met[i] and (self._stage.settles or all(met[0] != event.b for met in state.met[i])):
+            return None  # where disks settle, a flight that begins on contact is known to
         (approach, size), lag = self._of_wall(event), float(event.time - state.t[i])
         if not (is_sunk(approach, lag, size) and approach < ALONG * math.hypot(*state.speed(i, event.time))):
             return None
@@ -143,8 +143,8 @@ def is_hollow(stage: Stage, surface: int) -> bool:
 
 
 def can_creep(stage: Stage) -> bool:
-    """Whether hops along a round wall may sink below the digits; not where a flight that begins on contact is known to."""
-    return not stage.settles and any(is_hollow(stage, k) for k in range(len(stage.surfaces)))
+    """Whether there are round walls, along which hops may sink below the digits."""
+    return any(is_hollow(stage, k) for k in range(len(stage.surfaces)))
 
 
 def can_sink(stage: Stage) -> bool:

@@ -117,11 +117,13 @@ def passes_end(
         return True
     if not post and near:
         return True
-    if not post:
-        short = is_near(end.x, end.y, x, y, SHORT * CLOSE * (abs(end.x) + abs(end.y) + abs(x) + abs(y)))
-        if not (_comes_out_of(end, end.x - x, end.y - y, ASLANT) if short else _comes_out_of(end, u, w, 0.0)):
-            return False
+    short = is_near(end.x, end.y, x, y, SHORT * CLOSE * (abs(end.x) + abs(end.y) + abs(x) + abs(y)))
+    if not post and not (_comes_out_of(end, end.x - x, end.y - y, ASLANT) if short else _comes_out_of(end, u, w, 0.0)):
+        return False
     there = hand(x, y, vx, vy, gx, gy, end.x, end.y, u, w)
+    if there == 0.0 and not post and end.bx == 0.0 and end.by == 0.0 and not end_of(ends, second, -side)[0]:
+        # between others, which may hide it: it is not met by what comes from beyond its end, or goes there
+        return bool((u * end.ax + w * end.ay > 0.0) == short)
     if there == 0.0:
         return not post
     return bool((there > 0.0) == (wanted > 0.0))
@@ -130,6 +132,8 @@ def passes_end(
 def _comes_out_of(end: End, u: float, w: float, slack: float) -> bool:
     """Whether what arrives at an end with (u, w) comes from between the two edges there; yes, where there is only one.
 
+    So it is on the other side of the wall, which has no post there, and nothing that makes a corner with it: it goes straight on.
+
     slack: the sine of the angle that it may come from beside.
     """
     if end.bx == 0.0 and end.by == 0.0:
@@ -137,7 +141,7 @@ def _comes_out_of(end: End, u: float, w: float, slack: float) -> bool:
     turn = 1.0 if end.ax * end.by - end.ay * end.bx >= 0.0 else -1.0
     way = slack * (abs(u) + abs(w))
     first, second = way * (abs(end.ax) + abs(end.ay)), way * (abs(end.bx) + abs(end.by))
-    return turn * (u * end.ay - w * end.ax) >= -first and turn * (end.bx * w - end.by * u) >= -second
+    return turn * (u * end.ay - w * end.ax) < -first or turn * (end.bx * w - end.by * u) >= -second
 
 
 def careful_line(
