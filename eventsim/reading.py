@@ -97,6 +97,10 @@ class Npz:
         """Look at what there is; zipfile's errors are the caller's to tell."""
         self._archive = zipfile.ZipFile(file)
         self._held = 0
+        for entry in self._archive.infolist():  # a damaged directory must not look like one of fewer arrays
+            if entry.comment:
+                raise ValueError("its directory is damaged")
+            self._archive.open(entry).close()  # the name stands there a second time, and is compared
 
     @property
     def names(self) -> list[str]:

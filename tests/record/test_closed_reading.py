@@ -135,6 +135,17 @@ def test_an_array_that_claims_more_numbers_than_it_has_is_refused_before_any_mem
         Npz(file).read("x")
 
 
+def test_an_array_whose_name_was_damaged_is_not_taken_for_a_missing_one(tmp_path):
+    """Disks got the mass that they have where a file tells none."""
+    path = tmp_path / "disks.npz"
+    disks_file.write_disks_file(path, es.gallery("two-disks").disks)
+    whole = path.read_bytes()
+    place = whole.rindex(b"mass.npy")  # in the directory of the archive
+    path.write_bytes(whole[:place] + b"masr.npy" + whole[place + 8 :])
+    with pytest.raises(es.SceneError, match=r"disks\.npz: is not an npz file"):
+        disks_file.read_disks_file(path)
+
+
 @pytest.mark.parametrize("dtype", [complex, "M8[s]", bool])
 def test_what_is_no_number_is_not_taken_for_one(tmp_path, dtype):
     """The imaginary part of a place was dropped."""
