@@ -52,7 +52,7 @@ def command(
                                   null without; restitution [pair, wall]
       low_parts                   whether velocities carry what their rounding leaves (very uneven masses)
       points                      whether disks are so small that they remember on which side of a wall they are
-      low_places                  whether places do (a very wide domain without gravity)
+      gap_bits                    bits that coordinates leave of the 53 of a gap between disks; null of points
       start_time, epoch_length    of the clock
       search                      {kind, side, columns, rows, giants}: "all pairs" or "cells"
       images                      periodic images in which a disk can be met: 1, 3 or 9

@@ -24,6 +24,9 @@ DOMAINS = {
 MANY = 10
 """Moving disks from which on a temperature is worth a word."""
 
+FEW_BITS = 37
+"""So many bits of a gap or fewer, 2^16 diameters or more, are worth a word."""
+
 SHAPE_WORDS = {kind.__name__.lower(): kind.word() for kind in SHAPES}
 
 POINTS = (
@@ -116,14 +119,19 @@ def _table(table: tuple[float, float, float]) -> str:
 
 def _flights(needs: Needs) -> str:
     if needs.gravity is None:
-        text = "straight lines: no gravity, and no term is computed for it"
-        return f"{text}; the domain is so wide that places carry what their rounding leaves" if needs.low_places else text
+        return f"straight lines: no gravity, and no term is computed for it{_lost(needs)}"
     text = f"parabolas, gravity {point(*needs.gravity)}; it cancels between disks, so only walls see the curve"
     if needs.shapes.keys() - {"face"}:
         text += "; a parabola against a round wall or a wall's end is a quartic, solved by bracketing"
     if needs.immovable:
         text += "; disks of mass inf fly straight, so others meet them on parabolas too"
-    return text
+    return text + _lost(needs)
+
+
+def _lost(needs: Needs) -> str:
+    if needs.gap_bits is None or needs.gap_bits > FEW_BITS:
+        return ""
+    return f"; coordinates are so large, beside the disks, that {needs.gap_bits} of the 53 bits of a gap are left"
 
 
 def _contacts(needs: Needs) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -73,7 +74,7 @@ class Needs:
         shapes: name -> number of the primitive shapes that the walls are made of, periodic images included.
         gravity, restitution, contact_duration: None without; restitution (pair, wall).
         low_parts: whether masses are so uneven that velocities carry what their rounding leaves.
-        low_places: whether the domain is so wide that places carry what their rounding leaves.
+        gap_bits: bits that coordinates leave of the 53 of a gap, relative to the smallest diameter; None of points.
         points: whether disks are so small that they have to remember on which side of a wall they are.
         epoch_length: time, a power of two.
         search: all pairs or cells.
@@ -107,7 +108,7 @@ class Needs:
     restitution: tuple[float, float] | None
     contact_duration: float | None
     low_parts: bool
-    low_places: bool
+    gap_bits: int | None
     points: bool
     start_time: float
     epoch_length: float
@@ -153,7 +154,7 @@ def needs_of(scene: Scene) -> Needs:
         restitution=None if scene.restitution is None else (scene.restitution.pair, scene.restitution.wall),
         contact_duration=stage.law.duration,
         low_parts=stage.low_parts,
-        low_places=stage.low_places,
+        gap_bits=_gap_bits(stage),
         points=stage.points,
         start_time=scene.start_time,
         epoch_length=stage.epoch_length,
@@ -183,6 +184,15 @@ def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64], pace: int) 
     found = float(np.mean(disks.mass[massive] * slowed(speed[massive], pace) ** 2) / 2.0)
     exact = as_float(found, 2 * pace)
     return in_words(found, 2 * pace) if exact is None else exact
+
+
+def _gap_bits(stage: Stage) -> int | None:
+    """A gap is a difference of coordinates: it lacks the bits by which these are larger than a diameter."""
+    sizes = stage.radius[stage.radius > 0.0]
+    if not len(sizes):
+        return None
+    largest = max([float(np.abs([stage.x, stage.y]).max()), *(stage.size or ())])
+    return max(0, 53 - max(0, math.frexp(largest)[1] - math.frexp(2.0 * float(sizes.min()))[1]))
 
 
 def _touching_pairs(scene: Scene) -> int:

@@ -31,8 +31,7 @@ class Stop:
 class Snapshot:
     """All that the future of a run depends on, whichever engine holds it; see `EngineState` for the meaning of the names.
 
-    low_vx, low_vy: empty where velocities have no low parts; low_x, low_y: where places have none;
-    sides: where no disk is a point to a wall.
+    low_vx, low_vy: empty where velocities have no low parts; sides: where no disk is a point to a wall.
     Calendars and cells are no part of it: they follow from the flights.
     """
 
@@ -52,8 +51,6 @@ class Snapshot:
     at_once: tuple[int, ...]
     low_vx: tuple[float, ...] = ()
     low_vy: tuple[float, ...] = ()
-    low_x: tuple[float, ...] = ()
-    low_y: tuple[float, ...] = ()
     sides: tuple[Any, ...] = ()
 
 

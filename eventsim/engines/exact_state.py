@@ -9,7 +9,6 @@ from typing import Any, TypeAlias
 from eventsim.engines.base import Snapshot
 from eventsim.engines.turnover import Anchors
 from eventsim.formulas.clock import end_of_epoch, window_length
-from eventsim.formulas.low_place import Fine, Low, low_position, settled
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Real
 from eventsim.formulas.rest import NOT_LAST, SUPPORTED, Support, has_struck, held_by
@@ -27,10 +26,9 @@ class ExactState(ABC):
     wraps_x, wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was
     (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.  number: makes
     a number of the engine's type from a float.  low_parts: whether velocities carry what their rounding at a contact left, in
-    low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.  low_places: the same for what
-    the rounding of places left, in low_x and low_y.  gravity_x, gravity_y: the acceleration of each disk, None without
-    gravity.  sides: of walls that points are on, None where no disk is one.  window: the exponent of its length; window_end:
-    where the window ends, later where it stayed open because it had no row (opened).
+    low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.  gravity_x, gravity_y: the
+    acceleration of each disk, None without gravity.  sides: of walls that points are on, None where no disk is one.  window: the
+    exponent of its length; window_end: where the window ends, later where it stayed open because it had no row (opened).
     """
 
     n: int
@@ -56,9 +54,6 @@ class ExactState(ABC):
     low_parts: bool
     low_vx: MutableSequence[float]
     low_vy: MutableSequence[float]
-    low_places: bool
-    low_x: MutableSequence[float]
-    low_y: MutableSequence[float]
     gravity_x: Any
     gravity_y: Any
     supports: Any
@@ -95,30 +90,6 @@ class ExactState(ABC):
         """The velocity of disk i at time t of its present flight."""
         lag = t - self.t[i]
         return velocity(self.vx[i], lag, self.gravity_x[i]), velocity(self.vy[i], lag, self.gravity_y[i])
-
-    def low_place(self, i: int, t: Real) -> Low:
-        """The low parts of `place`; None where places have none."""
-        if not self.low_places:
-            return None
-        lag = t - self.t[i]
-        return (
-            low_position(self.x[i], self.low_x[i], self.vx[i], lag),
-            low_position(self.y[i], self.low_y[i], self.vy[i], lag),
-        )
-
-    def settle(self, i: int, t: Real) -> None:
-        """Where places have low parts: begin the flight of disk i anew at time t, the high parts rounded to nearest."""
-        if self.low_places:
-            (x, y), low = self.place(i, t), self.low_place(i, t)
-            assert low is not None
-            low_x, low_y = low
-            self.t[i] = t
-            self.x[i], self.low_x[i] = settled(x, low_x)
-            self.y[i], self.low_y[i] = settled(y, low_y)
-
-    def fine_flight(self, i: int, radius: float) -> Fine:
-        """What a contact time in a wide domain is a function of."""
-        return self.x[i], self.y[i], self.vx[i], self.vy[i], self.t[i], radius, self.low_x[i], self.low_y[i]
 
     def anchor(self, i: int, t: Real, x: Real, y: Real, vx: Real, vy: Real) -> None:
         """Begin a new flight of disk i; all predictions that rest on the old one are stale from here on."""

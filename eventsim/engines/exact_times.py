@@ -12,10 +12,7 @@ from eventsim.formulas.roots import Line, Moment, falls_to, less_number, order_o
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.scene.stage import Stage
 
-Place: TypeAlias = float | Fraction
-"""A coordinate, exact where places have low parts."""
-
-Flight: TypeAlias = tuple[float, Place, Place, float, float, Acceleration, Acceleration]
+Flight: TypeAlias = tuple[float, float, float, float, float, Acceleration, Acceleration]
 """A free flight: t, x, y, vx, vy, and its acceleration."""
 
 ZERO = Fraction(0)
@@ -60,15 +57,7 @@ class ExactTimes:
         surface = stage.surfaces[number]
         if not isinstance(surface, Boundary):
             return surface.shape.moment(*lines, side, radius)
-        target: Place = surface.target(radius)
-        if stage.low_places:
-            target = Fraction(surface.position) + side * Fraction(radius)
-        return falls_to(lines[surface.axis], target, side)
-
-
-def exact_place(x: float, y: float, low: tuple[float, float]) -> tuple[Fraction, Fraction]:
-    """Both parts of a place as one number each."""
-    return Fraction(x) + Fraction(low[0]), Fraction(y) + Fraction(low[1])
+        return falls_to(lines[surface.axis], surface.target(radius), side)
 
 
 def _lines(flight: Flight) -> tuple[Line, Line]:
@@ -76,7 +65,7 @@ def _lines(flight: Flight) -> tuple[Line, Line]:
     return _line(x, vx, gx, Fraction(t)), _line(y, vy, gy, Fraction(t))
 
 
-def _line(x: Place, v: float, g: float | None, t: Fraction) -> Line:
+def _line(x: float, v: float, g: float | None, t: Fraction) -> Line:
     speed = Fraction(v)
     if not g:
         return Fraction(x) - speed * t, speed, ZERO

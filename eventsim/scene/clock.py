@@ -34,6 +34,9 @@ is: so a clock counts 2**33 such times, or 2**41.  Windows grow to the size of t
 SLIGHTLY_LESS = 1.0 - 2.0**-32
 """The outline of a round wall is rounded: so it makes no difference whether that gives a power of two or a little less."""
 
+WIDE = 2.0**16
+"""Diameters of the largest disk across a scene, without gravity, beyond which a crowd in a corner has the clock of a crowd."""
+
 SHORTEST_EPOCH, LONGEST_EPOCH = -1000, 960
 """Exponents of the epoch's length; so MOST_EPOCHS of the longest ones, and a window more, are still a float."""
 
@@ -70,8 +73,8 @@ class SceneClock(NamedTuple):
         return min(longest if self.paced == self.window_cap else max(exponent + 1, longest), MOST_EPOCHS.bit_length() - 1)
 
 
-def clock_of(scene: Scene, wide: bool) -> SceneClock:
-    """The clock of a scene; wide: it is so much wider than its disks that a crowd in a corner of it has the clock of a crowd.
+def clock_of(scene: Scene) -> SceneClock:
+    """The clock of a scene.
 
     An epoch is about the time in which the fastest disk flies from one disk to the next.  Only exponents enter, so that a scene
     with all velocities times 2**k has an epoch of exactly 2**-k times the length.
@@ -81,8 +84,9 @@ def clock_of(scene: Scene, wide: bool) -> SceneClock:
     whole = _extent(scene)
     usual = _distance(scene, n, whole)
     length = usual
-    if wide:
-        length = math.frexp(2.0 * float(disks.radius.max()) / math.sqrt(n))[1]
+    diameter = 2.0 * float(disks.radius.max())
+    if gravity is None and 0.0 < diameter < max(domain.size or np.ptp(disks.position, axis=0).tolist()) / WIDE:
+        length = math.frexp(diameter / math.sqrt(n))[1]
     length = max(length, whole - (FINEST if n > 1 else FINEST_ALONE))
     fastest = float(np.abs(disks.velocity).max())
     speeds = [math.frexp(fastest)[1]] if fastest > 0.0 else []

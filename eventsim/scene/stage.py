@@ -13,14 +13,13 @@ import numpy as np
 
 from eventsim.formulas.doubt import tie_screen
 from eventsim.formulas.laws import Law, law_of
-from eventsim.formulas.low_place import Low
 from eventsim.formulas.motion import periods
 from eventsim.formulas.real import Real, is_float
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.point import is_point
 from eventsim.formulas.walls.post import is_post_to
-from eventsim.formulas.walls.shape import Closed, Thin, seen
+from eventsim.formulas.walls.shape import Closed, Thin
 from eventsim.scene.clock import SceneClock, clock_of
 from eventsim.scene.corner import corner_of
 from eventsim.scene.disks import Floats
@@ -28,10 +27,6 @@ from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of
 from eventsim.scene.walls import feature_names, parts_of
-
-WIDE = 2.0**16
-"""Diameters of the largest disk across a domain from which on places carry their low parts: a coordinate there has lost 16 of the
-53 bits that a gap between two disks could have, and with them a third of the events that float64 follows."""
 
 UNEVEN = 2.0**16
 """Ratio of masses M/m from which on velocities carry their low parts: the roundings of the pi sqrt(M/m) contacts that a light
@@ -53,8 +48,6 @@ class Stage:
         mass_ratio: of the heaviest to the lightest disk, tracers and immovable ones apart.
         low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): nothing falls and
             masses are very uneven.
-        low_places: whether places carry what their rounding leaves (`formulas/low_place`): the domain is very wide and
-            nothing falls.
         gravity: (gx, gy), or None.
         law: the law of its contacts.
         period: the period along x and y; None along an axis without one.
@@ -62,7 +55,7 @@ class Stage:
         boundaries: hard walls of the domain.
         features: shapes of the walls inside it; in a periodic domain with the images that disks can meet.
         supports: what boundaries and features, in this order, support disks with; None where no disk comes to rest.
-        points: whether disks are points to some walls, whose sides they have to remember (not where places have low parts).
+        points: whether disks are points to some walls, whose sides they have to remember.
         wall_names: the names that the walls have in an event log.
         corner: what to add to a position to have it on the scene's axes.
         start_time: what the scene's clock shows at remainder 0 of epoch 0.
@@ -80,7 +73,6 @@ class Stage:
     common_mass: float
     mass_ratio: float
     low_parts: bool
-    low_places: bool
     gravity: Point | None
     law: Law
     period: tuple[float | None, float | None]
@@ -114,13 +106,12 @@ class Stage:
         """The boundary of the domain with this number among all surfaces; None of a feature's number."""
         return self.boundaries[surface] if surface < len(self.boundaries) else None
 
-    def normal(self, surface: int, side: int, x: Real, y: Real, low: Low = None) -> tuple[Real, Real]:
-        """The normal of a surface, of any length, towards a disk at (x, y); low: the low parts of that."""
+    def normal(self, surface: int, side: int, x: Real, y: Real) -> tuple[Real, Real]:
+        """The normal of a surface, of any length, towards a disk at (x, y)."""
         found = self.surfaces[surface]
         if isinstance(found, Boundary):
             return found.normal()
-        shape, x, y = seen(found.shape, x, y, low)
-        return shape.normal(side, x, y)
+        return found.shape.normal(side, x, y)
 
     def touching(self, surface: int, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
         """The place of a disk on the surface that it meets: exactly on a boundary of the domain.
@@ -175,10 +166,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
     restitution = scene.restitution
     law = law_of(None if restitution is None else (restitution.pair, restitution.wall), scene.contact_duration)
     lightest, heaviest = _extreme_masses(disks.mass)
-    diameter = 2.0 * float(disks.radius.max())
-    wide = scene.gravity is None and 0.0 < diameter < max(size or np.ptp(disks.position, axis=0).tolist()) / WIDE
-    low_places = wide and size is not None
-    clock = clock_of(scene, wide)
+    clock = clock_of(scene)
     return Stage(
         n=len(disks),
         x=x,
@@ -195,7 +183,6 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
             and lightest > 1.0 / EXTREME
             and heaviest < EXTREME
         ),
-        low_places=low_places,
         gravity=scene.gravity,
         law=law,
         period=domain.period,
@@ -204,7 +191,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         features=features,
         surfaces=(*boundaries, *features),
         supports=_supports(scene, boundaries, features, law.series() == 1.0, x, y),
-        points=not low_places and _has_points(features, float(disks.radius.min())),
+        points=_has_points(features, float(disks.radius.min())),
         wall_names=(*names, *feature_names(scene.walls)),
         corner=corner,
         start_time=scene.start_time,

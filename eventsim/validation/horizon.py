@@ -89,16 +89,11 @@ def _advance(session: Session, until: float | Fraction | None, events: int) -> s
 
 
 def _moved(stage: Stage, rng: np.random.Generator) -> Stage:
-    """The stage with every coordinate and velocity of a moving disk changed by its last bit, up or down.
-
-    Where places have low parts, the last bit of a coordinate is much more than what rounding leaves: velocities have to do.
-    """
+    """The stage with every coordinate and velocity of a moving disk changed by its last bit, up or down."""
 
     def nudged(values: Floats) -> Floats:
         moves = (stage.vx != 0.0) | (stage.vy != 0.0)
         return np.where(moves, np.nextafter(values, np.where(rng.random(len(values)) < 0.5, -np.inf, np.inf)), values)
 
     vx, vy = nudged(stage.vx), nudged(stage.vy)
-    if stage.low_places:
-        return replace(stage, vx=vx, vy=vy)
     return replace(stage, x=nudged(stage.x), y=nudged(stage.y), vx=vx, vy=vy)

@@ -73,6 +73,16 @@ def test_touching_by_rounding_is_said(eventsim, scene_file):
     assert "touching, but for rounding" in result.stdout
 
 
+@pytest.mark.parametrize(("size", "bits"), [(8, 50), (2**16, 37), (2**20, 33)])
+def test_check_says_how_many_bits_of_a_gap_are_left(eventsim, scene_file, size, bits):
+    scene_file.write_text(
+        f'until = 1.0\n[domain]\nkind = "box"\nsize = [{size}, 8]\n[[disk]]\nposition = [2, 2]\nvelocity = [1, 0]\nradius = 0.5\n'
+    )
+    assert json.loads(eventsim("check", scene_file, "--json").stdout)["gap_bits"] == bits
+    told = f"{bits} of the 53 bits of a gap are left" in " ".join(eventsim("check", scene_file).stdout.split())
+    assert told == (size >= 2**16)
+
+
 def test_an_outcome_that_hangs_on_the_last_bit_is_told(eventsim):
     hanging = eventsim("check", "tie", "--set", "delay=1e-15")
     assert hanging.exit_code == 0

@@ -125,12 +125,14 @@ PLACES = {
 
 @pytest.mark.parametrize("seeds", [range(4), pytest.param(range(24), marks=pytest.mark.slow)])
 @pytest.mark.parametrize("place", PLACES)
-def test_float64_follows_the_true_order_for_330_events(place, seeds):
+def test_float64_follows_the_true_order_for_330_events_and_for_200_at_a_million_diameters(place, seeds):
     found = [first_difference(PLACES[place](lattice_gas(16, 0.3, seed=seed))) for seed in seeds]
     events = np.array([event for event, _ in found])
     error = events.std(ddof=1) / math.sqrt(len(events))
     print(f"{place}: first difference at event {events.mean():.0f} +- {error:.0f}, {len(events)} seeds")
-    assert events.mean() - error >= 330
+    # coordinates of 2^20 diameters lack 20 bits of a gap, at 0.133 bits an event
+    far = place.startswith("corner") and place != "corner (0, 0) of a wide box"
+    assert events.mean() - error >= (200 if far else 330)
     if place != "box at 0":
         return  # coordinates in a row are rounded to the last bit of a million
     for event, deviation in found:

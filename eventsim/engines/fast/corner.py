@@ -45,8 +45,8 @@ def _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
         return False
     if _is_one_line(m, wall, -1 - other, m.supports):
         return False
-    bx, by = wall_normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
-    ax, ay = wall_normal(m, rules, i, -1 - other, from_side, x, y, rules.wall_x, rules.wall_y, m.features)
+    bx, by = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
+    ax, ay = wall_normal(m, rules, -1 - other, from_side, x, y, rules.wall_x, rules.wall_y, m.features)
     return holds(ax, ay, bx, by, rules.gx, rules.gy)
 
 

@@ -27,7 +27,8 @@ from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.engines.fast.predict import corner_slot
 from eventsim.engines.fast.rest import border_contact
-from eventsim.engines.fast.single_disk_events import shape_time, wall_delay
+from eventsim.engines.fast.single_disk_events import shape_time
+from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.rest import STRUCK
 
 
@@ -135,27 +136,25 @@ def _walls_between(m, grid, rules, i, span, found, times, count):
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     home = home_of(m, grid, i)
     across = m, rules, i, span, found, times
-    count = _walls_across(
-        *across, 0, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count, m.supports
-    )
-    return _walls_across(*across, 1, y, w, t, r, gy, rules.height, row, home.rows, rules.wall_y, count, m.supports)
+    count = _walls_across(*across, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count, m.supports)
+    return _walls_across(*across, y, w, t, r, gy, rules.height, row, home.rows, rules.wall_y, count, m.supports)
 
 
 @inline
-def _walls_across(m, rules, i, span, found, times, axis, x, v, t, r, g, length, k, last, wall, count, supports):
+def _walls_across(m, rules, i, span, found, times, x, v, t, r, g, length, k, last, wall, count, supports):
     if wall is None:
         return count
     if k == 1:
-        time, how = _wall_time(m, rules, i, wall, 1.0, 0.0, r, axis, x, v, t, g, supports)
+        time, how = _wall_time(m, rules, i, wall, 1.0, 0.0, r, x, v, t, g, supports)
         count = _add(span, found, times, count, time, i, -1 - wall, 1, how)
     if k == last:
-        time, how = _wall_time(m, rules, i, wall + 1, -1.0, length, r, axis, x, v, t, g, supports)
+        time, how = _wall_time(m, rules, i, wall + 1, -1.0, length, r, x, v, t, g, supports)
         count = _add(span, found, times, count, time, i, -2 - wall, -1, how)
     return count
 
 
 @inline
-def _wall_time(m, rules, i, place, side, border, r, axis, x, v, t, g, supports):
+def _wall_time(m, rules, i, place, side, border, r, x, v, t, g, supports):
     if supports is None:
-        return t + wall_delay(x, v, g, border, side, r, 2 * i + axis, m.low_places), STRUCK
+        return t + crossing_delay(x, v, g, border + side * r, side), STRUCK
     return border_contact(m, rules, i, place, side, border + side * r, x, v, g)

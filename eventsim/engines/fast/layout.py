@@ -67,7 +67,7 @@ class Arrays(NamedTuple):
 
     disks: the records, and behind them the calendar's buckets and its waiting room.
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
-    parts of velocities, (vx, vy) each; low_places: those of places, (x, y) each.  sides: of points, one number for each shape
+    parts of velocities, (vx, vy) each.  sides: of points, one number for each shape
     (`scene.sides`); images: see `rules.images_of`.  levels: the table of `levels`.  rows: the
     log's buffer, bytes.
     """
@@ -78,7 +78,6 @@ class Arrays(NamedTuple):
     several: object
     mass: object
     low: object
-    low_places: object
     features: object
     levels: object
     supports: object

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.advance import anchor, keep_low_place, place, pulls, speed, wrap
+from eventsim.engines.fast.advance import anchor, place, pulls, speed, wrap
 from eventsim.engines.fast.calendar import (
     NO_DAY,
     bucket,
@@ -84,7 +84,6 @@ def pointers(a):
         pointer(a.several),
         pointer(a.mass),
         pointer(a.low),
-        pointer(a.low_places),
         pointer(a.features),
         pointer(a.levels),
         pointer(a.supports),
@@ -264,7 +263,6 @@ def turn_over(arrays, grid, rules, end, shift):
     for i in range(grid.n):
         x, y = place(m, rules, i, end)
         vx, vy = speed(m, rules, i, end)
-        keep_low_place(m, i, end, m.low_places)
         keep_sides(m, rules, i, end, pulls(m, rules, i), x, y, vx, vy, NOWHERE, 0, m.sides)
         anchor(m, i, end - shift, x, y, vx, vy)
         store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - shift)

@@ -52,10 +52,9 @@ class Machine:
         self.sums = np.zeros(6)
         self.keep_rows = keep_rows
         beside = stage.gravity is None or stage.supports is None  # all fly straight beside each other
-        straight = beside and not stage.low_places
         plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
         wanted = lanes_work() if lanes is None else lanes
-        self._lanes = 8 if wanted and straight and plain else None
+        self._lanes = 8 if wanted and beside and plain else None
         order = along_a_curve(stage.x, stage.y) if stage.n >= ORDERED_DISKS else np.arange(stage.n)
         self.state = FastState(stage, order, self.counts)
         self.rules = rules_of(stage)
@@ -204,7 +203,6 @@ class Machine:
                 state.several.reshape(-1),
                 self._mass,
                 state.low.reshape(-1) if state.low_parts else None,
-                state.low_of_places.reshape(-1) if state.low_places else None,
                 self._features,
                 self.grids.table(),
                 self._supports,

@@ -22,7 +22,6 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.memory import real, word
 from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
-from eventsim.formulas.low_place import wide_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER
@@ -74,21 +73,8 @@ def flight_of(m, i):
 
 
 @inline
-def low_place_of(m, i):
-    """The low parts of x and y."""
-    return real(m.low_places, 2 * i), real(m.low_places, 2 * i + 1)
-
-
-@inline
 def pair_time(m, rules, i, j, kx, ky):
     """The contact time of two disks; symmetric under their exchange, bit for bit."""
-    return _pair_time(m, rules, i, j, kx, ky, m.low_places)
-
-
-@inline
-def _pair_time(m, rules, i, j, kx, ky, low):
-    if low is not None:
-        return _wide_pair_time(m, rules, i, j, kx, ky)
     (xi, yi, ui, wi, ti, _), (xj, yj, uj, wj, tj, _) = flight_of(m, i), flight_of(m, j)
     begin = ti if ti > tj else tj
     ax, ay = pulls(m, rules, i)
@@ -103,16 +89,6 @@ def _pair_time(m, rules, i, j, kx, ky, low):
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
     return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, _or(rules.classes, m.supports))
-
-
-@part
-def _wide_pair_time(m, rules, i, j, kx, ky):
-    """The same from places with low parts."""
-    flight, other = flight_of(m, i) + low_place_of(m, i), flight_of(m, j) + low_place_of(m, j)
-    flights = flight + other + shifts(rules, kx, ky)
-    delay = wide_pair_delay(*flights)
-    ti, tj = flight[4], other[4]
-    return (ti if ti > tj else tj) + delay
 
 
 @inline

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.advance import anchor, lay_on, place, pulls, settle, speed
+from eventsim.engines.fast.advance import anchor, place, pulls, speed
 from eventsim.engines.fast.compiled import inline, part
 from eventsim.engines.fast.last_contact import just_met, remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.layout import (
@@ -41,7 +41,6 @@ from eventsim.formulas.impulse import (
     wall_impulse,
     wall_update,
 )
-from eventsim.formulas.low_place import finely_apart
 from eventsim.formulas.real import sqrt
 from eventsim.formulas.rest import AT_ONCE as SERIES_AT_ONCE
 from eventsim.formulas.rest import is_still, rebound
@@ -185,7 +184,6 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     dx, dy = xa - xb, ya - yb
     kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
-    xa, ya, xb, yb, dx, dy = _finely(m, rules, a, b, t, kx, ky, xa, ya, xb, yb, dx, dy, m.low_places)
     still = _are_still(m, rules, a, b, t, kx, ky, rules.still)
     ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)
     keep_sides(m, rules, a, t, pulls(m, rules, a), xa, ya, ua, wa, NOWHERE, 0, m.sides)
@@ -205,26 +203,6 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
     flight_a, flight_b = (xa, ya, ua, wa), (xb, yb, ub, wb)
     write_pair(m, number, slot, a, b, flight_a, flight_b, -(q * reduced) * distance, t, clock, m.rows)
     return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
-
-
-@inline
-def _finely(m, rules, a, b, t, kx, ky, xa, ya, xb, yb, dx, dy, low):
-    """Places and distance of a pair; from places with low parts, where they have them, which settles the two disks."""
-    if low is None:
-        return xa, ya, xb, yb, dx, dy
-    return _settled_pair(m, rules, a, b, t, kx, ky)
-
-
-@part
-def _settled_pair(m, rules, a, b, t, kx, ky):
-    low = m.low_places
-    settle(m, rules, a, t, low)
-    settle(m, rules, b, t, low)
-    xa, ya = place(m, rules, a, t)
-    xb, yb = place(m, rules, b, t)
-    dx, _ = finely_apart(xa, real(low, 2 * a), xb, real(low, 2 * b), shift(kx, rules.length_x))
-    dy, _ = finely_apart(ya, real(low, 2 * a + 1), yb, real(low, 2 * b + 1), shift(ky, rules.length_y))
-    return xa, ya, xb, yb, dx, dy
 
 
 @inline
@@ -258,7 +236,6 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     """Resolve the contact of disk i with the wall that the code of the event stands for."""
     wall_code = WALL - code
     place_, side = wall_code // 2, -1 if wall_code % 2 else 1
-    settle(m, rules, i, t, m.low_places)
     x, y = place(m, rules, i, t)
     u, w = speed(m, rules, i, t)
     u0, w0 = u, w
@@ -269,12 +246,10 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r
-        lay_on(2 * i, rules.width, side, r, m.low_places)
         u = _across(2 * i, u, float(side), e, m.low)
         wall = place_
     elif _is_across(rules.wall_y, place_):
         y = rules.height - r if side < 0 else r
-        lay_on(2 * i + 1, rules.height, side, r, m.low_places)
         w = _across(2 * i + 1, w, float(side), e, m.low)
         wall = place_
     else:
@@ -354,7 +329,7 @@ def _in_velocity(m, rules, i, k, side, x, y, u, w, e, low):
     """The place and velocity of a disk after contact with the k-th shape; low parts are set."""
     if is_exact_hit(m, k, real(m.disks, i * REALS + RADIUS), m.sides):
         return _turned_round(m, rules, i, k, u, w, e, low)
-    nx, ny = shape_normal(m, i, k, side, x, y)
+    nx, ny = shape_normal(m, k, side, x, y)
     if low is None:
         u, w, _ = wall_update(nx, ny, u, w, e)
     else:

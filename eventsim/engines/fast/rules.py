@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eventsim.engines.fast.grids import Grids
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
-from eventsim.engines.fast.shapes import CENTER, CORNERS, KINDS, WIDTH
+from eventsim.engines.fast.shapes import CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
 from eventsim.engines.reference.sunk import can_creep, can_sink
 from eventsim.record.events import Floats
@@ -53,7 +53,7 @@ def rules_of(stage: Stage) -> Rules:
 
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
-    asked = [keep_rows, stage.low_parts, stage.low_places, stage.points, grids.sizes is not None]
+    asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
     needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted]
@@ -66,11 +66,9 @@ def features_of(stage: Stage) -> Floats | None:
         return None
     table = np.zeros((len(stage.features), WIDTH))
     for row, feature in zip(table, stage.features, strict=True):
-        shape = feature.shape
-        row[0], row[1] = KINDS.index(type(shape)), feature.wall
-        numbers = tuple(shape.at_origin() if stage.low_places else shape)  # every shape is a tuple of numbers
+        row[0], row[1] = KINDS.index(type(feature.shape)), feature.wall
+        numbers = tuple(feature.shape)  # every shape is a tuple of numbers
         row[2 : 2 + len(numbers)] = numbers
-        row[CENTER:CORNERS] = shape.x, shape.y
         row[CORNERS:] = feature.corners
     return table.reshape(-1)
 

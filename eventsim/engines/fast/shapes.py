@@ -21,9 +21,9 @@ KINDS = (Face, Post, Container, Arc, Ellipse)
 
 FACE, POST, CONTAINER, ARC, ELLIPSE = 0.0, 1.0, 2.0, 3.0, 4.0
 
-WIDTH, CENTER, CORNERS = 25, 19, 21
-"""Numbers in a row: the kind, the number of the wall, then the shape's own; where the point (x, y) that it is told from is, which
-for its own numbers is the origin where places have low parts; what makes corners with it (`Feature.corners`)."""
+WIDTH, CENTER, CORNERS = 23, 2, 19
+"""Numbers in a row: the kind, the number of the wall, then the shape's own, first the point (x, y) that it is told from; what
+makes corners with it (`Feature.corners`)."""
 
 END_X, END_Y, SIZE, ENDS = 11, 12, 13, 14
 """Where the second end of faces and arcs is, what their size is, and what their ends are to points; the first end is CENTER."""
@@ -161,7 +161,6 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
     row = m.features
     s = WIDTH * k
     kind = real(row, s)
-    x, y = _seen_from(m, i, s, x, y, m.low_places)
     if faces is not None and kind == FACE:
         return face_delay(face_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     if posts is not None and kind == POST:
@@ -173,15 +172,6 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
     if ellipses is not None and kind == ELLIPSE:
         return ellipse_delay(ellipse_at(row, s + 2), x, y, vx, vy, gx, gy, radius, met, touches, close)
     return NEVER, 0
-
-
-@inline
-def _seen_from(m, i, s, x, y, low):
-    """The place of disk i as a shape sees it: relative to its center where places have low parts."""
-    if low is None:
-        return x, y
-    row = m.features
-    return (x - real(row, s + CENTER)) + real(low, 2 * i), (y - real(row, s + CENTER + 1)) + real(low, 2 * i + 1)
 
 
 @part
@@ -204,12 +194,11 @@ def laid_on_shape(m, k, side, x, y, r):
 
 
 @part
-def shape_normal(m, i, k, side, x, y):
-    """The normal, of any length, of the k-th shape, towards disk i at (x, y), where its flight begins."""
+def shape_normal(m, k, side, x, y):
+    """The normal, of any length, of the k-th shape, towards a disk at (x, y)."""
     row = m.features
     s = WIDTH * k
     kind = real(row, s)
-    x, y = _seen_from(m, i, s, x, y, m.low_places)
     if kind == FACE:
         return face_normal(face_at(row, s + 2), side, x, y)
     if kind == ARC:
@@ -222,7 +211,7 @@ def shape_normal(m, i, k, side, x, y):
 
 
 @inline
-def wall_normal(m, rules, i, wall, side, x, y, wall_x, wall_y, features):
+def wall_normal(m, rules, wall, side, x, y, wall_x, wall_y, features):
     """The normal, of any length, of a wall of the domain or a shape, by its place among all walls."""
     if wall_x is not None and wall_x <= wall < wall_x + 2:
         return float(side), 0.0
@@ -230,7 +219,7 @@ def wall_normal(m, rules, i, wall, side, x, y, wall_x, wall_y, features):
         return 0.0, float(side)
     if features is None:
         return 0.0, 0.0
-    return shape_normal(m, i, wall - rules.first_feature, side, x, y)
+    return shape_normal(m, wall - rules.first_feature, side, x, y)
 
 
 @inline

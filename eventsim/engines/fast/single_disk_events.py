@@ -31,7 +31,6 @@ from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.rest import border_contact, shape_rest
 from eventsim.engines.fast.shapes import shape_delay
 from eventsim.formulas.crossing import crossing_delay
-from eventsim.formulas.low_place import wide_border_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import STRUCK
 
@@ -90,16 +89,16 @@ def border_events(m, grid, rules, i, now, floor, x, y, u, w):
     k = word(m.disks, i * WORDS + COLUMN)
     low, side = grid.low_x + (k - 1) * grid.side_x, grid.side_x
     length, wall = rules.length_x, rules.wall_x
-    to_cell, to_wrap = (k > 1, x, u, low, LEFT), (0.0, length, wall, WRAP_LEFT, 0, 0)
+    to_cell, to_wrap = (k > 1, x, u, low, LEFT), (0.0, length, wall, WRAP_LEFT, 0)
     found = _towards(m, rules, i, now, floor, to_cell, to_wrap, side, 1.0, x0, vx, ax, found)
-    to_cell, to_wrap = (k < grid.columns, x, u, low + side, RIGHT), (rules.width, length, wall, WRAP_RIGHT, 1, 0)
+    to_cell, to_wrap = (k < grid.columns, x, u, low + side, RIGHT), (rules.width, length, wall, WRAP_RIGHT, 1)
     found = _towards(m, rules, i, now, floor, to_cell, to_wrap, side, -1.0, x0, vx, ax, found)
     k = word(m.disks, i * WORDS + ROW)
     low, side = grid.low_y + (k - 1) * grid.side_y, grid.side_y
     length, wall = rules.length_y, rules.wall_y
-    to_cell, to_wrap = (k > 1, y, w, low, DOWN), (0.0, length, wall, WRAP_DOWN, 0, 1)
+    to_cell, to_wrap = (k > 1, y, w, low, DOWN), (0.0, length, wall, WRAP_DOWN, 0)
     found = _towards(m, rules, i, now, floor, to_cell, to_wrap, side, 1.0, y0, vy, ay, found)
-    to_cell, to_wrap = (k < grid.rows, y, w, low + side, UP), (rules.height, length, wall, WRAP_UP, 1, 1)
+    to_cell, to_wrap = (k < grid.rows, y, w, low + side, UP), (rules.height, length, wall, WRAP_UP, 1)
     return _towards(m, rules, i, now, floor, to_cell, to_wrap, side, -1.0, y0, vy, ay, found)
 
 
@@ -114,17 +113,15 @@ def _towards(m, rules, i, now, floor, to_cell, to_wrap, size, side, anchor, v0, 
     if inside:
         new = now + crossing_delay(x, v, g, edge - side * slack(size, rules.gx), side)
         return earlier(time, code, shared, new, code_there, rules.tie_screen)
-    border, length, wall, wrap_code, second, axis = to_wrap
-    new, what = _border_event(
-        m, rules, i, anchor, v0, g, border, side, length, wall, wrap_code, second, axis, m.supports
-    )
+    border, length, wall, wrap_code, second = to_wrap
+    new, what = _border_event(m, rules, i, anchor, v0, g, border, side, length, wall, wrap_code, second, m.supports)
     if not new < floor:
         time, code, shared = earlier(time, code, shared, new, what, rules.tie_screen)
     return time, code, shared
 
 
 @inline
-def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, second, axis, supports):
+def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, second, supports):
     """(time, code) of the wrap through a border of the domain, or of the contact with the hard wall there."""
     f = i * REALS
     t = real(m.disks, f + T)
@@ -135,17 +132,8 @@ def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, s
         if supports is not None:
             time, _ = border_contact(m, rules, i, wall + second, side, border + side * r, x, v, g)
             return time, WALL - 2 * (wall + second) - second
-        time = t + wall_delay(x, v, g, border, side, r, 2 * i + axis, m.low_places)
-        return time, WALL - 2 * (wall + second) - second
+        return t + crossing_delay(x, v, g, border + side * r, side), WALL - 2 * (wall + second) - second
     return t + crossing_delay(x, v, g, border, side), wrap_code
-
-
-@inline
-def wall_delay(x, v, g, border, side, r, at, low):
-    """The delay until a disk meets a hard wall of the domain; at: where the low part of its coordinate is."""
-    if low is not None:
-        return wide_border_delay(x, real(low, at), v, border, r, side)
-    return crossing_delay(x, v, g, border + side * r, side)
 
 
 @inline

@@ -50,9 +50,8 @@ LINE, PAGE = 64, 4096
 COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
 """What a snapshot has one number of for every disk."""
 
-LOW_COLUMNS, LOW_PLACES = ("low_vx", "low_vy"), ("low_x", "low_y")
-"""The same, where velocities or places have low parts."""
-
+LOW_COLUMNS = ("low_vx", "low_vy")
+"""The same, where velocities have low parts."""
 
 def aligned(count: int, kind: Any) -> NDArray[Any]:
     """Zeros that begin with a page, and some to spare behind them: the lanes read a little past the end."""
@@ -68,7 +67,7 @@ class FastState(ExactState):
     memory: the records, and the calendar's buckets behind them.
     disks: (n + 1, REALS), the last one a sentinel.  words: the same memory as int32.  place_of: where a disk is in memory;
     labels: which disk is at a place.  several: chains of whom disks met in joint contacts.  low: low parts of velocities, (n, 2),
-    or (0, 2) where there are none; low_of_places: of places.
+    or (0, 2) where there are none.
     """
 
     x: Any
@@ -82,8 +81,6 @@ class FastState(ExactState):
     at_once: Any
     low_vx: Any
     low_vy: Any
-    low_x: Any
-    low_y: Any
     count: Any
     met: Any
     gravity_x: Any
@@ -121,14 +118,7 @@ class FastState(ExactState):
         self.low_parts = stage.low_parts
         self.low: Floats = np.zeros((n if stage.low_parts else 0, 2))
         self.low_vx, self.low_vy = Column(self.low[:, 0], self.place_of), Column(self.low[:, 1], self.place_of)
-        self.low_places = stage.low_places
-        self.low_of_places: Floats = np.zeros((n if stage.low_places else 0, 2))
-        self.low_x, self.low_y = (Column(self.low_of_places[:, axis], self.place_of) for axis in (0, 1))
-        self._columns = (
-            *COLUMNS,
-            *(LOW_COLUMNS if stage.low_parts else ()),
-            *(LOW_PLACES if stage.low_places else ()),
-        )
+        self._columns = (*COLUMNS, *(LOW_COLUMNS if stage.low_parts else ()))
         self.supports = stage.supports
         self._radius = stage.radius.tolist()
         self.sides = self.sides_in_memory = None

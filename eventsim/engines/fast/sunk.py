@@ -47,6 +47,6 @@ def _wall_may_be_sunk(m, rules, i, code, now, gx):
         return False
     x, y = place(m, rules, i, now)
     u, w = speed(m, rules, i, now)
-    nx, ny = wall_normal(m, rules, i, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
+    nx, ny = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
     size = abs(nx * x) + abs(ny * y) + max(abs(nx), abs(ny)) * real(m.disks, i * REALS + RADIUS)
     return is_sunk(-(nx * u + ny * w), now - real(m.disks, i * REALS + T), WIDER * size)

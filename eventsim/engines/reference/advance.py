@@ -14,10 +14,6 @@ def wrap(state: EngineState, cells: Cells | None, event: Event, length: float) -
     x, y = state.place(i, t)
     vx, vy = state.speed(i, t)
     entry: Real = 0.0 if step > 0 else length
-    if (low := state.low_place(i, t)) is not None:
-        state.low_x[i], state.low_y[i] = low
-        along, at = (state.low_x, x) if axis == 0 else (state.low_y, y)
-        along[i] += at - (length - entry)
     if axis == 0:
         state.keep_sides(i, t, (length - entry, y), (vx, vy))
         x = entry

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from eventsim.engines.exact_state import ExactState
-from eventsim.engines.exact_times import ExactTimes, Flight, exact_place
+from eventsim.engines.exact_times import ExactTimes, Flight
 from eventsim.engines.reference.calendar import Event
 from eventsim.formulas.crossing import crossing_delay
-from eventsim.formulas.real import NEVER, Acceleration
+from eventsim.formulas.real import NEVER
 from eventsim.formulas.roots import order_of
 from eventsim.scene.stage import Stage
 
@@ -20,7 +20,7 @@ class Ties:
     def __init__(self, stage: Stage, state: ExactState) -> None:
         self._stage = stage
         self._state = state
-        self._moments = ExactTimes(stage, self._exact_flight)
+        self._moments = ExactTimes(stage, self._flight)
 
     def settle(self, near: list[Event]) -> list[Event]:
         """Of contacts within the screen: those that are to be resolved in one instant, in the order of rows.
@@ -54,13 +54,7 @@ class Ties:
                 due = min(due, crossing_delay(at, v, g, 0.0, 1.0), crossing_delay(at, v, g, length, -1.0))
         return t + due
 
-    def _exact_flight(self, i: int) -> Flight:
-        s, (t, x, y, u, w, gx, gy) = self._state, self._flight(i)
-        if s.low_places:
-            return t, *exact_place(x, y, (s.low_x[i], s.low_y[i])), u, w, gx, gy
-        return t, x, y, u, w, gx, gy
-
-    def _flight(self, i: int) -> tuple[float, float, float, float, float, Acceleration, Acceleration]:
+    def _flight(self, i: int) -> Flight:
         s = self._state
         return s.t[i], s.x[i], s.y[i], s.vx[i], s.vy[i], s.gravity_x[i], s.gravity_y[i]
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from eventsim.engines.reference.calendar import CONTACT, Calendar
 from eventsim.engines.reference.predict import Predictor
-from eventsim.engines.reference.wide import WidePredictor
 
 if TYPE_CHECKING:
     from eventsim.engines.reference.loop import ReferenceSession
@@ -57,8 +56,7 @@ def _check_cells(session: ReferenceSession) -> None:
 def _check_calendar(session: ReferenceSession) -> None:
     """The earliest contact that all pairs predict is in the calendar, unless an event that finds it comes first."""
     brute = Calendar()
-    predictor: type[Predictor] = WidePredictor if session.state.low_places else Predictor
-    predictor(session.stage, session.state, brute, None).predict_all(session.state.now)
+    Predictor(session.stage, session.state, brute, None).predict_all(session.state.now)
     expected = next((event for event in brute if event.rank == CONTACT), None)
     if expected is None:
         return

@@ -21,7 +21,6 @@ from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
 from eventsim.engines.reference.sunk import Sunk
 from eventsim.engines.reference.unresolvable import endless, refused
-from eventsim.engines.reference.wide import WidePredictor
 from eventsim.formulas.clock import window_length
 from eventsim.formulas.doubt import latest_tie, screen_in
 from eventsim.formulas.real import NEVER, Real
@@ -55,8 +54,7 @@ class ReferenceSession(ExactSession):
         chosen: Grid | None = plan(stage) if isinstance(options.grid, str) else options.grid
         self.cells = None if chosen is None else Cells(stage, chosen)
         self._check = options.check
-        fine = self.state.low_places and self.predictor is Predictor
-        self._predictor = (WidePredictor if fine else self.predictor)(stage, self.state, self.calendar, self.cells)
+        self._predictor = self.predictor(stage, self.state, self.calendar, self.cells)
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
         self._ties = Ties(stage, self.state)
         self._sunk = Sunk(stage, self.state) if number is float else None

@@ -14,7 +14,6 @@ from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import flat_update, pair_update, wall_update
-from eventsim.formulas.low_place import Low, apart
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
 from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
@@ -77,7 +76,6 @@ class Resolver:
         """Set the velocity of disk i from outside, at the present time; a row of its own."""
         state = self._state
         t = state.now
-        state.settle(i, t)
         x, y = state.place(i, t)
         before = state.speed(i, t)
         self._rests.free(i, t)
@@ -92,11 +90,9 @@ class Resolver:
     def _pair(self, event: Event) -> list[int]:
         state = self._state
         t, a, b = event.time, event.a, event.b
-        state.settle(a, t)
-        state.settle(b, t)
         xa, ya = state.place(a, t)
         xb, yb = state.place(b, t)
-        dx, dy = self._apart(event, xa, ya, xb, yb, state.low_place(a, t), state.low_place(b, t))
+        dx, dy = self._apart(event, xa, ya, xb, yb)
         again = self._met(event, a) in state.met[a] and self._met(event, b) in state.met[b]
         still = not again and self._instants.is_still(a, t) and self._instants.is_still(b, t)
         restitution = self._restitution(self._stage.law.pair, t, a, b)
@@ -145,7 +141,6 @@ class Resolver:
     def _wall(self, event: Event) -> list[int]:
         state, stage = self._state, self._stage
         t, i, place, side = event.time, event.a, -1 - event.b, event.image[0]
-        state.settle(i, t)
         x, y = state.place(i, t)
         u, w = state.speed(i, t)
         before = u, w
@@ -160,9 +155,9 @@ class Resolver:
         elif again > 0.0:
             u, w = rebound(*stage.normal(place, side, x, y), u, w, restitution * again)
         elif state.low_parts:
-            u, w = self._careful_wall(i, *stage.normal(place, side, x, y, state.low_place(i, t)), restitution)
+            u, w = self._careful_wall(i, *stage.normal(place, side, x, y), restitution)
         elif (boundary := stage.boundary(place)) is None:
-            u, w, _ = wall_update(*stage.normal(place, side, x, y, state.low_place(i, t)), u, w, restitution)
+            u, w, _ = wall_update(*stage.normal(place, side, x, y), u, w, restitution)
         elif boundary.axis == 0:
             u, _ = flat_update(u, boundary.side, restitution)
         else:
@@ -219,17 +214,16 @@ class Resolver:
         disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
         number = {disk: k for k, disk in enumerate(disks)}
         at = [state.place(i, t) for i in disks]
-        low = [state.low_place(i, t) for i in disks]
         before = [state.speed(i, t) for i in disks]
         contacts = []
         for event in component:
             a, b = number[event.a], number[event.b] if event.b >= 0 else None
             if b is not None:
-                dx, dy = self._apart(event, *at[a], *at[b], low[a], low[b])
+                dx, dy = self._apart(event, *at[a], *at[b])
                 e = self._restitution(stage.law.pair, t, event.a, event.b)
                 contacts.append(JointContact(a, b, dx, dy, e))
             else:
-                nx, ny = stage.normal(-1 - event.b, event.image[0], *at[a], low[a])
+                nx, ny = stage.normal(-1 - event.b, event.image[0], *at[a])
                 if stage.is_exact_hit(-1 - event.b, self._radius[event.a]):
                     nx, ny = (-before[a][0], -before[a][1]) if any(before[a]) else (0.0, 1.0)
                 e = self._restitution(stage.law.wall, t, event.a, event.a)
@@ -241,8 +235,7 @@ class Resolver:
         changed = sorted({i for k in active for i in component[k][2:4] if i >= 0})
         still = all(self._instants.is_still(i, t) for i in changed)
         for i in changed:
-            state.settle(i, t)
-            x, y = at[number[i]] if low[number[i]] is None else state.place(i, t)
+            x, y = at[number[i]]
             for k in active:
                 if component[k].a == i and component[k].b < 0:
                     x, y = self._place_on(-1 - component[k].b, component[k].image[0], i, x, y)
@@ -289,15 +282,14 @@ class Resolver:
         ky = event.image[1] + state.wraps_y[event.a] - state.wraps_y[event.b]
         return (event.b, kx, ky) if i == event.a else (event.a, -kx, -ky)
 
-    def _apart(self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real, low_a: Low, low_b: Low) -> tuple[Real, Real]:
-        """The vector from b (its image) to a; low_a, low_b: the low parts of their places."""
-        return apart((xa, ya), (xb, yb), self._stage.shifts(event.image), low_a, low_b)
+    def _apart(self, event: Event, xa: Real, ya: Real, xb: Real, yb: Real) -> tuple[Real, Real]:
+        """The vector from b (its image) to a."""
+        shift_x, shift_y = self._stage.shifts(event.image)
+        dx, dy = xa - xb, ya - yb
+        return dx - shift_x if shift_x else dx, dy - shift_y if shift_y else dy
 
     def _place_on(self, place: int, side: int, i: int, x: Real, y: Real) -> tuple[Real, Real]:
-        """The place of disk i on the wall that it meets; its low part, if it has one, is set."""
-        state, boundary = self._state, self._stage.boundary(place)
-        if state.low_places and boundary is not None:
-            (state.low_x, state.low_y)[boundary.axis][i] = boundary.left_over(self._radius[i])
+        """The place of disk i on the wall that it meets."""
         return self._stage.touching(place, side, x, y, self._radius[i])
 
     def _restitution(self, restitution: float, t: Real, a: int, b: int) -> Real:

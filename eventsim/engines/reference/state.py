@@ -36,9 +36,6 @@ class EngineState(ExactState):
         self.low_parts = stage.low_parts and number is float
         self.low_vx = [0.0] * n if self.low_parts else []
         self.low_vy = [0.0] * n if self.low_parts else []
-        self.low_places = stage.low_places and number is float
-        self.low_x = [0.0] * n if self.low_places else []
-        self.low_y = [0.0] * n if self.low_places else []
         self.gravity_x, self.gravity_y = _accelerations(stage)
         self._free_x, self._free_y = self.gravity_x, self.gravity_y
         self.supports, self.boundaries = stage.supports, len(stage.boundaries)
@@ -88,8 +85,6 @@ class EngineState(ExactState):
         for i in range(self.n):
             x, y = self.place(i, end)
             vx, vy = self.speed(i, end)
-            if (low := self.low_place(i, end)) is not None:
-                self.low_x[i], self.low_y[i] = low
             self.keep_sides(i, end, (x, y), (vx, vy))
             self.anchor(i, end - shift, x, y, vx, vy)
             self.contact_time[i] = self.contact_time[i] - shift
@@ -117,8 +112,6 @@ class EngineState(ExactState):
             at_once=tuple(self.at_once),
             low_vx=tuple(self.low_vx),
             low_vy=tuple(self.low_vy),
-            low_x=tuple(self.low_x),
-            low_y=tuple(self.low_y),
             sides=self.sides_of_all(),
         )
 
@@ -132,7 +125,6 @@ class EngineState(ExactState):
         self.wraps_x, self.wraps_y = list(saved.wraps_x), list(saved.wraps_y)
         self.met, self.contact_time, self.at_once = list(saved.met), list(saved.contact_time), list(saved.at_once)
         self.low_vx, self.low_vy = list(saved.low_vx), list(saved.low_vy)
-        self.low_x, self.low_y = list(saved.low_x), list(saved.low_y)
         self.set_sides(saved.sides)
         self.count = [count + 1 for count in self.count]
         if self.supports is not None:

@@ -206,10 +206,6 @@ class Arc(NamedTuple):
         """False: an arc is on no line."""
         return False
 
-    def at_origin(self) -> Arc:
-        """The same arc with its start in the origin."""
-        return self._replace(x=0.0, y=0.0, x1=self.x1 - self.x, y1=self.y1 - self.y)
-
     def in_numbers(self, number: Callable[[float], Real]) -> Arc:
         """The same arc in other numbers than floats, with both parts of its radius in one."""
         whole = Arc(*map(number, self))

@@ -2,7 +2,6 @@
 
 from typing import NamedTuple
 
-from eventsim.formulas.expansion import two_sum
 from eventsim.formulas.real import Real
 
 
@@ -21,11 +20,6 @@ class Boundary(NamedTuple):
     def target(self, radius: Real) -> Real:
         """The coordinate across the wall of a centre that touches it."""
         return self.position + self.side * radius
-
-    def left_over(self, radius: float) -> float:
-        """What rounding leaves of that coordinate."""
-        left: float = two_sum(self.position, self.side * radius)[1]
-        return left
 
     def touching(self, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
         """The place of a disk, set exactly onto the wall."""

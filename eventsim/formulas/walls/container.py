@@ -74,10 +74,6 @@ class Container(NamedTuple):
         """False: a circle is on no line."""
         return False
 
-    def at_origin(self) -> Container:
-        """The same circle around the origin."""
-        return self._replace(x=0.0, y=0.0)
-
     def in_numbers(self, number: Callable[[float], Real]) -> Container:
         """The same circle in other numbers than floats."""
         return Container(*map(number, self))

@@ -133,10 +133,6 @@ class Ellipse(NamedTuple):
         """False: an ellipse is on no line."""
         return False
 
-    def at_origin(self) -> Ellipse:
-        """The same ellipse around the origin."""
-        return self._replace(x=0.0, y=0.0)
-
     def in_numbers(self, number: Callable[[float], Real]) -> Ellipse:
         """The same ellipse in other numbers than floats, its direction of length 1 to their digits."""
         shape = Ellipse(*map(number, self))

@@ -205,10 +205,6 @@ class Face(NamedTuple):
         """Whether both ends are on the line of another face."""
         return is_in_line(line, self.x, self.y) and is_in_line(line, self.x1, self.y1)
 
-    def at_origin(self) -> Face:
-        """The same face with its start in the origin."""
-        return self._replace(x=0.0, y=0.0, x1=self.x1 - self.x, y1=self.y1 - self.y)
-
     def in_numbers(self, number: Callable[[float], Real]) -> Face:
         """The same face in other numbers than floats; what is derived is derived anew, from its corners."""
         exact = Face(*map(number, self))._replace(ends=self.ends)  # a code, not a length

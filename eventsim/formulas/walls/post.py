@@ -96,10 +96,6 @@ class Post(NamedTuple):
         """Whether the point is on the line of a face."""
         return is_in_line(line, self.x, self.y)
 
-    def at_origin(self) -> Post:
-        """The post in the origin."""
-        return self._replace(x=0.0, y=0.0)
-
     def in_numbers(self, number: Callable[[float], Real]) -> Post:
         """The same post in other numbers than floats."""
         return Post(*map(number, self))

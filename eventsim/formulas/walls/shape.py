@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
 
-from eventsim.formulas.low_place import Low
 from eventsim.formulas.real import Acceleration, Real
 from eventsim.formulas.roots import Line, Moment
 
@@ -76,9 +75,6 @@ class Shape(Protocol):
 
     def lies_on(self, line: Face) -> bool:
         """Whether a disk that slides on the line of a face passes this shape: all of it is on that line."""
-
-    def at_origin(self) -> Self:
-        """The same shape with its point (x, y) in the origin."""
 
     def in_numbers(self, number: Callable[[float], Real]) -> Self:
         """The same shape in other numbers than floats."""
@@ -155,14 +151,3 @@ class Closed(Shape, Protocol):
 
     def side(self, x: Real, y: Real, vx: Real, vy: Real) -> int:
         """+1 outside, -1 inside; a centre exactly on the wall is on the side that it moves to."""
-
-
-Seen = tuple[Shape, Real, Real]
-"""A shape, and a place as it is told from there."""
-
-
-def seen(shape: Shape, x: Real, y: Real, low: Low) -> Seen:
-    """A shape and the place (x, y) of a disk: relative to the shape's point where places have low parts."""
-    if low is None:
-        return shape, x, y
-    return shape.at_origin(), (x - shape.x) + low[0], (y - shape.y) + low[1]
