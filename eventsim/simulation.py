@@ -26,7 +26,7 @@ from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions, st
 from eventsim.runner.outcome import diagnosed, provenance_of, state_of
 from eventsim.runner.recording import MemorySink
 from eventsim.scene import Scene
-from eventsim.scene.numbers import FASTEST, LONGEST, number, point
+from eventsim.scene.numbers import SPEEDS, is_velocity, number, point
 from eventsim.scene.scene import difference
 from eventsim.scene.stage import stage_of
 
@@ -350,9 +350,8 @@ class Simulation:
         vx, vy = point(velocity, f"velocity of disk {disk}")
         if not 0 <= disk < len(self.scene.disks):
             raise EventsimError(f"disk {disk} does not exist; there are {len(self.scene.disks)}, counted from 0")
-        most = FASTEST if self.scene.gravity is None else LONGEST
-        if not (abs(vx) <= most and abs(vy) <= most):
-            raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: must be finite, and at most {most}")
+        if not is_velocity(vx, vy):
+            raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: {SPEEDS}")
         self._session.kick(disk, vx, vy)
         self._keep()
         if not self._in_memory:

@@ -41,8 +41,7 @@ def command(
                                   numbers of disks: all, with a speed, of mass inf, both, of mass 0
       species, species_count      the commonest {count, radius, mass}; how many there are
       radii, masses               [least, largest]
-      fastest, temperature        largest speed; mean m v^2/2 (null without a finite positive mass; a text where
-                                  it is beyond the range of floats)
+      fastest, temperature        largest speed; mean m v^2/2 (null without a finite positive mass)
       packing_fraction            of the area that disks can cover; null where nothing bounds it
       table                       [area, perimeter, pi A / P] of the region that the centre of a lone disk or of tracers
                                   sees; null where disks meet each other

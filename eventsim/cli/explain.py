@@ -92,8 +92,7 @@ def _motion(needs: Needs) -> str:
     text = "it moves" if needs.disks == 1 else text
     text += f", the fastest at {short(needs.fastest)}"
     if needs.temperature is not None and needs.moving >= MANY:
-        kt = needs.temperature if isinstance(needs.temperature, str) else short(needs.temperature)
-        text += f"; mean m v^2/2 is {kt}, the temperature kT of a gas"
+        text += f"; mean m v^2/2 is {short(needs.temperature)}, the temperature kT of a gas"
     return text
 
 

@@ -63,8 +63,7 @@ Keys of --json:
   doubts                    reasons against it, sentences
   quantities                name -> {{value, error, unit, doubt, theory, accuracy, deviation, source, fixed, blocks,
                             block_length}}; value null: no meaning, for the reason in doubt; error null: none can be
-                            given; fixed: conservation laws fix the value; deviation in standard errors; a unit
-                            "2^1800 energy" where the value would be no float in the scene's own
+                            given; fixed: conservation laws fix the value; deviation in standard errors
   speeds                    histograms: species, edges, density, error, theory, misfit
   correlations              lag, msd, msd_error, vacf, vacf_error; diffusion (slope of msd / 4 between half the lag
                             and the lag), diffusion_error

@@ -15,7 +15,6 @@ from eventsim.engines.reference.cells import images_of, plan
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.scene.disks import Disks, species_among
 from eventsim.scene.overlaps import pair_overlaps
-from eventsim.scene.pace import as_float, in_words, pace_of_scene, slowed
 from eventsim.scene.scene import touching_by_rounding
 from eventsim.scene.stage import stage_of
 from eventsim.scene.walls import parts_of, wall_names
@@ -96,7 +95,7 @@ class Needs:
     radii: tuple[float, float]
     masses: tuple[float, float]
     fastest: float
-    temperature: float | str | None
+    temperature: float | None
     packing_fraction: float | None
     table: tuple[float, float, float] | None
     domain: str
@@ -142,7 +141,7 @@ def needs_of(scene: Scene) -> Needs:
         radii=(float(disks.radius.min()), float(disks.radius.max())),
         masses=(float(disks.mass.min()), float(disks.mass.max())),
         fastest=float(speed.max()),
-        temperature=_temperature(disks, speed, pace_of_scene(scene)),
+        temperature=_temperature(disks, speed),
         packing_fraction=ensemble.packing_fraction,
         table=None if table is None else (table.area, table.perimeter, table.mean_free_path),
         domain=domain.kind,
@@ -177,13 +176,11 @@ def _species(disks: Disks) -> tuple[tuple[Species, ...], int]:
     return tuple(Species(*row) for row in rows), len(found.count)
 
 
-def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64], pace: int) -> float | str | None:
+def _temperature(disks: Disks, speed: np.typing.NDArray[np.float64]) -> float | None:
     massive = (disks.mass > 0.0) & np.isfinite(disks.mass)
     if not massive.any():
         return None
-    found = float(np.mean(disks.mass[massive] * slowed(speed[massive], pace) ** 2) / 2.0)
-    exact = as_float(found, 2 * pace)
-    return in_words(found, 2 * pace) if exact is None else exact
+    return float(np.mean(disks.mass[massive] * speed[massive] ** 2) / 2.0)
 
 
 def _gap_bits(stage: Stage) -> int | None:

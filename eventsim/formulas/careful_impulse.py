@@ -103,14 +103,9 @@ def _change(
 
 
 def _excess(px: float, py: float, u: float, w: float, e: float, f: float) -> float:
-    """s = p.(2v - p)/p^2, at speeds of about 1 where squares of these would be no floats; 0 where p is nothing beside v."""
+    """s = p.(2v - p)/p^2; 0 where the square of p is no float to the last bit."""
     square = px * px + py * py
     if not LEAST < square < MOST:
-        power = -math.frexp(max(abs(u), abs(w)))[1]
-        px, py, u, w = math.ldexp(px, power), math.ldexp(py, power), math.ldexp(u, power), math.ldexp(w, power)
-        e, f = math.ldexp(e, power), math.ldexp(f, power)
-        square = px * px + py * py
-    if not square > LEAST:
         return 0.0
     x, x_rest = two_sum(2.0 * u, -px)
     y, y_rest = two_sum(2.0 * w, -py)

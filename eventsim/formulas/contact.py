@@ -23,12 +23,6 @@ With 2**-12 a contact of a gas is no cheaper; with 2**-8, at a packing fraction 
 SMALLEST = 1e-290
 """What underflow may have taken from D."""
 
-SLOWEST, FASTEST = 2.0**-400, 2.0**400
-"""Between these, squares of speeds and of reaches that are not extreme themselves are floats that SMALLEST does not touch."""
-
-LARGEST_EXPONENT = 1024
-"""Of a float, as frexp counts."""
-
 
 def pair_delay(dx: Real, dy: Real, du: Real, dw: Real, reach: Real) -> Real:
     """The delay until two disks at relative position (dx, dy) with relative velocity (du, dw) are `reach` apart.
@@ -76,32 +70,6 @@ def screened_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float
     return NEVER if discriminant < -(DIGITS_LOST * bound + SMALLEST) or (du == 0.0 and dw == 0.0) else DOUBT
 
 
-def rescaled_pair_delay(dx: float, dy: float, du: float, dw: float, reach: float) -> float:
-    """The same for what is in doubt because squares of speeds leave the range of floats: at speeds of about 1.
-
-    They are scaled by a power of two, so that a scene whose velocities all are so has contact times of exactly its inverse.
-    DOUBT where that is no help.
-    """
-    power = _unusual(du, dw)
-    if power == 0:
-        return DOUBT
-    return _later(screened_pair_delay(dx, dy, math.ldexp(du, -power), math.ldexp(dw, -power), reach), -power)
-
-
-def _unusual(u: float, w: float) -> int:
-    """The power of two of a speed whose square is no float; 0 of every other."""
-    speed = max(abs(u), abs(w))
-    return 0 if SLOWEST < speed < FASTEST else math.frexp(speed)[1]
-
-
-def _later(delay: float, power: int) -> float:
-    """A delay times a power of two; NEVER where that is no float."""
-    if delay != delay:
-        return DOUBT
-    mantissa, exponent = math.frexp(delay)
-    return math.ldexp(mantissa, exponent + power) if exponent + power <= LARGEST_EXPONENT else NEVER
-
-
 def inner_delay(dx: Real, dy: Real, du: Real, dw: Real, radius: Real) -> Real:
     """The delay until a straight flight reaches a circle of the given radius from inside; NEVER at rest.
 
@@ -139,22 +107,12 @@ def screened_inner_delay(dx: float, dy: float, du: float, dw: float, radius: flo
     return (math.sqrt(discriminant) - b) / a
 
 
-def rescaled_inner_delay(dx: float, dy: float, du: float, dw: float, radius: float) -> float:
-    """As `rescaled_pair_delay`, from inside of a circle."""
-    power = _unusual(du, dw)
-    if power == 0:
-        return DOUBT
-    return _later(screened_inner_delay(dx, dy, math.ldexp(du, -power), math.ldexp(dw, -power), radius), -power)
-
-
 def circle_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy: Real, circle: Real) -> Real:
     """The delay until a disk in straight flight meets a fixed circle around (cx, cy) from outside; floats to the last bit."""
     if not is_float(x):
         return pair_delay(x - cx, y - cy, u, w, radius + circle)
     dx, dy, reach = x - cx, y - cy, radius + circle
     delay = screened_pair_delay(dx, dy, u, w, reach)
-    if delay != delay:
-        delay = rescaled_pair_delay(dx, dy, u, w, reach)
     if delay == delay:
         return delay
     return careful_pair_delay(x, y, u, w, 0.0, radius, cx, cy, 0.0, 0.0, 0.0, circle, 0.0, 0.0)
@@ -166,8 +124,6 @@ def leaving_delay(x: Real, y: Real, u: Real, w: Real, radius: Real, cx: Real, cy
         return inner_delay(x - cx, y - cy, u, w, circle - radius)
     dx, dy, inner = x - cx, y - cy, circle - radius
     delay = screened_inner_delay(dx, dy, u, w, inner)
-    if delay != delay:
-        delay = rescaled_inner_delay(dx, dy, u, w, inner)
     if delay == delay:
         return delay
     return careful_pair_delay(x, y, u, w, 0.0, -radius, cx, cy, 0.0, 0.0, 0.0, circle, 0.0, 0.0, -1.0)

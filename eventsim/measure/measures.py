@@ -23,7 +23,7 @@ class Measure:
         value: NaN where the quantity has no meaning or was not seen; then `doubt` says why.
         error: standard error; NaN where none can be given.
         theory: None where there is none, or where it does not hold.
-        unit: in the scene's units, or a power of two of these ("2^1800 energy") where the value is no float in them.
+        unit: in the scene's units.
         doubt: why value or error are missing, or what they do not say; None: nothing speaks against them.
         name: unique.
         accuracy: of the theory, absolute.
@@ -44,11 +44,6 @@ class Measure:
     blocks: int = 0
     block_length: float = math.nan
     fixed: bool = False
-
-    @property
-    def plain(self) -> bool:
-        """Whether the unit is one of the scene's, not a power of two of it."""
-        return not self.unit.startswith("2^")
 
     @property
     def deviation(self) -> float | None:

@@ -22,7 +22,6 @@ from eventsim.measure.ensemble import Ensemble, ensemble_of
 from eventsim.measure.gathered import measures_of
 from eventsim.measure.groups import Groups
 from eventsim.measure.measures import Measures
-from eventsim.measure.pace import at_full_pace, slowed_rows
 from eventsim.measure.profile import Profiler
 from eventsim.measure.records import Records
 from eventsim.measure.speeds import FASTEST
@@ -31,7 +30,6 @@ from eventsim.record.events import ROW, Floats, Kind, Rows
 from eventsim.record.provenance import Kick, Provenance
 from eventsim.replay.log import Told, stream_log
 from eventsim.scene.numbers import Point
-from eventsim.scene.pace import later, pace_of_scene, slowed_scene
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
 
@@ -75,7 +73,7 @@ class Meter:
         engine: str | None = None,
         corner: Point | None = None,
     ) -> None:
-        """Begin to measure a scene; very fast and very slow runs are measured at their pace (`scene.pace`).
+        """Begin to measure a scene.
 
         Args:
             scene: what is simulated.
@@ -91,13 +89,11 @@ class Meter:
         if discard is not None and not 0.0 <= discard < math.inf:
             raise EventsimError(f"discard = {discard!r}: must be a finite time, at least 0")
         self._steps = engine if engine in STEPPED else None
-        self._pace = pace_of_scene(scene, kicks)
-        self._epoch_length = math.ldexp(stage_of(scene).epoch_length, self._pace)
-        self.scene = scene = slowed_scene(scene, self._pace)
+        self.scene = scene
         self.ensemble = ensemble = ensemble_of(scene, bool(kicks))
         if not ensemble.movers.any():
             raise EventsimError("there is nothing to measure: no disk can be deflected (all have mass inf)")
-        self.discard = scene.equilibration if discard is None else later(discard, self._pace)
+        self.discard = scene.equilibration if discard is None else discard
         self._stage = stage = stage_of(scene, corner)
         movers = np.flatnonzero(ensemble.movers)
         watched = movers[np.linspace(0, len(movers) - 1, min(WATCHED, len(movers))).astype(np.int64)]
@@ -123,7 +119,6 @@ class Meter:
         while begin < len(rows):
             count = min(len(rows) - begin, BLOCK - self._filled)
             part = rows[begin : begin + count]
-            part = slowed_rows(part, self._pace) if self._pace else part
             self._block[self._filled : self._filled + count].view(WHOLE)[:] = part.view(WHOLE)
             self._filled, begin = self._filled + count, begin + count
             if self._filled == BLOCK:
@@ -138,9 +133,8 @@ class Meter:
         """
         if not duration > 0.0:
             raise EventsimError("there is nothing to measure: no time passes in this run")
-        length, duration = duration, math.ldexp(duration, self._pace)
         if self.discard is not None and self.discard >= duration:
-            raise EventsimError(f"discard = {math.ldexp(self.discard, -self._pace)!r}: the run lasts {length!r} only")
+            raise EventsimError(f"discard = {self.discard!r}: the run lasts {duration!r} only")
         if self._filled:
             self._take(self._block[: self._filled])
             self._filled = 0
@@ -167,11 +161,11 @@ class Meter:
         if self._steps is not None:
             rows = f"contacts are as the engine {self._steps} found them, at the ends of its steps"
             measures = replace(measures, doubts=(*measures.doubts, rows))
-        return at_full_pace(measures, self._pace) if self._pace else measures
+        return measures
 
     def _take(self, rows: Rows) -> None:
         """Take up a block of the meter's own."""
-        time = rows["epoch"] * self._epoch_length + rows["remainder"]
+        time = rows["epoch"] * self._stage.epoch_length + rows["remainder"]
         time = np.maximum.accumulate(np.maximum(time, self._time))  # logged times may step back by an ulp
         self._scales(float(time[-1]), len(rows))
         self._rows += len(rows)

@@ -52,9 +52,8 @@ NONE_SEEN, EXACT = "none in this run", "(exact)"
 def _row(one: Measure, shared: dict[str, int]) -> tuple[str, str, str, str, str]:
     digits = _digits(one.value, one.error)
     theory = "" if one.theory is None else f"{one.theory:.{digits}g}"
-    name = one.name if one.plain else f"{one.name} [{one.unit}]"
     words = "  ".join(text for text in (one.source, _remark(one, shared)) if text)
-    return name, value_with_error(one), theory, _difference(one), words
+    return one.name, value_with_error(one), theory, _difference(one), words
 
 
 def _remark(one: Measure, shared: dict[str, int]) -> str | None:

@@ -9,7 +9,6 @@ import numpy as np
 
 from eventsim.engines.base import Motion, Session
 from eventsim.record.events import Floats
-from eventsim.scene.pace import pace_of, slowed
 from eventsim.scene.stage import Stage
 
 
@@ -51,15 +50,14 @@ def _energy_change(session: Session, start: Motion, end: Motion) -> float | None
     if stage.law.loses_energy() or session.counters.kicks or moved:
         return None
     mass = _masses(stage)
-    pace = pace_of([stage.vx, stage.vy], stage.gravity is not None)
-    before, scale = _energy(stage, mass, start, pace)
-    after, _ = _energy(stage, mass, end, pace)
+    before, scale = _energy(stage, mass, start)
+    after, _ = _energy(stage, mass, end)
     return (after - before) / scale if scale > 0.0 else after - before
 
 
-def _energy(stage: Stage, mass: Floats, motion: Motion, pace: int) -> tuple[float, float]:
-    """(energy, sum of the magnitudes of its terms) at a pace; the potential energy counts from the corner."""
-    terms = [0.5 * mass * slowed(speed, pace) ** 2 for speed in (motion.vx, motion.vy)]
+def _energy(stage: Stage, mass: Floats, motion: Motion) -> tuple[float, float]:
+    """(energy, sum of the magnitudes of its terms); the potential energy counts from the corner."""
+    terms = [0.5 * mass * speed**2 for speed in (motion.vx, motion.vy)]
     if stage.gravity is not None:
         (gx, gy), (length_x, length_y) = stage.gravity, stage.period
         terms.append(-mass * gx * (motion.x + motion.wraps_x * (length_x or 0.0)))

@@ -151,3 +151,8 @@ def _floats(value: ArrayLike, key: str, problems: list[str]) -> Floats:
     except (TypeError, ValueError):
         problems.append(f"disks.{key}: every entry must be a number, and the rows must have equal lengths")
         return np.empty(0)
+
+
+def typical_speed(vx: Floats, vy: Floats) -> float:
+    """The root mean square of speeds, vx and vy of one shape."""
+    return float(np.sqrt(np.mean(vx**2 + vy**2)))

@@ -12,8 +12,9 @@ Point: TypeAlias = tuple[float, float]
 
 # Squares of lengths must be numbers too, neither infinite nor 0.
 SHORTEST, LONGEST = 1e-150, 1e150
-# Of speeds squares are never taken, but products with lengths, and sums of them.
-FASTEST = 1e290
+# Energies are squares of speeds, and their errors squares of these.
+SLOWEST, FASTEST = 1e-75, 1e75
+SPEEDS = f"must be two finite numbers, the larger {SLOWEST} to {FASTEST}, or both 0: else choose other units of length or time"
 LENGTHS = f"must be above 0 (at least {SHORTEST}) and at most {LONGEST}"
 RADII = f"must be at least 0 and at most {LONGEST} (0 is a point, no other below {SHORTEST})"
 
@@ -21,6 +22,11 @@ RADII = f"must be at least 0 and at most {LONGEST} (0 is a point, no other below
 def is_place(numbers: Iterable[float]) -> bool:
     """Whether lengths are finite and small enough to be squared."""
     return all(abs(value) <= LONGEST for value in numbers)
+
+
+def is_velocity(vx: float, vy: float) -> bool:
+    """Whether a disk may have that velocity: its square, and the square of that, are numbers."""
+    return vx == vy == 0.0 or SLOWEST <= max(abs(vx), abs(vy)) <= FASTEST
 
 
 def is_length(value: float) -> bool:

@@ -16,22 +16,13 @@ MOST, LARGEST = 1e300, 1e305
 """A number of which many can be added; one of which a few can, and whose inverse has all its digits."""
 
 
-LEAST = 1e-300
-"""A number, parts of which still have all their digits."""
-
-USUAL_LENGTHS = 1e-9, 1e9
-"""Between these, a speed times a length or over it has as many digits as the speed."""
-
-
 def scale_problems(disks: Disks, domain: Domain, walls: Sequence[Wall], gravity: Point | None) -> Iterator[str]:
     """Rules for numbers together, of parts of a scene whose numbers each keep their own.
 
-    Straight flights take no squares of speeds, parabolas do.
+    Parabolas take squares of lengths times accelerations.
     """
     extent, shortest = _lengths(disks, domain, walls)
-    speed = np.abs(disks.velocity).max(axis=1)
-    fastest = float(speed.max())
-    yield from _slow_problems(float(speed[speed > 0.0].min(initial=math.inf)), extent, shortest)
+    fastest = float(np.abs(disks.velocity).max())
     mass = disks.mass[(disks.mass > 0.0) & np.isfinite(disks.mass)]
     lightest, heaviest = (float(mass.min()), float(mass.max())) if len(mass) else (1.0, 0.0)
     if gravity is not None:
@@ -50,27 +41,12 @@ def scale_problems(disks: Disks, domain: Domain, walls: Sequence[Wall], gravity:
             f" most {LARGEST}"
         )
     momentum = heaviest * max(fastest, 1.0)
-    if not momentum <= MOST:
-        yield f"mass: {heaviest:g}, and the momentum of such a disk, must be at most {MOST}"
+    if not momentum * max(fastest, 1.0) <= MOST:
+        yield f"mass: {heaviest:g}, and the energy of such a disk, must be at most {MOST}"
     elif not momentum <= LARGEST * shortest:
         yield (
             f"mass: {heaviest:g}: the momentum of such a disk over the shortest length, {shortest:g}, must be at most"
             f" {LARGEST}"
-        )
-
-
-def _slow_problems(slowest: float, extent: float, shortest: float) -> Iterator[str]:
-    """Rules for the slowest disk that moves: what it exchanges in contacts is made of products with lengths, and quotients."""
-    least, most = USUAL_LENGTHS
-    if shortest < least and slowest * shortest < LEAST:
-        yield (
-            f"velocity: {slowest:g}, the slowest that is not 0, times the shortest length, {shortest:g}, must be at least"
-            f" {LEAST}"
-        )
-    if extent > most and slowest / extent < LEAST:
-        yield (
-            f"velocity: {slowest:g}, the slowest that is not 0, over the largest length, {extent:g}, must be at least"
-            f" {LEAST}"
         )
 
 

@@ -22,6 +22,8 @@ from eventsim.scene.numbers import (
     LONGEST,
     RADII,
     SHORTEST,
+    SLOWEST,
+    SPEEDS,
     Point,
     is_length,
     is_place,
@@ -186,14 +188,15 @@ def _period_problems(wall: Wall, domain: Domain) -> Iterator[str]:
 def number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -> list[str]:
     """Rules for the single numbers of each disk; marks in `sound` (N,) the disks that break one."""
     with np.errstate(invalid="ignore"):
+        speed = np.abs(disks.velocity).max(axis=1)
         rules = {
             "position": (
                 (np.abs(disks.position) <= LONGEST).all(axis=1),
                 f"must be two finite numbers, at most {LONGEST}",
             ),
             "velocity": (
-                (np.abs(disks.velocity) <= FASTEST).all(axis=1),
-                f"must be two finite numbers, at most {FASTEST}",
+                (speed == 0.0) | ((speed >= SLOWEST) & (speed <= FASTEST)),
+                SPEEDS,
             ),
             "radius": (
                 (disks.radius == 0.0) | ((disks.radius >= SHORTEST) & (disks.radius <= LONGEST)),

@@ -14,7 +14,6 @@ from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats, Rows, State, blank_rows
 from eventsim.replay.log import Told
 from eventsim.replay.passage import Moment, Passage
-from eventsim.scene.pace import pace_of_scene, slowed
 
 GLOW = 0.2
 """Seconds of the movie for which a contact lights up its disks."""
@@ -154,17 +153,9 @@ class News:
 
 def energy_of(log: Told, state: State) -> float:
     """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes.
-
-    In units of 4**pace, that of `pace_of_log`: usually 1.
-    """
-    velocity = slowed(state.velocity, pace_of_log(log))
+"""
     mass = np.where(np.isfinite(log.scene.disks.mass), log.scene.disks.mass, 0.0)
-    energy = 0.5 * float(mass @ (velocity**2).sum(axis=1))
+    energy = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
     if log.scene.gravity is not None:
         energy -= float(mass @ (state.position @ np.array(log.scene.gravity)))
     return energy
-
-
-def pace_of_log(log: Told) -> int:
-    """Return the pace of the run that a log tells."""
-    return pace_of_scene(log.scene, log.provenance.kicks)

@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 from eventsim.record.events import Floats
 from eventsim.replay.passage import Passage
 from eventsim.scene.names import plural
-from eventsim.scene.pace import in_words
 from eventsim.show import outlines
 from eventsim.show.colouring import colouring_of
-from eventsim.show.frames import Frame, pace_of_log
+from eventsim.show.frames import Frame
 from eventsim.show.images import disks_with_images, lines_with_images
 from eventsim.show.layout import DPI, Bars, layout
 from eventsim.show.output import as_written
@@ -92,11 +91,6 @@ class Picture:
         self._bars = Bars(self._figure, self.layout, self._palette, as_written(log.scene.name or ""))
         self._bars.draw_key(self._colouring.key)
         self._clock_format = _clock_format(times)
-        pace = pace_of_log(log)
-        self._energy_words = (
-            2 * pace,
-            2 if pace else 4,
-        )  # its power of two, and digits: 2e+543 takes the room of 1.603e-09
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -113,8 +107,7 @@ class Picture:
             self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
             self._axes.draw_artist(self._arrows)
         self._bars.clock.set_text(f"t = {frame.state.time:{self._clock_format}}")
-        energy = in_words(frame.energy, *self._energy_words)
-        self._bars.counter.set_text(f"{plural(frame.events, 'event')}   energy {energy}")
+        self._bars.counter.set_text(f"{plural(frame.events, 'event')}   energy {frame.energy:.4g}")
         for text in (self._bars.clock, self._bars.counter):
             self._figure.draw_artist(text)
         return np.asarray(self._canvas.buffer_rgba())

@@ -80,8 +80,6 @@ def _measured(plan: Plan, task: Task) -> Row:
         "doubts": "; ".join(measures.doubts) or None,
     }
     for quantity in measures.quantities:
-        if not quantity.plain:  # a column has one unit: what is no float in it is missing
-            continue
         if math.isnan(quantity.value):  # it has no meaning in this run
             continue
         row[quantity.name] = quantity.value

@@ -16,8 +16,8 @@ from eventsim.record.events import Floats
 from eventsim.runner.loop import run_scene
 from eventsim.runner.options import RunOptions
 from eventsim.scene import Scene
+from eventsim.scene.disks import typical_speed
 from eventsim.scene.gallery import gallery
-from eventsim.scene.pace import typical_speed
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.compare import Comparison, Tell, compare, truth_to_compare
 from eventsim.validation.competitors import COMPETITORS, Competitor

@@ -17,7 +17,7 @@ from eventsim.errors import EventsimError
 from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene import Scene
-from eventsim.scene.pace import typical_speed
+from eventsim.scene.disks import typical_speed
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.follow import Followed, follow, position_errors
 

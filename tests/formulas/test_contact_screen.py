@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from eventsim.formulas.contact import DIGITS_LOST, rescaled_pair_delay, screened_pair_delay
+from eventsim.formulas.contact import DIGITS_LOST, screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.real import NEVER
 
@@ -74,17 +74,3 @@ def test_exchange_changes_no_bit():
         dx, dy, du, dw = (rng.gauss(0, 3) for _ in range(4))
         one, other = screened_pair_delay(dx, dy, du, dw, 1.0), screened_pair_delay(-dx, -dy, -du, -dw, 1.0)
         assert one == other or (math.isnan(one) and math.isnan(other))
-
-
-@pytest.mark.parametrize("k", [-900, -401, 401, 900])
-def test_speeds_whose_squares_are_no_floats_are_scaled(k):
-    flight = -3.0, 0.3, 0.9, -0.1
-    delay = screened_pair_delay(*flight, 1.0)
-    scaled = rescaled_pair_delay(*flight[:2], *(math.ldexp(v, k) for v in flight[2:]), 1.0)
-    assert scaled == math.ldexp(delay, -k)
-
-
-def test_scaling_leaves_usual_speeds_and_doubts_near_contact_alone_and_ends_with_the_clock():
-    assert math.isnan(rescaled_pair_delay(-3.0, 0.3, 0.9, -0.1, 1.0))
-    assert math.isnan(rescaled_pair_delay(-1.0 - 1e-9, 0.0, 1e-200, 0.0, 1.0))
-    assert rescaled_pair_delay(-3.0, 0.3, 1e-310, 0.0, 1.0) == math.inf

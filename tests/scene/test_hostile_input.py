@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 import random
 from contextlib import suppress
 
@@ -114,17 +115,16 @@ def test_a_gas_beyond_all_measure_is_refused_at_once(key, value, words):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"velocity": [1e286, 0.0], "position": [1e20, 0.0]}, "times the largest length, 1e.20, must be at most"),
-        ({"velocity": [1e286, 0.0], "radius": 1e-20}, "over the shortest length, 1e-20, must be at most"),
-        ({"velocity": [1e200, 0.0], "mass": 1e200}, "mass: 1e.200, and the momentum of such a disk"),
-        ({"velocity": [1e200, 0.0], "mass": 1e80, "radius": 1e-30}, "momentum of such a disk over the shortest length"),
+        ({"velocity": [1e76, 0.0]}, "the larger 1e-75 to 1e.75, or both 0: else choose other units of length or time"),
+        ({"velocity": [0.0, -1e-76]}, "the larger 1e-75 to 1e.75, or both 0"),
+        ({"velocity": [math.nan, 0.0]}, "must be two finite numbers"),
+        ({"velocity": [1e70, 0.0], "mass": 1e200}, "mass: 1e.200, and the energy of such a disk"),
+        ({"velocity": [1e70, 0.0], "mass": 1e120, "radius": 1e-140}, "momentum of such a disk over the shortest length"),
         (
-            {"velocity": [1e140, 0.0], "position": [1e20, 0.0], "gravity": 1.0},
-            "times the largest length, 1e.20, .* gravity",
+            {"velocity": [1e70, 0.0], "position": [1e90, 0.0], "gravity": 1.0},
+            "times the largest length, 1e.90, .* gravity",
         ),
-        ({"velocity": [1e160, 0.0], "gravity": 1.0}, "velocity: 1e.160, .* where there is gravity"),
-        ({"velocity": [1e100, 0.0], "mass": 1e200, "gravity": 1.0}, "energy of such a disk"),
-        ({"velocity": [1e295, 0.0]}, "must be two finite numbers, at most"),
+        ({"velocity": [1e70, 0.0], "mass": 1e200, "gravity": 1.0}, "energy of such a disk"),
         ({"mass": 1e305}, "mass: 1e"),
         ({"mass": 5e-324}, "mass = 5e-324"),
     ],
@@ -137,10 +137,9 @@ def test_products_that_are_no_numbers_are_refused_by_name(changes, words):
 
 
 def test_a_light_disk_that_heavy_ones_could_drive_beyond_all_numbers_is_refused():
-    disks = [
-        {"position": [float(x), 0.0], "radius": 1.0, "mass": 10.0 ** (x * 9), "velocity": [1e288, 0.0]} for x in (-4, 0)
-    ]
-    with pytest.raises(es.SceneError, match=r"velocity: 1.41421e\+306, the most that a disk can come to"):
+    disk = {"radius": 1.0, "velocity": [1e75, 0.0]}
+    disks = [disk | {"position": [0.0, 0.0], "mass": 1e-300}, disk | {"position": [9.0, 0.0], "mass": 1e165}]
+    with pytest.raises(es.SceneError, match=r"velocity: 4.47214e\+307, the most that a disk can come to"):
         scene_from_dict({"domain": {"kind": "open"}, "disk": disks})
 
 
@@ -233,25 +232,14 @@ def test_a_row_at_the_end_of_time_is_refused_at_once(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("speed", "unit", "words"),
-    [
-        (1e-250, 1e-101, "velocity: 1e-250, the slowest that is not 0, times the shortest length, 1e-101, must be at least"),
-        (1e-250, 1e100, "velocity: 1e-250, the slowest that is not 0, over the largest length, 5e.100, must be at least"),
-        (1e-190, 1e-101, None),
-        (1e-150, 1e100, None),
-    ],
+    ("speed", "unit"), [(1e-75, 1e-101), (1e-75, 1e100), (1e75, 1e-101), (1e75, 1e100)]
 )
-def test_contacts_whose_numbers_would_vanish_are_refused_and_no_others(speed, unit, words):
+def test_contacts_at_the_ends_of_speeds_and_lengths_are_right(speed, unit):
     disks = [
         {"position": [-5.0 * unit, 0.0], "velocity": [speed, 0.0], "radius": unit},
         {"position": [2.5 * unit, 0.5 * unit], "velocity": [0.0, 0.0], "radius": unit},
     ]
-    tables = {"domain": {"kind": "open"}, "disk": disks}
-    if words is not None:
-        with pytest.raises(es.SceneError, match=words):
-            scene_from_dict(tables)
-        return
-    log = es.simulate(scene_from_dict(tables), events=1, engine="reference", log=True).log
+    log = es.simulate(scene_from_dict({"domain": {"kind": "open"}, "disk": disks}), events=1, engine="reference", log=True).log
     assert log.vxb[0] == pytest.approx(0.9375 * speed, rel=1e-12)
 
 

@@ -20,7 +20,7 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.memory import real, word
-from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
+from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
@@ -110,7 +110,7 @@ def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, unlike):
         return delay
     if ax is not None:
         return careful_pair_delay(dx, dy, du, dw, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
-    return _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ri + rj)
+    return _careful_delay(m, rules, i, j, kx, ky)
 
 
 @inline
@@ -124,11 +124,8 @@ def _touch(m, i, j, kx, ky, still):
 
 
 @part
-def _careful_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, reach):
+def _careful_delay(m, rules, i, j, kx, ky):
     """The delay of a pair in straight flight from the two flights themselves, right to the last bit."""
-    delay = rescaled_pair_delay(dx, dy, du, dw, reach)
-    if delay == delay:
-        return delay
     flights = flight_of(m, i) + flight_of(m, j) + shifts(rules, kx, ky)
     return careful_pair_delay(*flights)
 

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.state import EngineState
-from eventsim.formulas.contact import rescaled_pair_delay, screened_pair_delay
+from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
@@ -155,9 +155,6 @@ class Predictor:
         s, ri, rj = self._state, self._radius[i], self._radius[j]
         if self._falls:
             return careful_pair_delay(*apart, 0.0, ri, 0.0, 0.0, 0.0, 0.0, 0.0, rj, 0.0, 0.0)
-        delay = rescaled_pair_delay(*apart, ri + rj)
-        if delay == delay:
-            return delay
         return careful_pair_delay(
             *(s.x[i], s.y[i], s.vx[i], s.vy[i], s.t[i], ri),
             *(s.x[j], s.y[j], s.vx[j], s.vy[j], s.t[j], rj),

@@ -9,7 +9,7 @@ from eventsim.errors import EventsimError
 from eventsim.formulas.clock import FIRST_WINDOW, MOST_EPOCHS, next_window, window_length
 from eventsim.record.events import Rows
 from eventsim.record.times import clock_times
-from eventsim.scene.pace import typical_speed
+from eventsim.scene.disks import typical_speed
 from eventsim.scene.stage import Stage
 
 GRID_SLACK = 1e-9

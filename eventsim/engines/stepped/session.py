@@ -20,7 +20,6 @@ from eventsim.engines.stepped.found import BUFFER, MOVED, ROW_COUNT, Found, noth
 from eventsim.engines.stepped.ground import ground_of
 from eventsim.engines.trajectory import Trajectory
 from eventsim.errors import EventsimError
-from eventsim.formulas.contact import FASTEST, SLOWEST
 from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import ROW, Kind, Rows, blank_rows
 from eventsim.scene.stage import Stage
@@ -41,12 +40,6 @@ class SteppedSession(Session):
     name = "stepped engine"
 
     def __init__(self, stage: Stage, keep_rows: bool = True, dt: float | None = None) -> None:
-        fastest = max(float(np.abs(stage.vx).max()), float(np.abs(stage.vy).max()))
-        if fastest > 0.0 and stage.gravity is None and not SLOWEST < fastest < FASTEST:
-            raise EventsimError(
-                f"{self.name} cannot simulate this scene: it takes squares of speeds, and that of {fastest:.3g} is beyond the"
-                " range of floats"
-            )
         super().__init__(stage)
         self.dt = usual_step(stage) if dt is None else float(dt)
         if not 0.0 < self.dt < math.inf:

@@ -10,8 +10,6 @@ from typing import NamedTuple
 from eventsim.formulas.contact import (
     inner_delay,
     pair_delay,
-    rescaled_inner_delay,
-    rescaled_pair_delay,
     screened_inner_delay,
     screened_pair_delay,
 )
@@ -366,8 +364,6 @@ def _outer_delay(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real)
         return pair_delay(dx, dy, vx, vy, reach + shape.low)
     if shape.radius <= FLAT * shape.size:
         delay = screened_pair_delay(dx, dy, vx, vy, reach)
-        if delay != delay:
-            delay = rescaled_pair_delay(dx, dy, vx, vy, reach)
         if delay == delay:
             return delay
     more = radius + shape.low
@@ -383,8 +379,6 @@ def _inner_delay(shape: Arc, x: Real, y: Real, vx: Real, vy: Real, radius: Real)
         return inner_delay(dx, dy, vx, vy, inner + shape.low)
     if shape.radius <= FLAT * shape.size:
         delay = screened_inner_delay(dx, dy, vx, vy, inner)
-        if delay != delay:
-            delay = rescaled_inner_delay(dx, dy, vx, vy, inner)
         if delay == delay:
             return delay
     less = shape.low - radius

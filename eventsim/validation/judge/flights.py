@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
-from eventsim.scene.pace import typical_speed
+from eventsim.scene.disks import typical_speed
 from eventsim.scene.stage import Stage
 
 Mask: TypeAlias = NDArray[np.bool_]
