@@ -102,6 +102,13 @@ class Stage:
         """The distance of an image (kx, ky) of the domain, along x and y."""
         return periods(image[0], self.period[0]), periods(image[1], self.period[1])
 
+    def nearest(self, d: Floats) -> Floats:
+        """Differences (..., 2) of any two places to their nearest images."""
+        for axis, length in enumerate(self.period):
+            if length is not None:
+                d[..., axis] -= length * np.round(d[..., axis] / length)
+        return d
+
     def boundary(self, surface: int) -> Boundary | None:
         """The boundary of the domain with this number among all surfaces; None of a feature's number."""
         return self.boundaries[surface] if surface < len(self.boundaries) else None

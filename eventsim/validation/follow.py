@@ -102,10 +102,7 @@ def advanced(session: Session, stop: Stop, patience_s: float, most_rows: int) ->
 
 def distances(stage: Stage, one: Floats, other: Floats) -> Floats:
     """How far disks are apart, length, (..., n), for positions (..., n, 2) on the scene's axes; nearest images."""
-    d = one - other
-    for axis, length in enumerate(stage.period):
-        if length is not None:
-            d[..., axis] -= length * np.round(d[..., axis] / length)
+    d = stage.nearest(one - other)
     return np.hypot(d[..., 0], d[..., 1])
 
 

@@ -28,6 +28,7 @@ from eventsim.formulas import (
     digits,
     doubt,
     expansion,
+    image,
     impulse,
     motion,
     parabola,
@@ -241,7 +242,7 @@ def _register(module: ModuleType, **options: Any) -> None:
             register_jitable(**options)(function)
 
 
-for _module in (motion, contact, doubt, impulse):
+for _module in (motion, contact, doubt, image, impulse):
     _register(_module, forceinline=True, **_PART)
 _shapes = [sys.modules[shape.__module__] for shape in SHAPES]
 for _module in (

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from eventsim.engines.reference.calendar import CONTACT, Calendar
 from eventsim.engines.reference.predict import Predictor
+from eventsim.formulas.image import nearest_image
 
 if TYPE_CHECKING:
     from eventsim.engines.reference.loop import ReferenceSession
@@ -31,11 +32,8 @@ def _check_overlaps(session: ReferenceSession) -> None:
         for j in range(i + 1, state.n):
             if mass is not None and mass[i] == mass[j] and mass[i] in (0.0, math.inf):
                 continue
-            dx, dy = xi - places[j][0], yi - places[j][1]
-            if stage.period[0] is not None:
-                dx -= stage.period[0] * round(dx / stage.period[0])
-            if stage.period[1] is not None:
-                dy -= stage.period[1] * round(dy / stage.period[1])
+            dx = nearest_image(xi - places[j][0], stage.period[0])
+            dy = nearest_image(yi - places[j][1], stage.period[1])
             reach = radius[i] + radius[j]
             if math.hypot(dx, dy) < reach * (1.0 - DEEPEST):
                 raise AssertionError(f"disks {i} and {j} overlap: distance {math.hypot(dx, dy)!r} < {reach!r}")

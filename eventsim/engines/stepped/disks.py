@@ -79,14 +79,3 @@ def wrap_along(x: Floats, wraps: NDArray[np.int64], length: float) -> None:
             if x[i] >= length:  # -1e-17 + 1.0
                 x[i] = 0.0
                 wraps[i] += 1
-
-
-@part
-def shortest(d: float, length: float) -> float:
-    """The nearest image of a difference of coordinates; length inf: there is one image only."""
-    half = 0.5 * length
-    if d > half:
-        return d - length
-    if d < -half:
-        return d + length
-    return d

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.stepped.compiled import kernel
-from eventsim.engines.stepped.disks import Moving, fastest, shortest
+from eventsim.engines.stepped.disks import Moving, fastest
 from eventsim.engines.stepped.found import MOVED, Found
 from eventsim.engines.stepped.ground import Ground
+from eventsim.formulas.image import nearest_image
 
 SKIN = 0.35
 """In mean diameters: how much farther than their reach listed disks may be; more makes longer lists, less makes more of them."""
@@ -84,8 +85,8 @@ def fill_all(m: Moving, ground: Ground, skin: float, pairs: NDArray[np.int64]) -
     count = 0
     for i in range(len(m.x)):
         for j in range(i + 1, len(m.x)):
-            dx = shortest(m.x[i] - m.x[j], ground.length_x)
-            dy = shortest(m.y[i] - m.y[j], ground.length_y)
+            dx = nearest_image(m.x[i] - m.x[j], ground.length_x)
+            dy = nearest_image(m.y[i] - m.y[j], ground.length_y)
             reach = m.radius[i] + m.radius[j] + skin
             if dx * dx + dy * dy < reach * reach:
                 if count < len(pairs):
@@ -130,8 +131,8 @@ def fill_from_cells(
                     continue
                 j = cells[other_column + columns * other_row]
                 while j >= 0:
-                    dx = shortest(m.x[i] - m.x[j], ground.length_x)
-                    dy = shortest(m.y[i] - m.y[j], ground.length_y)
+                    dx = nearest_image(m.x[i] - m.x[j], ground.length_x)
+                    dy = nearest_image(m.y[i] - m.y[j], ground.length_y)
                     reach = m.radius[i] + m.radius[j] + skin
                     if dx * dx + dy * dy < reach * reach:
                         if count < len(pairs):

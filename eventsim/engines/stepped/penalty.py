@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from eventsim.engines.stepped import PenaltyOptions
 from eventsim.engines.stepped.compiled import kernel, part
-from eventsim.engines.stepped.disks import Moving, fastest, shortest, wrap
+from eventsim.engines.stepped.disks import Moving, fastest, wrap
 from eventsim.engines.stepped.found import (
     DEEPEST,
     EVENTS,
@@ -40,6 +40,7 @@ from eventsim.engines.stepped.ground import Ground, nearest
 from eventsim.engines.stepped.neighbours import Neighbours
 from eventsim.engines.stepped.session import SteppedSession
 from eventsim.errors import EventsimError
+from eventsim.formulas.image import nearest_image
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 
@@ -227,8 +228,8 @@ def push_pairs(
     count = 0
     for p in range(len(pairs)):
         i, j = pairs[p, 0], pairs[p, 1]
-        dx = shortest(m.x[i] - m.x[j], ground.length_x)
-        dy = shortest(m.y[i] - m.y[j], ground.length_y)
+        dx = nearest_image(m.x[i] - m.x[j], ground.length_x)
+        dy = nearest_image(m.y[i] - m.y[j], ground.length_y)
         reach = m.radius[i] + m.radius[j]
         distance2 = dx * dx + dy * dy
         if 0.0 < distance2 < reach * reach and meet(m.mass[i], m.mass[j]):

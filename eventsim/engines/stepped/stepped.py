@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from eventsim.engines.stepped import FixedStepOptions
 from eventsim.engines.stepped.compiled import kernel, part
-from eventsim.engines.stepped.disks import Moving, fastest, fly, shortest, wrap
+from eventsim.engines.stepped.disks import Moving, fastest, fly, wrap
 from eventsim.engines.stepped.found import (
     DEEPEST,
     EVENTS,
@@ -37,6 +37,7 @@ from eventsim.engines.stepped.found import (
 from eventsim.engines.stepped.ground import Ground, nearest
 from eventsim.engines.stepped.neighbours import Neighbours
 from eventsim.engines.stepped.session import SteppedSession
+from eventsim.formulas.image import nearest_image
 from eventsim.formulas.impulse import mass_fractions, pair_update, wall_update
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
@@ -154,8 +155,8 @@ def overlaps(
     length_x, length_y = ground.length_x, ground.length_y
     for p in range(len(pairs)):
         i, j = pairs[p, 0], pairs[p, 1]
-        dx = shortest(x[i] - x[j], length_x)
-        dy = shortest(y[i] - y[j], length_y)
+        dx = nearest_image(x[i] - x[j], length_x)
+        dy = nearest_image(y[i] - y[j], length_y)
         reach = radius[i] + radius[j]
         distance2 = dx * dx + dy * dy
         if distance2 < reach * reach and meet(m.mass[i], m.mass[j]):
@@ -181,8 +182,8 @@ def overlaps(
 @part
 def time_of_pair(m: Moving, ground: Ground, i: int, j: int) -> float:
     """How long ago an overlapping pair touched: the positive root of |d - u s| = reach; inf where it never did."""
-    dx = shortest(m.x[i] - m.x[j], ground.length_x)
-    dy = shortest(m.y[i] - m.y[j], ground.length_y)
+    dx = nearest_image(m.x[i] - m.x[j], ground.length_x)
+    dy = nearest_image(m.y[i] - m.y[j], ground.length_y)
     du, dw = m.vx[i] - m.vx[j], m.vy[i] - m.vy[j]
     reach = m.radius[i] + m.radius[j]
     a, b = du * du + dw * dw, dx * du + dy * dw
@@ -210,8 +211,8 @@ def resolve_pair(
     """Resolve a pair if it still overlaps and approaches; located: at the instant of touch, then back to now."""
     back = 0.0
     if locate:
-        dx = shortest(m.x[i] - m.x[j], ground.length_x)
-        dy = shortest(m.y[i] - m.y[j], ground.length_y)
+        dx = nearest_image(m.x[i] - m.x[j], ground.length_x)
+        dy = nearest_image(m.y[i] - m.y[j], ground.length_y)
         reach = m.radius[i] + m.radius[j]
         if not dx * dx + dy * dy < reach * reach:
             return  # an earlier contact of this step has parted them
@@ -219,8 +220,8 @@ def resolve_pair(
         back = back if back <= dt else 0.0
         fly_back(m, ground, i, back)
         fly_back(m, ground, j, back)
-    dx = shortest(m.x[i] - m.x[j], ground.length_x)
-    dy = shortest(m.y[i] - m.y[j], ground.length_y)
+    dx = nearest_image(m.x[i] - m.x[j], ground.length_x)
+    dy = nearest_image(m.y[i] - m.y[j], ground.length_y)
     share_i, share_j = mass_fractions(m.mass[i], m.mass[j])
     m.vx[i], m.vy[i], m.vx[j], m.vy[j], q = pair_update(
         dx, dy, m.vx[i], m.vy[i], m.vx[j], m.vy[j], share_i, share_j, restitution

@@ -26,8 +26,8 @@ from eventsim.measure.tangent import Passed, Tangent
 from eventsim.measure.trust import smallest_reach
 from eventsim.record.events import Floats, Kind
 from eventsim.replay.log import Told
+from eventsim.scene.disks import typical_speed
 from eventsim.scene.names import plural
-from eventsim.scene.pace import typical_speed
 from eventsim.scene.scene import Scene
 
 SEED = 1

@@ -66,10 +66,7 @@ def gaps_at_contact(motion: Motion) -> Iterator[tuple[Floats, Floats]]:
     radius = motion.log.scene.disks.radius
     for block in motion.log.blocks():
         rows = block[block["kind"] == Kind.PAIR]
-        apart = [rows["xa"] - rows["xb"], rows["ya"] - rows["yb"]]
-        for axis, length in enumerate(motion.stage.period):
-            if length is not None:
-                apart[axis] = apart[axis] - length * np.round(apart[axis] / length)
+        apart = motion.stage.nearest(np.stack([rows["xa"] - rows["xb"], rows["ya"] - rows["yb"]], axis=-1))
         reach = radius[rows["a"]] + radius[rows["b"]]
         wide = reach > 0.0  # two points have no reach to measure by
-        yield rows["time"][wide], (np.hypot(*apart) - reach)[wide] / reach[wide]
+        yield rows["time"][wide], (np.hypot(*apart.T) - reach)[wide] / reach[wide]

@@ -132,10 +132,7 @@ def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | No
     mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass
     pull = np.where(np.isfinite(mass)[:, None], np.array(stage.gravity or (0.0, 0.0)), 0.0)
     dt = np.diff(times)[:, None, None]
-    way = np.diff(place, axis=0)
-    for axis, length in enumerate(stage.period):
-        if length is not None:
-            way[..., axis] -= length * np.round(way[..., axis] / length)
+    way = stage.nearest(np.diff(place, axis=0))
     place = np.concatenate([place[:1], place[:1] + np.cumsum(way, axis=0)])
     mean = way / dt
     speed = typical_speed(mean[..., 0], mean[..., 1]) or 1.0

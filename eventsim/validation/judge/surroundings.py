@@ -40,11 +40,7 @@ class Surroundings:
 
     def apart(self, one: Floats, other: Floats) -> Floats:
         """The vectors (..., 2) from `one` to the nearest images of `other`."""
-        d = other - one
-        for axis, length in enumerate(self.stage.period):
-            if length is not None:
-                d[..., axis] -= length * np.round(d[..., axis] / length)
-        return d
+        return self.stage.nearest(other - one)
 
     def gap(self, a: int, b: int, place_a: Floats, place_b: Floats) -> float:
         """The least gap of two disks on straight ways through places (K, 2) at the same times: negative where they overlap."""
