@@ -12,7 +12,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.readers import read_samples
-from eventsim.readers.contacts import Told, read_contacts, told_from
+from eventsim.readers.contacts import ToldContacts, read_contacts, told_from
 from eventsim.readers.samples import Samples, checked
 from eventsim.scene import Scene
 from eventsim.validation.compare import Comparison, compare
@@ -145,7 +145,7 @@ def _samples(trajectory: Source, dt: float | None) -> Samples:
     return checked(Samples("the arrays", times, arrays[0][..., :2], velocity))
 
 
-def _contacts(contacts: Source | ArrayLike, n: int) -> Told:
+def _contacts(contacts: Source | ArrayLike, n: int) -> ToldContacts:
     """Contacts from a file or from rows."""
     if isinstance(contacts, str | PathLike):
         return read_contacts(Path(contacts), n)

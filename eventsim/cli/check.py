@@ -94,7 +94,7 @@ def command(
     estimate = None
     if horizon:
         from eventsim.engines.base import Stop
-        from eventsim.validation.horizon import horizon as horizon_of
+        from eventsim.validation.shadows import horizon as horizon_of
 
         estimate = horizon_of(chosen, Stop(chosen.until, chosen.events))
     if as_json:

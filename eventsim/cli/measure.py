@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from eventsim.measure import Measures
     from eventsim.measure.found import Columns, Found
     from eventsim.measure.structure import Structure
-    from eventsim.replay.log import Told
+    from eventsim.replay.log import AnyLog
 
 
 HELP = """Measure the run that LOG tells, or of SCENE, simulated now without keeping a log.
@@ -152,7 +152,7 @@ def measured(
     profile: str | None,
     logged: bool,
     quiet: bool,
-) -> tuple[Measures, Structure | None, Told | None]:
+) -> tuple[Measures, Structure | None, AnyLog | None]:
     """The measures of a log file, or of a scene that is simulated now; the structure of its last state; its log, if `logged`."""
     if structure:
         from eventsim.measure.structure import structure_of

@@ -177,7 +177,7 @@ def command(
     estimate = None
     if horizon:
         from eventsim.engines.base import Stop
-        from eventsim.validation.horizon import horizon as horizon_of
+        from eventsim.validation.shadows import horizon as horizon_of
 
         estimate = horizon_of(
             run.scene, Stop(events=run.counters.events) if run.stopped == "events" else Stop(run.time)

@@ -14,7 +14,7 @@ from eventsim.cli.output import INTERRUPTED, say
 from eventsim.errors import SceneError, did_you_mean
 
 if TYPE_CHECKING:
-    from eventsim.replay.log import Told
+    from eventsim.replay.log import AnyLog
     from eventsim.run import Run
     from eventsim.scene import Scene
 
@@ -51,7 +51,7 @@ def log_of(
     until: float | None,
     events: int | None,
     quiet: bool,
-) -> Told:
+) -> AnyLog:
     """Return the log that is meant: one in a file, which stays there if it is long, or that of a scene simulated now.
 
     Raises click.UsageError where options of a scene are given with a log, or nothing says when a scene stops.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from eventsim.measure.trust import Trust
     from eventsim.run import Run
     from eventsim.runner.outcome import Outcome
-    from eventsim.validation.horizon import Horizon
+    from eventsim.validation.shadows import Horizon
 
 
 WORTH_A_WORD, MOMENT = 0.01, 1e-3

@@ -22,7 +22,7 @@ from eventsim.measure.sides import Line, Side
 from eventsim.record.events import Column, Floats, Kind, Rows
 from eventsim.record.places import on_scene_axes
 from eventsim.replay.clock_windows import stage_of_log
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.scene.stage import Stage
 from eventsim.scene.walls import Ellipse, parts_of
 
@@ -121,12 +121,12 @@ class BoundaryMap:
             sine = np.where(nearer, (ny * vx - nx * vy) / np.where(speed > 0.0, speed, 1.0), sine)
         return Contacts(met["event"], np.where(first, met["a"], met["b"]), met["time"], arc, sine)
 
-    def all_contacts(self, log: Told) -> Iterator[Contacts]:
+    def all_contacts(self, log: AnyLog) -> Iterator[Contacts]:
         """Yield the contacts of a log, block by block."""
         return (self.contacts(rows) for rows in log.blocks())
 
 
-def boundary_map(log: Told) -> BoundaryMap | str:
+def boundary_map(log: AnyLog) -> BoundaryMap | str:
     """Return the boundary map of the table of a log; where there is none, why, a clause."""
     scene = log.scene
     ensemble = ensemble_of(scene, bool(log.provenance.kicks))

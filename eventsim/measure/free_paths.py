@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from eventsim.record.events import Floats
-from eventsim.replay.flights import FlightTable
+from eventsim.replay.flight_table import FlightTable
 
 
 def free_paths(tables: Iterable[FlightTable], n: int) -> Iterator[Floats]:

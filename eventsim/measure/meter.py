@@ -28,7 +28,7 @@ from eventsim.measure.speeds import FASTEST
 from eventsim.measure.walls import described_walls
 from eventsim.record.events import ROW, Floats, Kind, Rows
 from eventsim.record.provenance import Kick, Provenance
-from eventsim.replay.log import Told, stream_log
+from eventsim.replay.log import AnyLog, stream_log
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
@@ -292,7 +292,7 @@ def _sums(scene: Scene, stage: Stage, ensemble: Ensemble, plan: sums.Plan, watch
     )
 
 
-def measure(log: Told, discard: float | None = None, profile: str | None = None) -> Measures:
+def measure(log: AnyLog, discard: float | None = None, profile: str | None = None) -> Measures:
     """Measure the run that a log tells, block by block; a compact log is expanded first.
 
     discard, profile: as of Meter.  Raises EventsimError where there is nothing to measure, LogError for a log without an end.

@@ -1,4 +1,4 @@
-"""What other programs wrote: where disks are at times, and which contacts an engine tells of.
+"""Readers of what other programs wrote: places of disks at times, and contacts.
 
     samples    what all readers give: positions at times
     columns    tables of named columns, one row for each disk and time, or one for each time

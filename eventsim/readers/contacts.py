@@ -23,7 +23,7 @@ CONTACTS = ("pair", "wall")
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class ToldContacts:
     """Contacts in order of time: time (K,), a and b (K,), a < b or b = -1; wall: (K,) names, empty where none is told."""
 
     time: Floats
@@ -31,19 +31,19 @@ class Told:
     b: NDArray[np.int64]
     wall: tuple[str, ...]
 
-    def since(self, time: float) -> Told:
+    def since(self, time: float) -> ToldContacts:
         """Those after a time."""
         first = int(np.searchsorted(self.time, time, side="right"))
-        return Told(self.time[first:], self.a[first:], self.b[first:], self.wall[first:])
+        return ToldContacts(self.time[first:], self.a[first:], self.b[first:], self.wall[first:])
 
 
-def read_contacts(path: Path, n: int) -> Told:
+def read_contacts(path: Path, n: int) -> ToldContacts:
     """The contacts between n disks and with walls; EventsimError, naming the file, for what is no such table."""
     with told_as(path, EventsimError, "does not tell contacts"):
         return _told(read_columns(path), path, n)
 
 
-def _told(named: Columns, path: Path, n: int) -> Told:
+def _told(named: Columns, path: Path, n: int) -> ToldContacts:
     missing = [name for name in ("time", "a", "b") if name not in named]
     if missing:
         raise EventsimError(f"{path}: lacks {', '.join(missing)}: contacts have the columns time, a, b (-1: a wall), wall")
@@ -62,7 +62,7 @@ def _told(named: Columns, path: Path, n: int) -> Told:
     return told_from(time, a, np.where(np.isfinite(b), b, -1.0), wall, n, str(path))
 
 
-def told_from(time: Floats, a: Floats, b: Floats, wall: Sequence[str], n: int, source: str) -> Told:
+def told_from(time: Floats, a: Floats, b: Floats, wall: Sequence[str], n: int, source: str) -> ToldContacts:
     """Contacts from columns; EventsimError where they name disks that there are not."""
     if not np.all(np.isfinite(time)):
         row = int(np.argmin(np.isfinite(time)))
@@ -77,7 +77,7 @@ def told_from(time: Floats, a: Floats, b: Floats, wall: Sequence[str], n: int, s
     low, high = np.minimum(a, b), np.maximum(a, b)
     alone = b < 0
     order = np.argsort(time, kind="stable")
-    return Told(
+    return ToldContacts(
         time[order],
         np.where(alone, a, low)[order].astype(np.int64),
         np.where(alone, -1, high)[order].astype(np.int64),

@@ -12,7 +12,7 @@ from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, State
 from eventsim.record.files.atomic import atomic_write
-from eventsim.replay.flights import Indices
+from eventsim.replay.flight_table import Indices
 from eventsim.scene import Scene
 from eventsim.scene.disks import species_among
 

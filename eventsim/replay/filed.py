@@ -9,7 +9,7 @@ from pathlib import Path
 from eventsim.record.events import Rows, unchangeable
 from eventsim.record.files import open_log
 from eventsim.record.provenance import Provenance
-from eventsim.replay.log import Told, load_log, stream_log
+from eventsim.replay.log import AnyLog, load_log, stream_log
 from eventsim.scene import Scene
 
 MOST_HELD = 1_000_000
@@ -52,7 +52,7 @@ class FiledLog:
         self._held, self._verified, self._rows = held, True, count
 
 
-def open_filed(path: str | PathLike[str]) -> Told:
+def open_filed(path: str | PathLike[str]) -> AnyLog:
     """Return the log in a file as it lies there; a compact one is read.
 
     Raises LogError with a sentence where it is no log.

@@ -9,7 +9,7 @@ import numpy as np
 from eventsim.errors import LogError
 from eventsim.formulas.motion import position
 from eventsim.record.events import Floats, State
-from eventsim.replay.flights import FlightTable, Indices, flights
+from eventsim.replay.flight_table import FlightTable, Indices, flights
 from eventsim.replay.motion import Motion
 
 SURE = 0.25

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SAVE_BLOCK = 1 << 16
 
 
-class Told(Protocol):
+class AnyLog(Protocol):
     """A log whose rows can be gone through any number of times: in memory, or in a file.
 
     path: the file, None where it comes from a run.

@@ -13,7 +13,7 @@ from eventsim.record.events import Floats, State
 from eventsim.record.places import on_scene_axes
 from eventsim.replay.clock_windows import Changes, Windows, stage_of_log, windows_of
 from eventsim.replay.flight import Flights, fly
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.replay.runs import Runs
 from eventsim.scene.stage import Stage
 
@@ -24,7 +24,7 @@ ENDLESS = ("quiet",)
 class Motion:
     """The motion that the rows of a full log tell: where its clock stands, and how flights are looked at."""
 
-    def __init__(self, log: Told, runs: Runs, begin: Callable[[], Changes]) -> None:
+    def __init__(self, log: AnyLog, runs: Runs, begin: Callable[[], Changes]) -> None:
         """runs, begin: of its rows, see `clock_windows.windows_of`.  Raises LogError where they fit no clock."""
         self.log = log
         self.stage: Stage = stage_of_log(log.provenance)

@@ -13,7 +13,7 @@ from eventsim.errors import LogError
 from eventsim.record.events import Column, Floats, Rows, State, blank_rows
 from eventsim.replay.clock_windows import Changes, Windows, changes_in
 from eventsim.replay.flight import Flights, start_flights
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.replay.motion import Motion, pull_of
 from eventsim.replay.runs import Runs
 
@@ -28,7 +28,7 @@ class Moment(NamedTuple):
 class Passage(Motion):
     """The motion that a full log tells, in memory that its length does not change; bit for bit that of `Replay`."""
 
-    def __init__(self, log: Told) -> None:
+    def __init__(self, log: AnyLog) -> None:
         """Read the log once, for its clock."""
         super().__init__(log, Runs(log.blocks()), self._begin)
 
@@ -132,7 +132,7 @@ class Block(NamedTuple):
 class Reader:
     """Rows of a log, taken in order."""
 
-    def __init__(self, log: Told) -> None:
+    def __init__(self, log: AnyLog) -> None:
         self._blocks = log.blocks()
         self._block = blank_rows(0)
         self._begins = 0

@@ -14,7 +14,7 @@ from eventsim.errors import EventsimError
 from eventsim.record.events import Column, State
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.exchange import write_exchange
-from eventsim.replay.flights import Indices
+from eventsim.replay.flight_table import Indices
 from eventsim.scene import Scene
 
 STATE_COLUMNS = ("time", "disk", "x", "y", "vx", "vy", "radius", "mass")

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
 from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
@@ -60,7 +60,7 @@ class Film:
 
 
 def animate(
-    log: Told,
+    log: AnyLog,
     path: str | PathLike[str],
     film: Film | None = None,
     look: Look | None = None,
@@ -95,7 +95,7 @@ def animate(
             write_strip(part, drawn, len(timing.times), picture.layout.size)
 
 
-def _page(log: Told, film: Film, look: Look) -> str:
+def _page(log: AnyLog, film: Film, look: Look) -> str:
     """Return the page that plays a log; what only drawn frames have is refused."""
     for name, value in (("fps", film.fps), ("begin", film.begin), ("end", film.end), ("size", look.size)):
         if value is not None:
@@ -113,7 +113,7 @@ def _page(log: Told, film: Film, look: Look) -> str:
     )
 
 
-def animate_with(log: Told, path: str | PathLike[str], **options: Any) -> None:
+def animate_with(log: AnyLog, path: str | PathLike[str], **options: Any) -> None:
     """Write an animation with the options of Film and Look, each by its name; see `animate`."""
     known = {field.name: part for part in (Film, Look) for field in fields(part)}
     unknown = sorted(set(options) - set(known))

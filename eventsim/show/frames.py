@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eventsim.errors import EventsimError
 from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats, Rows, State, blank_rows
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Moment, Passage
 
 GLOW = 0.2
@@ -128,7 +128,7 @@ def frames_at(passage: Passage, times: Floats, glow_time: float) -> Iterator[Fra
 class News:
     """The rows of a log in the order in which frames show them.  count: how many have been shown."""
 
-    def __init__(self, log: Told) -> None:
+    def __init__(self, log: AnyLog) -> None:
         self.count = 0
         self._blocks = log.blocks()
         self._rows, self._clock, self._latest = blank_rows(0), np.empty(0), -np.inf
@@ -151,7 +151,7 @@ class News:
             self._latest = self._clock[-1] if len(rows) else self._latest
 
 
-def energy_of(log: Told, state: State) -> float:
+def energy_of(log: AnyLog, state: State) -> float:
     """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes.
 """
     mass = np.where(np.isfinite(log.scene.disks.mass), log.scene.disks.mass, 0.0)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 
 FASTEST_SHARE = 0.98
 """The colour map of speeds ends where this share of all flights is slower: one fast disk must not darken the rest."""
@@ -34,7 +34,7 @@ class Overview:
     falls: bool
 
 
-def overview_of(log: Told, corner: tuple[float, float]) -> Overview:
+def overview_of(log: AnyLog, corner: tuple[float, float]) -> Overview:
     """Go through a log; corner: what the places of its rows are relative to."""
     disks = log.scene.disks
     speeds = [np.hypot(*disks.velocity.T)]

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.path import Path
 
 from eventsim.record.events import Floats, Rows
-from eventsim.replay.flights import flights_between, flights_from
+from eventsim.replay.flight_table import flights_between, flights_from
 from eventsim.replay.motion import Motion
 from eventsim.replay.passage import Moment
 from eventsim.show.frames import Frame

@@ -9,7 +9,7 @@ import eventsim as es
 from eventsim.measure import Meter, measure
 from eventsim.measure.free_paths import free_paths
 from eventsim.record.events import Kind
-from eventsim.replay.flights import flight_table, flights
+from eventsim.replay.flight_table import flight_table, flights
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
 from tests.engines.scenes import lattice_gas

@@ -57,7 +57,7 @@ def test_a_run_measured_without_a_log_is_the_log_measured(gas_log):
 
 def test_free_paths_and_speeds_are_those_of_the_flights(gas_log):
     measures = measure(gas_log, discard=0.0)
-    from eventsim.replay.flights import flight_table
+    from eventsim.replay.flight_table import flight_table
     from eventsim.replay.replay import Replay
 
     table = flight_table(Replay(gas_log))
@@ -68,7 +68,7 @@ def test_free_paths_and_speeds_are_those_of_the_flights(gas_log):
 
 
 def test_displacements_are_those_of_the_flights(gas_log):
-    from eventsim.replay.flights import flight_table
+    from eventsim.replay.flight_table import flight_table
     from eventsim.replay.replay import Replay
     from tests.measure.ways import displacements
 

@@ -9,7 +9,7 @@ import pytest
 
 import eventsim as es
 from eventsim.errors import LogError
-from eventsim.replay.flights import flight_table
+from eventsim.replay.flight_table import flight_table
 from eventsim.replay.log import EventLog
 from eventsim.replay.passage import Passage
 from eventsim.replay.replay import Replay

@@ -12,7 +12,7 @@ import eventsim as es
 from eventsim.errors import EventsimError
 from eventsim.measure import measure
 from eventsim.measure.free_paths import free_paths, path_density
-from eventsim.replay.flights import flight_table, flights
+from eventsim.replay.flight_table import flight_table, flights
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
 from eventsim.show.figures import TITLES, equation_of_state, msd, trajectories

@@ -10,7 +10,7 @@ from eventsim.engines.certified.session import CertifiedSession
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
-from eventsim.validation.horizon import horizon
+from eventsim.validation.shadows import horizon
 from eventsim.validation.proof import prove
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 

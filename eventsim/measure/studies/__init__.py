@@ -11,7 +11,7 @@ from typing import NamedTuple
 from eventsim.errors import EventsimError
 from eventsim.measure.found import Found
 from eventsim.measure.studies import boundary, escape, lyapunov, recurrence
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 
 
 class Study(NamedTuple):
@@ -39,7 +39,7 @@ STUDIES = (
 """The table of studies."""
 
 
-def study(log: Told, name: str, *values: float, discard: float | None = None) -> Found:
+def study(log: AnyLog, name: str, *values: float, discard: float | None = None) -> Found:
     """Make a study of the run that a log tells.
 
     Args:

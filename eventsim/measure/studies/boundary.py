@@ -8,10 +8,10 @@ from eventsim.measure.boundary_map import boundary_map
 from eventsim.measure.entries import dash
 from eventsim.measure.found import Found
 from eventsim.measure.measures import Measure
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 
 
-def found(log: Told, discard: float | None) -> Found:
+def found(log: AnyLog, discard: float | None) -> Found:
     """Return the length of the boundary, and event, time, disk, arc length and sine of every contact with it."""
     mapped = boundary_map(log)
     if isinstance(mapped, str):

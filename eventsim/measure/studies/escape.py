@@ -22,8 +22,8 @@ from eventsim.measure.entries import Expected, beside, dash
 from eventsim.measure.found import Columns, Found
 from eventsim.measure.measures import Measure
 from eventsim.record.events import Floats
-from eventsim.replay.flights import FlightTable, flights
-from eventsim.replay.log import Told
+from eventsim.replay.flight_table import FlightTable, flights
+from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
 
 Indices: TypeAlias = NDArray[np.int64]
@@ -45,7 +45,7 @@ LEADING = 0.05
 """Of the rate, what is left out of it to leading order for openings of at most a fiftieth of the boundary."""
 
 
-def found(log: Told, discard: float | None, x0: float, y0: float, x1: float, y1: float) -> Found:
+def found(log: AnyLog, discard: float | None, x0: float, y0: float, x1: float, y1: float) -> Found:
     """Return the rate of escape through the segment from (x0, y0) to (x1, y1), and the share of disks still inside by time.
 
     discard: escapes before that time do not count for the rate.
@@ -161,7 +161,7 @@ def _rate(times: Floats, duration: float, begun: float) -> Measure:
     return Measure(rate, error, unit="1 / time", doubt=note, name="escape_rate")
 
 
-def _expected(log: Told, length: float) -> Expected | None:
+def _expected(log: AnyLog, length: float) -> Expected | None:
     """L v / (pi A), where all have one speed in one table."""
     ensemble = ensemble_of(log.scene, bool(log.provenance.kicks))
     if not ensemble.billiard or ensemble.table is None:

@@ -25,7 +25,7 @@ from eventsim.measure.measures import Measure
 from eventsim.measure.tangent import Passed, Tangent
 from eventsim.measure.trust import smallest_reach
 from eventsim.record.events import Floats, Kind
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.scene.disks import typical_speed
 from eventsim.scene.names import plural
 from eventsim.scene.scene import Scene
@@ -75,7 +75,7 @@ class Growth:
         bodies, tracers: how many there are of either.
     """
 
-    def __init__(self, log: Told, count: int) -> None:
+    def __init__(self, log: AnyLog, count: int) -> None:
         """Begin with `count` deviations, or as many as a system has."""
         scene = log.scene
         mass, rng = scene.disks.mass, np.random.default_rng(SEED)
@@ -99,7 +99,7 @@ class Growth:
         for i in self._tracers:
             self._put_tracer(i, np.linalg.qr(rng.normal(size=(4, self._theirs)))[0])
 
-    def follow(self, log: Told) -> str | None:
+    def follow(self, log: AnyLog) -> str | None:
         """Go through a log; why that ended before its end, a sentence, or None."""
         length, start, time = log.provenance.epoch_length, log.scene.start_time, 0.0
         for rows in log.blocks():
@@ -184,7 +184,7 @@ class _Rates(NamedTuple):
     total: tuple[float, float]
 
 
-def found(log: Told, discard: float | None, count: int) -> Found:
+def found(log: AnyLog, discard: float | None, count: int) -> Found:
     """Return the `count` largest Lyapunov exponents of the run that a log tells.
 
     Args:
@@ -227,7 +227,7 @@ def found(log: Told, discard: float | None, count: int) -> Found:
     return Found(tuple(quantities), tables, notes)
 
 
-def _no_meaning(log: Told) -> str | None:
+def _no_meaning(log: AnyLog) -> str | None:
     """Why a run has no exponents, a clause; None where it may have."""
     scene = log.scene
     if not np.isfinite(scene.disks.mass).any():
@@ -237,7 +237,7 @@ def _no_meaning(log: Told) -> str | None:
     return None if len(log) else "nothing meets anything in this run"
 
 
-def _too_few(log: Told, discard: float | None) -> str:
+def _too_few(log: AnyLog, discard: float | None) -> str:
     left = "" if discard is None else f" with {discard:g} units of time left out"
     return f"{plural(len(log), 'event')}{left}: too few"
 

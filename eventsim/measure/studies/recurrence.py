@@ -18,7 +18,7 @@ from eventsim.measure.entries import Expected, beside, dash
 from eventsim.measure.found import Columns, Found
 from eventsim.measure.measures import Measure
 from eventsim.record.events import Floats
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 
 ARCS, SINES = 16, 16
 """Cells along the boundary and across the sine of the angle."""
@@ -30,7 +30,7 @@ TOLD = 64
 """Times at which the share of what has not come back is told."""
 
 
-def found(log: Told, discard: float | None) -> Found:
+def found(log: AnyLog, discard: float | None) -> Found:
     """Return mean recurrence times in contacts and in time, and the share that has not come back by a time."""
     mapped = boundary_map(log)
     if isinstance(mapped, str):

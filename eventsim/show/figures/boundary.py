@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
 from eventsim.measure.boundary_map import boundary_map
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show.figures.demands import with_events
 from eventsim.show.figures.style import LENGTH, label, name_of, shades_of
@@ -17,7 +17,7 @@ MOST_DOTS = 200_000
 """More dots than these are only ink: of a longer run the beginning is drawn."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw a dot for each contact, disks in their colours; lines where one side of the table ends and the next begins."""
     with_events(log)
     mapped = boundary_map(log)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from eventsim.errors import LogError
 from eventsim.record.events import Kind
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
 
 
-def passage_with_time(log: Told) -> Passage:
+def passage_with_time(log: AnyLog) -> Passage:
     """Return the passage through a log; raise LogError where no time passes in it."""
     passage = Passage(log)
     start, end = passage.span
@@ -17,7 +17,7 @@ def passage_with_time(log: Told) -> Passage:
     return passage
 
 
-def with_events(log: Told, kind: Kind | None = None) -> None:
+def with_events(log: AnyLog, kind: Kind | None = None) -> None:
     """Raise LogError where a log has no events (of a kind)."""
     if len(log) == 0:
         raise LogError("there is nothing to draw: the log has no events")

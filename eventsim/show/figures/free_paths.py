@@ -13,8 +13,8 @@ from eventsim.measure import measure
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.free_paths import free_paths, path_density
 from eventsim.record.events import Floats, Kind
-from eventsim.replay.flights import flights
-from eventsim.replay.log import Told
+from eventsim.replay.flight_table import flights
+from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
 from eventsim.show.figures.demands import passage_with_time, with_events
 from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of
@@ -26,7 +26,7 @@ FEWEST = 20
 """Free paths below which there is nothing to say about how they are distributed."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw the distribution of free paths between pair contacts, reflections at walls passed over."""
     with_events(log, Kind.PAIR)
     passage = passage_with_time(log)

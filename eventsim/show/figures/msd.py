@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.measure import Measures, measure
 from eventsim.measure.theory import enskog_diffusion
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of
@@ -24,7 +24,7 @@ SURE = 2.0
 """Standard errors above zero from which on a point says something on a logarithmic scale."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw the displacement about the common motion above, D from its slope between half the lag and the lag below."""
     passage_with_time(log)
     if not np.isfinite(log.scene.disks.mass).any():
@@ -57,7 +57,7 @@ def _draw_displacement(axes: Axes, measures: Measures) -> None:
     axes.set(xscale="log", yscale="log", ylim=(low, high))
 
 
-def _draw_diffusion(axes: Axes, measures: Measures, log: Told) -> None:
+def _draw_diffusion(axes: Axes, measures: Measures, log: AnyLog) -> None:
     found = measures.correlations
     slope, error = found.diffusion, found.diffusion_error
     with np.errstate(invalid="ignore"):

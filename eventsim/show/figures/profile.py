@@ -6,13 +6,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.measure import measure
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, ORANGE, label, name_of
 from eventsim.show.palette import KINDS
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw the number density of each species above, its temperature below."""
     passage_with_time(log)
     gravity = log.scene.gravity or (0.0, 0.0)

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from eventsim.record.events import Kind
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time, with_events
 from eventsim.show.figures.marks import Marks
 from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, name_of
@@ -28,7 +28,7 @@ MOST_VECTORS = 20_000
 """More marks than these are put into an svg or pdf as pixels."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw the raster, and above it how many events there were in each hundredth of the time."""
     with_events(log)
     span = passage_with_time(log).span

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Floats, Kind
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.replay.motion import Motion
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.marks import Marks
@@ -21,7 +21,7 @@ MOST_VECTORS = 20_000
 """More dots than these are put into an svg or pdf as pixels."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw the relative change of energy above, the gap of each pair at its contact, in reaches, below."""
     passage = passage_with_time(log)
     times = np.linspace(*passage.span, SAMPLES)

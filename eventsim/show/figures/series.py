@@ -15,7 +15,7 @@ from eventsim.errors import LogError
 from eventsim.measure import measure
 from eventsim.measure.theory import cooling_exponent
 from eventsim.record.events import Floats
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import BLUE, ORANGE, TIME, label, name_of
@@ -27,7 +27,7 @@ DECADE = 10.0
 """Times that a series falls by from which on it is drawn on a logarithmic scale."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw four panels: energy against time and temperature against contacts above, rate and pressure against time below."""
     passage_with_time(log)
     measures = measure(log, discard=0.0)

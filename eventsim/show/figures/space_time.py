@@ -7,8 +7,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Kind
-from eventsim.replay.flights import flights, together
-from eventsim.replay.log import Told
+from eventsim.replay.flight_table import flights, together
+from eventsim.replay.log import AnyLog
 from eventsim.show import outlines
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label, name_of, shades_of
@@ -19,7 +19,7 @@ MOST_CONTACTS = 800
 """Of a longer run the beginning is drawn, up to this many contacts: more cannot be told apart."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw the coordinate along which the disks spread most; dots are contacts of two disks."""
     passage = passage_with_time(log)
     begin, end = passage.span

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
 from eventsim.measure import measure
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import SPEED, label, name_of
 from eventsim.show.palette import KINDS
@@ -19,7 +19,7 @@ SEEN = 1e-3
 """Of the largest density: bins below it at the end of the histogram are not shown."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw a histogram for each species, as `measure` has it, error bars from blocks of time, and Maxwell's curve."""
     passage_with_time(log)
     measures = measure(log)

@@ -11,8 +11,8 @@ from matplotlib.patches import Rectangle as Box
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from eventsim.replay.flights import flights, together
-from eventsim.replay.log import Told
+from eventsim.replay.flight_table import flights, together
+from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show import outlines
 from eventsim.show.figures.demands import passage_with_time
@@ -34,7 +34,7 @@ FLAT, SLIM = 0.6, 1.2
 """Inches of a side on which numbers above each other, or beside each other, would overlap."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw the ways of up to MOST_DISKS disks; dots are their events, circles the disks at the end."""
     passage = passage_with_time(log)
     scene, n = log.scene, passage.stage.n
@@ -89,7 +89,7 @@ def draw(figure: Figure, log: Told) -> None:
         _keep_one_tick(axes.xaxis, shown[0], shown[2])
 
 
-def _drawn_until(log: Told, disks: NDArray[np.int64]) -> tuple[float | None, int]:
+def _drawn_until(log: AnyLog, disks: NDArray[np.int64]) -> tuple[float | None, int]:
     """Return until when a figure shows the ways of some disks, None: to the end; and how many events they have by then."""
     events = 0
     for rows in log.blocks():

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import LogError
 from eventsim.measure import measure
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, name_of
 
@@ -21,7 +21,7 @@ SURE = 2.0
 """Standard errors above zero from which on a point says something on a logarithmic scale."""
 
 
-def draw(figure: Figure, log: Told) -> None:
+def draw(figure: Figure, log: AnyLog) -> None:
     """Draw <v(0) v(t)> / <v^2> against the lag, Enskog's exponential, and a line 1 / t through the first points of the tail."""
     passage_with_time(log)
     measures = measure(log)

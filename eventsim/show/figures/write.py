@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.show.figures import TITLES
 from eventsim.show.figures.style import SIZE, new_figure
 from eventsim.show.output import suffix_of
@@ -43,7 +43,7 @@ class OnAxes:
         """Leave the size to whoever made the axes."""
 
 
-def plot(log: Told, kind: str, ax: Axes | None = None) -> Axes:
+def plot(log: AnyLog, kind: str, ax: Axes | None = None) -> Axes:
     """Draw a kind of figure of a log; the axes, of several panels the first.
 
     ax: where to; None: in a new figure of pyplot.  Raises EventsimError as `write_figure`, and for axes where panels are needed.
@@ -63,15 +63,15 @@ def plot(log: Told, kind: str, ax: Axes | None = None) -> Axes:
     return figure.axes[0]
 
 
-def drawing_of(kind: str) -> Callable[[Figure, Told], None]:
+def drawing_of(kind: str) -> Callable[[Figure, AnyLog], None]:
     """Return the function that draws a kind of figure; EventsimError where there is none."""
     if kind not in TITLES:
         raise EventsimError(f"there is no figure {kind!r}; there are {', '.join(TITLES)}")
-    draw: Callable[[Figure, Told], None] = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw
+    draw: Callable[[Figure, AnyLog], None] = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw
     return draw
 
 
-def write_figure(log: Told, kind: str, path: str | PathLike[str]) -> None:
+def write_figure(log: AnyLog, kind: str, path: str | PathLike[str]) -> None:
     """Draw a kind of figure (see `TITLES`) of a log to `path`: .png, .svg or .pdf.
 
     Raises EventsimError where there is no such kind, the log does not hold what the figure shows, the suffix is unknown

@@ -18,7 +18,7 @@ from eventsim.engines import engine_named
 from eventsim.errors import EventsimError
 from eventsim.measure.trust import UNASKED, TrustLine
 from eventsim.record.events import Column, Rows, blank_rows
-from eventsim.replay.log import EventLog, Told
+from eventsim.replay.log import AnyLog, EventLog
 from eventsim.replay.motion import Motion
 from eventsim.replay.replay import Replay
 from eventsim.scene.stage import Stage
@@ -53,7 +53,7 @@ PackedColumn: TypeAlias = tuple[str, str, Column]
 """Name, type and numbers of a column."""
 
 
-def packed(log: Told, color: str | None = None, seconds: float | None = None) -> tuple[dict[str, Any], str]:
+def packed(log: AnyLog, color: str | None = None, seconds: float | None = None) -> tuple[dict[str, Any], str]:
     """Return the description of a log for the player, and its numbers in base64.
 
     seconds: how long it plays at the speed that it begins with. Raises EventsimError where the log has no time to

@@ -8,7 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from eventsim.replay.log import Told
+from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
 from eventsim.show.player.pack import packed
 
@@ -21,7 +21,7 @@ MOST_EVENTS = 50_000
 
 
 def page(
-    log: Told,
+    log: AnyLog,
     *,
     color: str | None = None,
     dark: bool = False,
@@ -46,7 +46,7 @@ def page(
     )
 
 
-def notebook_frame(log: Told) -> str | None:
+def notebook_frame(log: AnyLog) -> str | None:
     """Return the player as an html element of its own; None for a log too long for a notebook, or without time."""
     if len(log) > MOST_EVENTS:
         return None

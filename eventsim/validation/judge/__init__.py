@@ -1,4 +1,4 @@
-"""An engine judged by the motion that it gives: `judge` compares positions at times, and contacts, with the event-driven run.
+"""Judges an engine by its motion alone.  `judge` compares its places and contacts with those of the event-driven run.
 
     flights       free paths through samples, and where they turn
     told          who met whom, from the turns              surroundings   gaps between disks, distances of walls

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventsim.errors import EventsimError
-from eventsim.readers.contacts import Told
+from eventsim.readers.contacts import ToldContacts
 from eventsim.record.contacts import Key, contacts_of, keys_of
 from eventsim.record.events import Floats, Kind
 from eventsim.scene.stage import Stage
@@ -150,7 +150,7 @@ def _change(key: Key, impulse: float, stage: Stage) -> float:
     return impulse / lightest if lightest > 0.0 else float("inf")
 
 
-def in_our_form(contacts: Told, stage: Stage) -> list[Met]:
+def in_our_form(contacts: ToldContacts, stage: Stage) -> list[Met]:
     """Contacts that an engine tells, in our form; walls by their names, the only wall where it tells none."""
     names = {name: number for number, name in enumerate(stage.wall_names)}
     found = []

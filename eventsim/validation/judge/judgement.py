@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from eventsim.readers.contacts import Told
+from eventsim.readers.contacts import ToldContacts
 from eventsim.readers.samples import Samples
 from eventsim.record.events import Floats, Kind
 from eventsim.scene import Scene
@@ -105,7 +105,7 @@ class Judgement:
         return math.inf if good else self.truth.horizon
 
 
-def judge(scene: Scene, samples: Samples, contacts: Told | None = None, tolerance: float | None = None) -> Judgement:
+def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, tolerance: float | None = None) -> Judgement:
     """Judge a motion.
 
     Args:
@@ -176,7 +176,7 @@ def judge(scene: Scene, samples: Samples, contacts: Told | None = None, toleranc
     )
 
 
-def _what_is_told(samples: Samples, flights: Flights, contacts: Told | None) -> str:
+def _what_is_told(samples: Samples, flights: Flights, contacts: ToldContacts | None) -> str:
     """In words."""
     told = ["positions", *(["velocities"] if flights.told else []), *(["contacts"] if contacts is not None else [])]
     return f"{', '.join(told)} of {samples.n} disks at {len(samples.times)} times"

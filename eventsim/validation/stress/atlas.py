@@ -17,11 +17,11 @@ PATIENCE = 180.0
 
 COLUMNS = ("scene", "engine", "verdict", "fault", "error", "tolerance", "seconds", "sentence")
 
-Told = Callable[[Verdict], None]
+ToldContacts = Callable[[Verdict], None]
 
 
 def atlas_of(
-    cases: Sequence[Case], engines: Sequence[str], limit: float, workers: int, told: Told | None = None
+    cases: Sequence[Case], engines: Sequence[str], limit: float, workers: int, told: ToldContacts | None = None
 ) -> list[Verdict]:
     """Judge every engine on every case, `workers` engines at a time; told(verdict) is called with each as it comes.
 

@@ -75,7 +75,7 @@ def _chain(bench: Bench) -> float:
 
 
 def _flat(bench: Bench) -> float:
-    """Errors of place and velocity after a contact with arcs of ever less bulge, from flatter ones on only if these are right."""
+    """Errors of place and velocity after a contact, for ever flatter arcs.  It ends at the first one that is wrong."""
     worst, radius = 0.0, 0.25
     for wanted in (1e-3, 1e-6, 1e-9, 1e-12):
         top = 1.0 + wanted
@@ -112,7 +112,7 @@ CASES = (
     Case(
         "p1-aimed",
         "points aimed at the corners of a polygon, missed by a last bit",
-        "Both walls think that the other one is met, or none.",
+        "An engine finds that both walls were met, or neither.",
         "They stay inside.",
         64 * ULP,
         "Places at walls are rounded, at most some last bits of 8.",

@@ -1,4 +1,4 @@
-"""Long spells: what comes after an age of nothing, and bounces that take an age to end."""
+"""Long spells: a kick after a long time without events, and series of bounces that last long."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LATE, RESTS = 1e-11, 1e-9
 
 
 def _spell(bench: Bench) -> float:
-    """Errors of places 64 after a kick that comes ever later; later ones only if the earlier are right."""
+    """Errors of places 64 after a kick, for ever later kicks.  It ends at the first one that is wrong."""
     worst = 0.0
     scene = Scene(Disks([[2.0, 5.0], [7.0, 5.25]], radius=0.5), Box((10.0, 10.0)))
     for wait in (8.0, 1e3, 1e6, 1e9, 1e12, 1e15):
@@ -41,7 +41,7 @@ def bounce(restitution: float, height: float, gravity: float, time: float) -> tu
 
 
 def _long_bounce(bench: Bench) -> float:
-    """Errors of heights in the middle and at the end of a bounce; of livelier ones only if these are right."""
+    """Errors of heights in the middle and at the end of a bounce, for ever livelier ones.  It ends at the first that is wrong."""
     worst, height = 0.0, 2.0
     for restitution in (0.9, 0.97):
         for gravity in (1.0, 9.0, 400.0):
@@ -61,7 +61,7 @@ CASES = (
         "p3-spell",
         "a kick after 8 to 1e15 units of nothing",
         "A clock that counts on loses the digits of all that comes late.",
-        "The same for every wait, in 60 digits.",
+        "The same places for every wait, in 60 digits.",
         LATE,
         "Ten contacts, each of which may triple a last bit of 1e-15.",
         _spell,
