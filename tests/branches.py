@@ -14,7 +14,7 @@ from collections import defaultdict
 from pathlib import Path
 
 FOLDERS = ("formulas", "scene", "record", "engines")
-COMPILED = ("numba_compiler.py", "numba_lanes.py", "numba_memory.py")
+COMPILED = ("numba_compiler.py", "numba_memory.py")
 AIM = 0.95
 
 

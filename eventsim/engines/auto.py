@@ -204,7 +204,7 @@ def _at_start(stage: Stage) -> Motion:
 def _is_warm(stage: Stage, motion: Motion, keep_rows: bool) -> bool:
     """Whether the kernels for a scene are on disk; this loads the compiler, so it is asked when that is worth it anyway."""
     from eventsim.engines.fast.compiled import is_warm
-    from eventsim.engines.fast.grids import Grids
+    from eventsim.engines.fast.plan import Grids
     from eventsim.engines.fast.rules import kind_of
 
     grids = Grids(stage, "auto")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.compiled import inline, real, store, word
 from eventsim.engines.fast.last_contact import forget_shapes
 from eventsim.engines.fast.layout import (
     COUNT,
@@ -27,7 +27,6 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.sides import NOWHERE, keep_sides, keep_sides_behind
 from eventsim.formulas.motion import position, velocity
 

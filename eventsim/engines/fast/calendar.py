@@ -6,8 +6,8 @@ the list of the present day.
 
 from __future__ import annotations
 
-from eventsim.engines.fast.cells import depth_of, slot_of
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.cells import depth_of, home_of, slot_of
+from eventsim.engines.fast.compiled import inline, part, prefetch, real, store, word
 from eventsim.engines.fast.layout import (
     COLUMN,
     COUNT,
@@ -24,8 +24,6 @@ from eventsim.engines.fast.layout import (
     WALL,
     WORDS,
 )
-from eventsim.engines.fast.levels import home_of
-from eventsim.engines.fast.memory import prefetch, real, store, word
 from eventsim.formulas.doubt import latest_tie, may_tie
 
 NO_DAY = 1 << 62

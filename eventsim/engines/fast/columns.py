@@ -129,3 +129,14 @@ class MetColumn:
     def _coded(self, entry: tuple[int, int, int]) -> tuple[int, int, int]:
         other, kx, ky = entry
         return (int(self._state.place_of[other]) if other >= 0 else other), kx, ky
+
+
+LINE, PAGE = 64, 4096
+
+
+def aligned(count: int, kind: Any) -> NDArray[Any]:
+    """Zeros that begin with a page, and some to spare behind them: the lanes read a little past the end."""
+    size = count * np.dtype(kind).itemsize
+    raw = np.zeros(size + PAGE + 4 * LINE, np.uint8)
+    start = -raw.ctypes.data % PAGE
+    return raw[start : start + size].view(kind)

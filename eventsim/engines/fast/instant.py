@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pulls
 from eventsim.engines.fast.calendar import bucket, day_of
-from eventsim.engines.fast.cells import depth_of
-from eventsim.engines.fast.compiled import inline, kernel
+from eventsim.engines.fast.cells import depth_of, gather_near, home_of
+from eventsim.engines.fast.compiled import inline, kernel, real, word
 from eventsim.engines.fast.layout import (
     COLUMN,
     DAY,
@@ -21,9 +21,7 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.levels import gather_near, home_of
 from eventsim.engines.fast.loop import pointers
-from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.engines.fast.predict import corner_slot
 from eventsim.engines.fast.rest import border_contact

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.compiled import inline, part, store, word
 from eventsim.engines.fast.layout import FLAGS, MET, MET_KX, MET_KY, NOBODY, RESTING, SEVERAL, WORDS, WRAPS_X, WRAPS_Y
-from eventsim.engines.fast.memory import store, word
 
 
 @inline

@@ -16,8 +16,8 @@ from eventsim.engines.fast.calendar import (
     take,
     unsettled,
 )
-from eventsim.engines.fast.cells import enter, leave
-from eventsim.engines.fast.compiled import inline, kernel
+from eventsim.engines.fast.cells import enter, home_of, leave, level_of, place_in
+from eventsim.engines.fast.compiled import inline, kernel, pointer, real, store, word
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     COLUMN,
@@ -66,8 +66,6 @@ from eventsim.engines.fast.layout import (
     WRAPS,
     Arrays,
 )
-from eventsim.engines.fast.levels import home_of, level_of, place_in
-from eventsim.engines.fast.memory import pointer, real, store, word
 from eventsim.engines.fast.predict import predict
 from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
 from eventsim.engines.fast.sides import NOWHERE, keep_sides

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, pulls
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.compiled import inline, part, real, word
 from eventsim.engines.fast.last_contact import just_met
 from eventsim.engines.fast.layout import (
     CLASSES,
@@ -19,7 +19,6 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.memory import real, word
 from eventsim.formulas.contact import screened_pair_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity

@@ -1,4 +1,4 @@
-"""Sizes: how wide the cells are, how many slots they have, how long a day of the calendar is."""
+"""The plan of a session: the order of disks in memory, which cells it works with, how long a day of the calendar is."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from eventsim.engines.fast.layout import USUAL_DEPTH
+from eventsim.engines.base import Motion
+from eventsim.engines.fast.cells import WIDTH
+from eventsim.engines.fast.columns import Integers, aligned
+from eventsim.engines.fast.layout import USUAL_DEPTH, Grid
 from eventsim.engines.reference.cells import MARGIN
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
@@ -191,3 +194,129 @@ def day_length(due: Floats, now: float, end: float, n: int) -> float:
     k = max(1, len(ahead) // 8)
     share = np.partition(ahead, k - 1)[k - 1] / k
     return float(max((SHARE_OF_MANY if n >= MANY_DISKS else SHARE) * share, least))
+
+
+FEW_DISKS = 24
+"""Below it, looking at all disks is as fast as cells."""
+
+REGISTER = 16
+"""Slots that are read at once, also past the end of what is wanted."""
+
+
+class Grids:
+    """The cells of one session, chosen anew whenever they do not fit any more.
+
+    wanted: the sizes to be used, one grid or several, finest first; None for none; "auto": those that suit.
+    """
+
+    def __init__(self, stage: Stage, wanted: Sizes | tuple[Sizes, ...] | str | None) -> None:
+        self._stage = stage
+        self._depths: dict[int, int] = {}
+        self._given: tuple[Sizes, ...] | None = None
+        self._chooses = isinstance(wanted, str) and stage.n >= FEW_DISKS
+        if not (wanted is None or isinstance(wanted, str)):
+            self._given = (wanted,) if isinstance(wanted, Sizes) else wanted
+        self._classes = classes_of(stage) if self._chooses else (float(stage.radius.max()),)
+        self.sizes: tuple[Sizes, ...] | None = None
+
+    def choose(self, motion: Motion) -> None:
+        """Choose the cells for the disks where they are."""
+        if self._given is not None:
+            self.sizes = self._given
+        elif self._chooses:
+            self.sizes = cell_sizes(self._stage, motion.x, motion.y, self._classes, self._depths)
+            if self.sizes is None and len(self._classes) > 1:
+                self._classes = self._classes[-1:]
+                self.sizes = cell_sizes(self._stage, motion.x, motion.y, self._classes, self._depths)
+
+    def deepen(self, level: int) -> None:
+        """Give the cells of a level twice as many slots, now and whenever they are chosen anew."""
+        assert self.sizes is not None
+        sizes = list(self.sizes)
+        self._depths[level] = 2 * sizes[level].depth
+        sizes[level] = sizes[level]._replace(depth=self._depths[level])
+        self.sizes = tuple(sizes)
+
+    @property
+    def level(self) -> Integers:
+        """(n,) the level of each disk."""
+        radii = (np.inf,) if self.sizes is None else tuple(size.radius for size in self.sizes)
+        return levels_of(self._stage, radii).astype(np.int32)
+
+    def slots(self) -> Integers | None:
+        """Empty slots for the cells of all levels; None without cells."""
+        if self.sizes is None:
+            return None
+        slots = aligned(sum(map(_slots, self.sizes)) + REGISTER, np.int32)
+        slots[:] = self._stage.n
+        return slots
+
+    def near(self) -> Integers:
+        """Room for the neighbours of one disk."""
+        if self.sizes is None:
+            return aligned(REGISTER, np.int32)
+        few = 9 * self.sizes[0].depth
+        return aligned((few if len(self.sizes) == 1 else self._stage.n) + 2 * REGISTER, np.int32)
+
+    def table(self) -> Floats | None:
+        """The levels as a table of numbers, in one row of memory; None where there is only one."""
+        if self.sizes is None or len(self.sizes) == 1:
+            return None
+        table = np.zeros((len(self.sizes), WIDTH))
+        first = 0
+        for row, size in zip(table, self.sizes, strict=True):
+            row[:] = size.columns, size.rows, size.depth, first, *size.low, *size.side, size.radius
+            first += _slots(size)
+        return table.reshape(-1)
+
+    def grid(self, lanes: int | None) -> Grid:
+        """The finest grid, and what a kernel needs to know of it; the length of a day is left open."""
+        n = self._stage.n
+        size = Sizes((0.0, 0.0), 1, 1, self._stage.size or (1.0, 1.0), 0) if self.sizes is None else self.sizes[0]
+        several = self.sizes is not None and len(self.sizes) > 1
+        return Grid(
+            n,
+            size.columns,
+            size.rows,
+            size.depth,
+            1 if several or size.depth != USUAL_DEPTH else None,
+            *size.low,
+            *size.side,
+            days_of(n),
+            1.0,
+            1.0,
+            lanes,
+            LOOK_AHEAD if n >= MANY_DISKS and self.sizes is not None else None,
+            len(self.sizes) if self.sizes is not None and several else None,
+            0 if several else None,
+        )
+
+
+def _slots(size: Sizes) -> int:
+    return size.depth * (size.columns + 2) * (size.rows + 2)
+
+
+LEVELS = 12
+"""4**12 squares along the curve."""
+
+
+def along_a_curve(x: Floats, y: Floats) -> NDArray[np.int64]:
+    """The disks in the order of a Hilbert curve over the rectangle that holds them."""
+    half = 1 << (LEVELS - 1)
+    column, row = _squares(x, 2 * half), _squares(y, 2 * half)
+    along = np.zeros(len(x), np.int64)
+    while half:
+        right, upper = (column & half) > 0, (row & half) > 0
+        along += half * half * ((3 * right) ^ upper)
+        flip = right & ~upper
+        column[flip], row[flip] = ~column[flip], ~row[flip]
+        column[~upper], row[~upper] = row[~upper], column[~upper]
+        half //= 2
+    return np.argsort(along, kind="stable")
+
+
+def _squares(x: Floats, count: int) -> NDArray[np.int64]:
+    low, extent = float(x.min()), float(np.ptp(x))
+    if not extent > 0.0:
+        return np.zeros(len(x), np.int64)
+    return np.minimum((x - low) / extent * count, count - 1).astype(np.int64)

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, speed
 from eventsim.engines.fast.calendar import earlier
-from eventsim.engines.fast.cells import depth_of, slot_of
-from eventsim.engines.fast.compiled import inline, part
-from eventsim.engines.fast.corner import may_be_spent
+from eventsim.engines.fast.cells import depth_of, gather_near, home_of, look_delay, slot_of
+from eventsim.engines.fast.compiled import contact_of_eight, either, gather_disks, inline, part, real, store, word
 from eventsim.engines.fast.last_contact import partner_just_met
 from eventsim.engines.fast.layout import (
     COLUMN,
@@ -35,10 +34,8 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.levels import gather_near, home_of, look_delay
-from eventsim.engines.fast.memory import contact_of_eight, either, gather_disks, real, store, word
 from eventsim.engines.fast.pairs import images, pair_is_due
-from eventsim.engines.fast.rest import is_for_rules
+from eventsim.engines.fast.rest import is_for_rules, may_be_spent
 from eventsim.engines.fast.single_disk_events import border_events, crossing, earliest_at_shapes
 from eventsim.formulas.doubt import may_tie
 from eventsim.formulas.real import NEVER

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from eventsim.engines.fast.advance import anchor, place, pulls, speed
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.compiled import inline, part, real, store, word
 from eventsim.engines.fast.last_contact import just_met, remember, unwrapped_x, unwrapped_y
 from eventsim.engines.fast.layout import (
     AT_ONCE,
@@ -24,13 +24,11 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
-from eventsim.engines.fast.rest import launched
+from eventsim.engines.fast.rest import is_support, launched, support_face
 from eventsim.engines.fast.rows import write_pair, write_wall
 from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
-from eventsim.engines.fast.supports import is_support, support_face
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import (
     contact_restitution,

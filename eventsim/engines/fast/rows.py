@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.compiled import inline
+from eventsim.engines.fast.compiled import inline, put_line, word
 from eventsim.engines.fast.layout import LABEL, WORDS
-from eventsim.engines.fast.memory import put_line, word
 from eventsim.record.events import ROW, Kind
 
 SIZE = ROW.itemsize

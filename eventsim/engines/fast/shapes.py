@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.compiled import inline, part, real, word
 from eventsim.engines.fast.last_contact import side_met
 from eventsim.engines.fast.layout import CONTACT_TIME, REALS, T
-from eventsim.engines.fast.memory import real, word
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.walls.arc import Arc, arc_delay, arc_normal, arc_touching
 from eventsim.formulas.walls.container import Container, container_delay, container_touching

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.compiled import inline, part, real, store, word
 from eventsim.engines.fast.last_contact import side_met
 from eventsim.engines.fast.layout import (
     FLAGS,
@@ -23,7 +23,6 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.memory import real, store, word
 from eventsim.engines.fast.shapes import (
     ARC,
     CENTER,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventsim.engines.fast.advance import pulls
 from eventsim.engines.fast.calendar import earlier
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.compiled import inline, part, real, word
 from eventsim.engines.fast.layout import (
     COLUMN,
     DOWN,
@@ -27,7 +27,6 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.memory import real, word
 from eventsim.engines.fast.rest import border_contact, shape_rest
 from eventsim.engines.fast.shapes import shape_delay
 from eventsim.formulas.crossing import crossing_delay

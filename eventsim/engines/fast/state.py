@@ -9,7 +9,15 @@ from numpy.typing import NDArray
 
 from eventsim.engines.base import Snapshot
 from eventsim.engines.exact_state import ExactState, Met
-from eventsim.engines.fast.columns import AccelerationColumn, Column, CountColumn, Integers, MetColumn, SidesColumn
+from eventsim.engines.fast.columns import (
+    AccelerationColumn,
+    Column,
+    CountColumn,
+    Integers,
+    MetColumn,
+    SidesColumn,
+    aligned,
+)
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     CONTACT_TIME,
@@ -45,20 +53,11 @@ from eventsim.record.events import Floats
 from eventsim.scene.sides import Sides
 from eventsim.scene.stage import Stage
 
-LINE, PAGE = 64, 4096
-
 COLUMNS = ("t", "x", "y", "vx", "vy", "wraps_x", "wraps_y", "contact_time", "at_once")
 """What a snapshot has one number of for every disk."""
 
 LOW_COLUMNS = ("low_vx", "low_vy")
 """The same, where velocities have low parts."""
-
-def aligned(count: int, kind: Any) -> NDArray[Any]:
-    """Zeros that begin with a page, and some to spare behind them: the lanes read a little past the end."""
-    size = count * np.dtype(kind).itemsize
-    raw = np.zeros(size + PAGE + 4 * LINE, np.uint8)
-    start = -raw.ctypes.data % PAGE
-    return raw[start : start + size].view(kind)
 
 
 class FastState(ExactState):

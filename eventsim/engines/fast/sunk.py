@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from eventsim.engines.fast.advance import place, speed
-from eventsim.engines.fast.compiled import inline, part
+from eventsim.engines.fast.compiled import inline, part, real
 from eventsim.engines.fast.layout import RADIUS, REALS, WALL, T
-from eventsim.engines.fast.memory import real
 from eventsim.engines.fast.pairs import images, shifts
 from eventsim.engines.fast.shapes import is_hollow, wall_normal
 from eventsim.formulas.doubt import is_sunk

@@ -10,7 +10,7 @@ import pytest
 import eventsim as es
 from eventsim.engines.base import Stop
 from eventsim.engines.fast import FastOptions
-from eventsim.engines.fast.memory import lanes_work
+from eventsim.engines.fast.compiled import lanes_work
 from eventsim.engines.fast.plan import cell_sizes, classes_of
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession

@@ -4,7 +4,7 @@ import pytest
 
 pytest.importorskip("numba")
 
-from eventsim.engines.fast.buffers import MOST, Buffers
+from eventsim.engines.fast.machine import MOST, Buffers
 
 
 def test_a_buffer_is_used_again_once_its_rows_are_forgotten():
