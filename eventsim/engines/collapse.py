@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.formulas.rest import AT_ONCE, kept_up_instant
+from eventsim.formulas.doubt import AT_ONCE, kept_up_instant
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene.stage import Stage
 

@@ -5,8 +5,8 @@ after a finite time, at rest on both walls.  How they share its weight is no que
 before, once a last bit of the disk's place is worth as much energy as it has left.
 """
 
+from eventsim.formulas.doubt import LEAST_LOSS, ROUNDED
 from eventsim.formulas.real import Real
-from eventsim.formulas.rest import LEAST_LOSS, ROUNDED
 
 SPENT = 8.0
 """Energy so many times that of a fall by the last bit of a place, over 1 - e^2, is what rounding may keep up in a corner."""

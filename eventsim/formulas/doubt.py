@@ -1,7 +1,9 @@
-"""How well contact times are known: the span within which only exact arithmetic tells which of two contacts comes first.
+"""What rounding leaves of times, gaps and flights: all decisions within the last bits ask here.
 
 A contact time is a gap over the speed at which it closes.  The gap is a difference of places, and each of these is rounded.  So
-a contact time is known to about (last bits of the places) / (closing speed), and to a last bit of the clock.
+a contact time is known to about (last bits of the places) / (closing speed), and to a last bit of the clock.  Nearer to each
+other, only exact arithmetic tells which of two contacts comes first.  A gap may have sunk to the last bits of its places.
+Flights may be so short that rounding alone keeps them up; contacts behind such flights are at one instant.
 """
 
 from eventsim.formulas.clock import FIRST_WINDOW, window_length
@@ -23,9 +25,32 @@ SLOW = 2.0**-6
 GLANCES = 2.0**-12
 """The screen is at most this part of the mean time between two events of the scene: so a second look costs nothing."""
 
+AT_ONCE = 2.0**-48
+"""Events closer than this part of the clock are at one instant: a few of its last bits."""
+
+ROUNDED = 2.0**-52
+"""What rounding may do to the speed across a slanted wall, as a part of the components that it is calculated from."""
+
+FLOORS = 32.0
+"""A series is cut so many times above the speed that rounding may keep up, which is ROUNDED / (1 - e): the errors of all the
+bounces before are then a few per cent of the last one."""
+
+LEAST_LOSS = 2.0**-20
+"""The least 1 - e with which that speed is reckoned: a series that takes millions of bounces is not cut early."""
+
+LONGEST_INSTANT, LONGEST_STILL = 2.0**-32, 2.0**-30
+"""The most that counts as one instant of the clock, and as no way in coordinates, however little is lost at a contact."""
+
+TOUCHING = 2.0**-48
+"""A gap is rounding below this part of the coordinates: 16 units in their last place, as for disks that touch at the start."""
+
+
+SLACK = 2.0**-48
+"""A foot this part of the coordinates beyond an end without a post is still on the wall: 16 units in the last place.  So rounding
+lets no disk through where one wall goes on in another one; a post is met so much before its walls end."""
+
 CLOCK_BITS = 1.0 + 2.0**-50
 """What the clock rounds: 4 to 8 units in the last place of a contact time; each is right to about two."""
-
 
 GAP_ROUNDINGS = 4.0
 """Roundings in a gap: a place x + v lag has one of the lag, one of the product, one of the sum; the difference is one more."""
@@ -118,3 +143,25 @@ def latest_tie(time: Real, screen: float) -> Real:
 def may_tie(one: Real, other: Real, screen: float) -> Real:
     """Whether two contact times are so close that their order has to be looked at exactly; without a branch."""
     return (one <= latest_tie(other, screen)) & (other <= latest_tie(one, screen))
+
+
+def kept_up_instant(loss: float) -> float:
+    """The share of the clock within which flights may be kept up by its rounding: ROUNDED / (1 - e), and FLOORS above it.
+
+    loss: 1 - e.  The end of a flight is rounded, and with it the speed there; that is lost again in 1 / (1 - e) bounces.
+    """
+    return min(FLOORS * ROUNDED / loss, LONGEST_INSTANT)
+
+
+def kept_up_way(loss: float) -> float:
+    """The way, as a part of the coordinates, of flights that the rounding of places may keep up, and FLOORS above it in time.
+
+    A place known to u, its last bit, leaves the energy of a fall from u: so bounces last sqrt(2 u / (a (1 - e))), a t^2 long.
+    """
+    return min(FLOORS * FLOORS * 2.0 * ROUNDED / loss, LONGEST_STILL)
+
+
+def is_still(x: Real, y: Real, u0: Real, w0: Real, u1: Real, w1: Real, lag: Real, share: float) -> bool:
+    """Whether a flight to (x, y), with these velocities at its ends, was shorter than a share of the coordinates."""
+    way = (abs(u0) + abs(w0) + abs(u1) + abs(w1)) * lag
+    return bool(not way > share * (abs(x) + abs(y)))

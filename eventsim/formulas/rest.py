@@ -13,55 +13,18 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.doubt import AT_ONCE, FLOORS, LEAST_LOSS, ROUNDED, TOUCHING
 from eventsim.formulas.real import NEVER, Real, is_float, sqrt
 from eventsim.formulas.slide import end_delay, slide_delay
-from eventsim.formulas.walls.face import TOUCHING, Face, flight_side, hangs_below, is_met, slope
+from eventsim.formulas.walls.face import Face, flight_side, hangs_below, is_met, slope
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Shape
-
-AT_ONCE = 2.0**-48
-"""Events closer than this part of the clock are at one instant: a few of its last bits."""
-
-ROUNDED = 2.0**-52
-"""What rounding may do to the speed across a slanted wall, as a part of the components that it is calculated from."""
-
-FLOORS = 32.0
-"""A series is cut so many times above the speed that rounding may keep up, which is ROUNDED / (1 - e): the errors of all the
-bounces before are then a few per cent of the last one."""
-
-LEAST_LOSS = 2.0**-20
-"""The least 1 - e with which that speed is reckoned: a series that takes millions of bounces is not cut early."""
 
 NOT_LAST = -1.0
 """Instead of the time since a wall was met: it is not what the disk met last."""
 
-LONGEST_INSTANT, LONGEST_STILL = 2.0**-32, 2.0**-30
-"""The most that counts as one instant of the clock, and as no way in coordinates, however little is lost at a contact."""
-
 STRUCK, SUPPORTED, LEFT = 0, 1, 2
 """What a contact with a wall is, and what the disk remembers of it: an impact; it came to rest there; it slid over the end."""
-
-
-def kept_up_instant(loss: float) -> float:
-    """The share of the clock within which flights may be kept up by its rounding: ROUNDED / (1 - e), and FLOORS above it.
-
-    loss: 1 - e.  The end of a flight is rounded, and with it the speed there; that is lost again in 1 / (1 - e) bounces.
-    """
-    return min(FLOORS * ROUNDED / loss, LONGEST_INSTANT)
-
-
-def kept_up_way(loss: float) -> float:
-    """The way, as a part of the coordinates, of flights that the rounding of places may keep up, and FLOORS above it in time.
-
-    A place known to u, its last bit, leaves the energy of a fall from u: so bounces last sqrt(2 u / (a (1 - e))), a t^2 long.
-    """
-    return min(FLOORS * FLOORS * 2.0 * ROUNDED / loss, LONGEST_STILL)
-
-
-def is_still(x: Real, y: Real, u0: Real, w0: Real, u1: Real, w1: Real, lag: Real, share: float) -> bool:
-    """Whether a flight to (x, y), with these velocities at its ends, was shorter than a share of the coordinates."""
-    way = (abs(u0) + abs(w0) + abs(u1) + abs(w1)) * lag
-    return bool(not way > share * (abs(x) + abs(y)))
 
 
 class Support(NamedTuple):

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventsim.formulas.doubt import TOUCHING
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.container import Container
-from eventsim.formulas.walls.face import TOUCHING, Face, face, is_in_line, slope
+from eventsim.formulas.walls.face import Face, face, is_in_line, slope
 from eventsim.formulas.walls.point import end_of
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Shape, Thin

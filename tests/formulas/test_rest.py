@@ -2,7 +2,7 @@
 
 import pytest
 
-from eventsim.formulas import rest
+from eventsim.formulas import doubt, rest
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, Held
 from eventsim.formulas.walls.face import face, is_in_line, slope
@@ -19,8 +19,8 @@ SLOPE = face(1.0, 2.0, 5.0, 5.0)
 
 
 def test_what_is_compared_with_the_last_bits():
-    assert (rest.AT_ONCE, rest.TOUCHING, rest.ROUNDED, rest.FLOORS) == (BIT, BIT, 2.0**-52, 32.0)
-    assert (rest.LEAST_LOSS, rest.LONGEST_INSTANT, rest.LONGEST_STILL) == (2.0**-20, 2.0**-32, 2.0**-30)
+    assert (doubt.AT_ONCE, doubt.TOUCHING, doubt.ROUNDED, doubt.FLOORS) == (BIT, BIT, 2.0**-52, 32.0)
+    assert (doubt.LEAST_LOSS, doubt.LONGEST_INSTANT, doubt.LONGEST_STILL) == (2.0**-20, 2.0**-32, 2.0**-30)
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def test_what_is_compared_with_the_last_bits():
     ],
 )
 def test_rounding_keeps_up_the_more_the_less_is_lost(loss, instant, way):
-    assert (rest.kept_up_instant(loss), rest.kept_up_way(loss)) == (instant, way)
+    assert (doubt.kept_up_instant(loss), doubt.kept_up_way(loss)) == (instant, way)
 
 
 @pytest.mark.parametrize(
@@ -49,8 +49,8 @@ def test_rounding_keeps_up_the_more_the_less_is_lost(loss, instant, way):
     ],
 )
 def test_a_flight_shorter_than_the_last_bits_of_its_place_is_none(flight, still):
-    assert rest.is_still(*flight, BIT) is still
-    assert rest.is_still(*flight, 2.0)
+    assert doubt.is_still(*flight, BIT) is still
+    assert doubt.is_still(*flight, 2.0)
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,8 @@ from eventsim.engines.fast.rows import write_pair, write_wall
 from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
+from eventsim.formulas.doubt import AT_ONCE as SERIES_AT_ONCE
+from eventsim.formulas.doubt import is_still
 from eventsim.formulas.impulse import (
     contact_restitution,
     flat_update,
@@ -40,8 +42,7 @@ from eventsim.formulas.impulse import (
     wall_update,
 )
 from eventsim.formulas.real import sqrt
-from eventsim.formulas.rest import AT_ONCE as SERIES_AT_ONCE
-from eventsim.formulas.rest import is_still, rebound
+from eventsim.formulas.rest import rebound
 from eventsim.formulas.walls.face import face_normal
 from eventsim.formulas.walls.point import is_still_rising
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from eventsim.engines.exact_state import ExactState
+from eventsim.formulas.doubt import AT_ONCE, is_still, kept_up_instant, kept_up_way
 from eventsim.formulas.real import Real
-from eventsim.formulas.rest import AT_ONCE, is_still, kept_up_instant, kept_up_way
 from eventsim.scene.stage import Stage
 
 AT_ONCE_ELASTIC, AT_ONCE_INELASTIC = 100_000, 100

@@ -14,10 +14,11 @@ from eventsim.formulas.contact import (
     screened_pair_delay,
 )
 from eventsim.formulas.digits import careful_pair_delay
+from eventsim.formulas.doubt import SLACK
 from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, Round, round_delays
 from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
 from eventsim.formulas.roots import Line, Moment, less_number, reaches
-from eventsim.formulas.walls.face import SLACK, Face
+from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.point import (
     CLOSE,
     End,

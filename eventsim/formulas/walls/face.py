@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from eventsim.formulas.crossing import closing_delay, reopening_delay
+from eventsim.formulas.doubt import SLACK, TOUCHING
 from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
 from eventsim.formulas.roots import Line, Moment, falls_to, less_number, root_of
 from eventsim.formulas.walls.point import (
@@ -22,14 +23,6 @@ from eventsim.formulas.walls.point import (
     passes_end,
     side_known,
 )
-
-TOUCHING = 2.0**-48
-"""A gap is rounding below this part of the coordinates: 16 units in their last place, as for disks that touch at the start."""
-
-
-SLACK = 2.0**-48
-"""A foot this part of the coordinates beyond an end without a post is still on the wall: 16 units in the last place.  So rounding
-lets no disk through where one wall goes on in another one; a post is met so much before its walls end."""
 
 CANCELLED = 2.0**-4
 """A part of its terms below which the distance of a point from a face is computed without rounding."""

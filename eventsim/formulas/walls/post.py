@@ -8,10 +8,11 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from eventsim.formulas.contact import circle_delay
+from eventsim.formulas.doubt import SLACK
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays, on_circle
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
 from eventsim.formulas.roots import Line, Moment, less_number, reaches
-from eventsim.formulas.walls.face import SLACK, Face, is_in_line
+from eventsim.formulas.walls.face import Face, is_in_line
 from eventsim.formulas.walls.point import CLOSE, is_near, is_point, post_delay_of_point
 
 
