@@ -20,9 +20,11 @@ from eventsim.scene.files import (
     scene_to_json,
     scene_to_toml,
 )
+from eventsim.scene.numbers import is_velocity
 
 finite = st.floats(-1e6, 1e6)
 points = st.tuples(finite, finite)
+velocities = points.map(lambda v: v if is_velocity(*v) else (0.0, 0.0))
 domains = st.one_of(
     st.just(Open()),
     *(
@@ -54,7 +56,7 @@ def scenes(draw):
     # Points (radius 0) of any mass lie anywhere without overlap.
     disks = Disks(
         draw(st.lists(points, min_size=count, max_size=count)),
-        draw(st.lists(points, min_size=count, max_size=count)),
+        draw(st.lists(velocities, min_size=count, max_size=count)),
         0.0,
         draw(st.lists(st.sampled_from([0.0, math.inf]) | st.floats(1e-320, 1e250), min_size=count, max_size=count)),
     )
