@@ -49,9 +49,9 @@ def cut_walls() -> None:
 
 def cut_gravity() -> None:
     """Straight flights, and nobody's own acceleration."""
-    from eventsim.engines.fast import advance, levels, pairs, single_disk_events
+    from eventsim.engines.fast import advance, cells, pairs, single_disk_events
 
-    for module in (advance, levels, pairs, single_disk_events):
+    for module in (advance, cells, pairs, single_disk_events):
         cut(module, pulls=lambda m, rules, i: (None, None))
     for module in (advance, pairs):
         cut(module, position=lambda x, v, t, g: x + v * t, velocity=lambda v, t, g: v)

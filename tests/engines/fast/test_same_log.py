@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import eventsim as es
 from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Session, Stop
-from eventsim.engines.fast import FastOptions, grids, plan
+from eventsim.engines.fast import FastOptions, plan
 from eventsim.engines.fast.plan import Sizes
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession
@@ -142,8 +142,7 @@ def test_disks_that_fall_alike_meet_in_lanes_as_one_by_one(domain: str) -> None:
 def test_what_is_done_for_many_disks_changes_no_bit(
     domain: str, quantised: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (plan, grids):  # prefetches, the calendar's waiting room
-        monkeypatch.setattr(module, "MANY_DISKS", 0)
+    monkeypatch.setattr(plan, "MANY_DISKS", 0)  # prefetches, the calendar's waiting room
     gas = lattice_gas(20, 20, 1.25, np.random.default_rng(6), domain, quantised, 0.0)
     assert_same(stage_of(gas), Stop(events=12_000))
 
