@@ -88,16 +88,10 @@ def _above(ensemble: Ensemble, speed: float, kt: float, mass: float) -> float:
     return survival(speed, kt, mass, ensemble.thermal_share(mass), 0.5 * ensemble.freedoms - 1.0)
 
 
-def maxwell_density(speed: Floats, kt: float, mass: float) -> Floats:
-    """Maxwell's density of speeds in two dimensions, (m v / kT) exp(-m v^2 / 2 kT); the shape of `speed`.
+def maxwell_survival(speed: Floats, kt: float, mass: float) -> Floats:
+    """The share of disks that are faster, exp(-m v^2 / 2 kT), by Maxwell's law; the shape of `speed`.
 
     Source: J. C. Maxwell, Philosophical Magazine 19, 19 (1860).
     """
-    density: Floats = mass * speed / kt * maxwell_survival(speed, kt, mass)
-    return density
-
-
-def maxwell_survival(speed: Floats, kt: float, mass: float) -> Floats:
-    """The share of disks that are faster, exp(-m v^2 / 2 kT); the shape of `speed`."""
     share: Floats = np.exp(-mass * speed**2 / (2.0 * kt))
     return share

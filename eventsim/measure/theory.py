@@ -31,8 +31,6 @@ KOLAFA_ROTTNER = {
 
 KOLAFA_ROTTNER_UP_TO, KOLAFA_ROTTNER_ACCURACY = 0.67, 1e-5
 MIXTURE_ACCURACY, MIXTURE_UP_TO = 1e-2, 0.6
-FINITE_SIZE_ACCURACY = 1e-3
-"""Of the excess Z - 1, after the correction to finite N; measured at N = 64 and falling with N."""
 
 
 class Derivatives(NamedTuple):

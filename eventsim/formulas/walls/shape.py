@@ -147,7 +147,7 @@ class Closed(Shape, Protocol):
 
     @property
     def semi_major(self) -> float:
-        """Half of its longest way across."""
+        """Half of its longest way across; by this a closed wall is told from a thin one."""
 
     def side(self, x: Real, y: Real, vx: Real, vy: Real) -> int:
         """+1 outside, -1 inside; a centre exactly on the wall is on the side that it moves to."""
