@@ -100,10 +100,26 @@ def contacts_of_everyone(m, grid, rules, i, now, floor, x, y, time, code, shared
             continue
         for kx in range(-span_x, span_x + 1):
             for ky in range(-span_y, span_y + 1):
-                new = pair_is_due(m, rules, i, j, kx, ky)
-                if new >= floor:
-                    time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
+                time, code, shared = _or_with(m, rules, i, j, kx, ky, floor, time, code, shared)
     return time, code, shared
+
+
+@inline
+def _or_with(m, rules, i, j, kx, ky, floor, time, code, shared):
+    """The contact with an image of disk j, if that is before the given event."""
+    new = pair_is_due(m, rules, i, j, kx, ky)
+    if new >= floor:
+        time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
+    return time, code, shared
+
+
+@inline
+def _or_with_nearest(m, rules, i, j, now, floor, x, y, edge, time, code, shared):
+    """The same with the nearest image; edge: disks may be seen across a boundary."""
+    kx, ky = 0, 0
+    if edge:
+        kx, ky = images(m, rules, i, j, now, x, y)
+    return _or_with(m, rules, i, j, kx, ky, floor, time, code, shared)
 
 
 @part
@@ -115,14 +131,8 @@ def _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared
     for _ in range(3):
         for k in range(3 * depth):
             j = word(m.slots, start + k)
-            if j == grid.n or j == i:
-                continue
-            kx, ky = 0, 0
-            if edge:
-                kx, ky = images(m, rules, i, j, now, x, y)
-            new = pair_is_due(m, rules, i, j, kx, ky)
-            if new >= floor:
-                time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
+            if j != grid.n and j != i:
+                time, code, shared = _or_with_nearest(m, rules, i, j, now, floor, x, y, edge, time, code, shared)
         start += width
     return time, code, shared
 
@@ -216,12 +226,7 @@ def _contacts_of_list(m, rules, i, now, floor, x, y, edge, count, time, code, sh
     """The same one by one: for pairs about which the lanes cannot tell, and where there are no lanes."""
     for k in range(count):
         j = word(m.near, k)
-        kx, ky = 0, 0
-        if edge:
-            kx, ky = images(m, rules, i, j, now, x, y)
-        new = pair_is_due(m, rules, i, j, kx, ky)
-        if new >= floor:
-            time, code, shared = earlier(time, code, shared, new, j, rules.tie_screen)
+        time, code, shared = _or_with_nearest(m, rules, i, j, now, floor, x, y, edge, time, code, shared)
     return time, code, shared
 
 
