@@ -15,7 +15,7 @@ from eventsim.scene.files import scene_from_dict
 
 SCENE = Scene(Disks([(1.0, 1.0), (3.0, 1.0)], radius=[0.1, 0.3], mass=[1.0, np.inf]), Box((4.0, 2.0)))
 STATES = [
-    State(t, np.array([[0.1 + t, 1 / 3], [2.0, 1.0]]), np.array([[-0.0, 5e-324], [1e-9, 0.0]])) for t in (0.0, 0.5)
+    State(t, np.array([[0.1 + t, 1 / 3], [2.0, 1.0]]), np.array([[-0.0, 1e-75], [1e-9, 0.0]])) for t in (0.0, 0.5)
 ]
 
 
