@@ -13,8 +13,7 @@ from eventsim.engines.collapse import named
 from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
-from eventsim.formulas.doubt import is_sunk
-from eventsim.formulas.rest import AT_ONCE
+from eventsim.formulas.doubt import AT_ONCE, is_sunk
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.post import Post
 from eventsim.scene.stage import Stage
