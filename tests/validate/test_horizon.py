@@ -10,8 +10,8 @@ from eventsim.engines.certified.session import CertifiedSession
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import stage_of
-from eventsim.validation.shadows import horizon
 from eventsim.validation.proof import prove
+from eventsim.validation.shadows import horizon
 from tests.engines.scenes import in_far_corner, lattice_gas, rows_of
 
 SHAPES = ((8, 0.2), (16, 0.3), (24, 0.4), (16, 0.5), (12, 0.1))
