@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 from collections.abc import Iterator
@@ -14,6 +15,10 @@ from eventsim.compiler import is_interpreted
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # Whoever starts tests in the background makes them ignore interrupts, and all programs that they start to interrupt them.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+os.environ.setdefault("EVENTSIM_WARM", "0")
+"""Tests compile in their own process: another one would take the core of those beside them."""
 
 
 @pytest.fixture(autouse=True)

@@ -28,6 +28,7 @@ VERBS = {
     "stress": "Run every engine on the scenes where methods fail; print the atlas of verdicts.",
     "certify": "Prove the order of events with ball arithmetic; tell where float64 first differs.",
     "figure": "Draw what a log says: trajectories, speeds, free paths, residuals, ...",
+    "warm": "Compile the fast engine's kernels for scenes, so that no run has to wait for them.",
     "selftest": "Compare what this machine computes with what every machine must compute.",
     "live": "Open the live view in the browser: play, throw, measure, compare.",
 }

@@ -1,11 +1,13 @@
 """The engine `auto`: begins with the reference engine and hands over to the fast one, mid-run, when the job proves long.
 
-Both write the same log, so there is no seam; a small scene never loads the compiler.
+Both write the same log, so there is no seam; a small scene never loads the compiler.  Where kernels have to be compiled first and
+a second core is free, another process does that meanwhile.
 """
 
 from __future__ import annotations
 
 import math
+import pickle
 import sys
 from time import perf_counter, thread_time
 
@@ -15,6 +17,7 @@ from eventsim.compiler import INTERPRET, SWITCH, has_compiler, is_interpreted, i
 from eventsim.engines.base import BrokenOffError, Motion, Session, Snapshot, Stop
 from eventsim.engines.reference import AutoOptions, ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.warming import Warming, may_warm
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
@@ -40,8 +43,9 @@ def first_engine(stage: Stage, stop: Stop, keep_rows: bool = True) -> str:
     if not has_compiler():
         return "reference"
     seconds = reference_seconds(stage, stop)
-    large = stage.n >= LARGE or seconds > COLD
-    return "fast" if large or (seconds > SURE and _is_warm(stage, _at_start(stage), keep_rows)) else "reference"
+    if stage.n >= LARGE or (seconds > COLD and not may_warm()):
+        return "fast"
+    return "fast" if seconds > SURE and _is_warm(stage, _at_start(stage), keep_rows) else "reference"
 
 
 class AutoSession(Session):
@@ -61,6 +65,8 @@ class AutoSession(Session):
         self._may_change = self._options == AutoOptions()
         self._opened: Session | None = None
         self._is_cold = False
+        self._warming: Warming | None = None
+        self._may_warm = may_warm()
         self._loading = 0.0
         self._changing = False
         self.at_work = "reference"
@@ -146,14 +152,35 @@ class AutoSession(Session):
             note = f"the engine fast needs numba, which {why}: this run goes on with the reference engine"
             print(f"note: {note}", file=sys.stderr)
             return
+        if self._is_warming():
+            return
         left = self._sampled * self._share_left(stop)
         if left < WARM or (self._is_cold and left < COLD):
             return
         began = perf_counter()
         self._is_cold = not _is_warm(self.stage, self.motion(), self._keep_rows)
         self._loading += perf_counter() - began
-        if left > (COLD if self._is_cold else WARM):
+        if left > (COLD if self._is_cold else WARM) and not (self._is_cold and self._begin_warming()):
             self._hand_over()
+
+    def _is_warming(self) -> bool:
+        """Whether another process compiles just now."""
+        if self._warming is None:
+            return False
+        if self._warming.is_at_work:
+            return True
+        self._is_cold, self._may_warm, self._warming = self._warming.has_failed, False, None
+        return False
+
+    def _begin_warming(self) -> bool:
+        """Have the kernels compiled by another process; whether that is possible."""
+        if not self._may_warm:
+            return False
+        try:
+            self._warming = Warming(self.stage, self._keep_rows, self._session.snapshot())
+        except (OSError, pickle.PicklingError, TypeError, AttributeError):
+            self._may_warm = False
+        return self._warming is not None
 
     def _share_left(self, stop: Stop) -> float:
         """What is left of the job, in parts of what this session has done."""

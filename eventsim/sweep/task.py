@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from multiprocessing import parent_process
 from typing import TypeAlias
 
 from eventsim import __version__
 from eventsim.engines import engine_named
+from eventsim.engines.warming import SWITCH as WARM
 from eventsim.errors import EventsimError
 from eventsim.measure import Meter
 from eventsim.runner.loop import run_scene
@@ -39,6 +42,8 @@ def row_of(plan: Plan, task: Task) -> Row:
 
     Only what the scene, the seed and the version determine is in it: no times of the day, no speed of the machine.
     """
+    if parent_process() is not None:  # its siblings have the other cores
+        os.environ.setdefault(WARM, "0")
     row = first_cells(task)
     try:
         row |= _measured(plan, task)

@@ -22,6 +22,7 @@ def warm(monkeypatch):
     """Whether compiled kernels are on disk, for the tests to say: a list whose last item counts."""
     says = [False]
     monkeypatch.setattr(auto, "has_compiler", lambda: True)
+    monkeypatch.setattr(auto, "may_warm", lambda: False)
     monkeypatch.setattr(auto, "_is_warm", lambda *asked: says[-1])
     return says
 

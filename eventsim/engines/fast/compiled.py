@@ -20,7 +20,7 @@ else:
     from eventsim.engines.fast import numba_memory as memory
 
 inline, part, kernel, link = chosen.inline, chosen.part, chosen.kernel, chosen.link
-timed_compiling, mark_warm = chosen.timed_compiling, chosen.mark_warm
+timed_compiling, compiling_alone, mark_warm = chosen.timed_compiling, chosen.compiling_alone, chosen.mark_warm
 pointer, either, real, word, store = memory.pointer, memory.either, memory.real, memory.word, memory.store
 put_line, prefetch = memory.put_line, memory.prefetch
 lanes_work, gather_disks, contact_of_eight = memory.lanes_work, memory.gather_disks, memory.contact_of_eight

@@ -7,10 +7,10 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache, partial
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, sleep
 from types import ModuleType
 from typing import Any
 from uuid import uuid4
@@ -20,6 +20,7 @@ from numba import cfunc, config, njit, types
 from numba.core import event
 from numba.extending import overload, register_jitable
 
+from eventsim.errors import LogError
 from eventsim.formulas import (
     careful_impulse,
     contact,
@@ -38,6 +39,7 @@ from eventsim.formulas import (
 )
 from eventsim.formulas.walls import point
 from eventsim.record import events
+from eventsim.record.files.claim import Claim
 from eventsim.scene.walls import SHAPES
 
 SOURCES = Path(__file__).parent, Path(motion.__file__).parent, Path(events.__file__)
@@ -77,6 +79,24 @@ def mark_warm(kind: str) -> None:
         (_FOLDER / f"{kind}.ready").touch()
     except OSError:  # no folder to write to: they will be compiled again
         return
+
+
+@contextmanager
+def compiling_alone() -> Iterator[None]:
+    """Wait until no other process that asks for this is compiling: what it has compiled need not be compiled once more."""
+    claim = Claim(_FOLDER / "compiling.lock")
+    with suppress(OSError):
+        _FOLDER.mkdir(parents=True, exist_ok=True)
+    while True:
+        try:
+            claim.take(make=True)
+            break
+        except LogError:
+            sleep(0.2)
+    try:
+        yield
+    finally:
+        claim.release()
 
 
 @contextmanager

@@ -1,0 +1,144 @@
+"""Kernels that another process compiles while the reference engine goes on."""
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+from click.testing import CliRunner
+
+from eventsim.cli import main
+from eventsim.engines import auto, warming
+from eventsim.engines.auto import COLD, AutoSession, first_engine, reference_seconds
+from eventsim.engines.base import Stop
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.warming import PARENT, SWITCH, Warming, cores, may_warm
+from eventsim.scene.stage import stage_of
+from tests.engines.scenes import lattice_gas
+
+GAS = stage_of(lattice_gas(100, 0.3))
+LONG = Stop(events=10**9)
+
+
+class Compiler:
+    """A process that is at work for so many questions, and then has failed or not."""
+
+    begun = 0
+
+    def __init__(self, questions: int, has_failed: bool) -> None:
+        self.questions, self.has_failed = questions, has_failed
+
+    def __call__(self, *job: object) -> "Compiler":
+        self.begun += 1
+        return self
+
+    @property
+    def is_at_work(self) -> bool:
+        self.questions -= 1
+        return self.questions >= 0
+
+
+@pytest.fixture
+def cold(monkeypatch):
+    """Nothing is compiled, and a second core is free; which engines would have been handed over to."""
+    handed: list[bool] = []
+    monkeypatch.setattr(auto, "has_compiler", lambda: True)
+    monkeypatch.setattr(auto, "may_warm", lambda: True)
+    monkeypatch.setattr(auto, "_is_warm", lambda *asked: False)
+    monkeypatch.setattr(auto, "PATIENCE", 0.0)
+    monkeypatch.setattr(auto, "SAMPLE", 0.0)
+    monkeypatch.setattr(AutoSession, "_hand_over", lambda self: handed.append(self._is_cold))
+    return handed
+
+
+def advanced(session: AutoSession, times: int) -> AutoSession:
+    for _ in range(times):
+        session.advance(LONG, 20)
+    return session
+
+
+def test_a_long_run_goes_on_while_kernels_are_compiled_and_takes_them_up(cold, monkeypatch):
+    compiler = Compiler(3, has_failed=False)
+    monkeypatch.setattr(auto, "Warming", compiler)
+    session = advanced(AutoSession(GAS), 4)
+    assert compiler.begun == 1
+    assert cold == []
+    events = session.counters.events
+    monkeypatch.setattr(auto, "_is_warm", lambda *asked: True)
+    advanced(session, 1)
+    assert cold == [False]
+    assert session.counters.events > events > 0
+
+
+def test_a_compiler_that_failed_is_not_asked_again(cold, monkeypatch):
+    compiler = Compiler(1, has_failed=True)
+    monkeypatch.setattr(auto, "Warming", compiler)
+    advanced(AutoSession(GAS), 3)
+    assert (compiler.begun, cold) == (1, [True])
+
+
+def test_where_no_process_can_be_started_the_run_compiles_for_itself(cold, monkeypatch):
+    def refused(*job: object) -> None:
+        raise OSError("no more processes")
+
+    monkeypatch.setattr(auto, "Warming", refused)
+    advanced(AutoSession(GAS), 1)
+    assert cold == [True]
+
+
+def test_without_a_free_core_a_long_run_begins_with_the_compiler(cold, monkeypatch):
+    stop = Stop(events=int(2.0 * COLD / (reference_seconds(GAS, Stop(events=10**6)) / 10**6)))
+    assert first_engine(GAS, stop) == "reference"
+    monkeypatch.setattr(auto, "may_warm", lambda: False)
+    assert first_engine(GAS, stop) == "fast"
+
+
+def test_cores_are_counted_by_affinity_and_quota_and_can_be_kept(tmp_path, monkeypatch):
+    monkeypatch.delenv(SWITCH, raising=False)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2, 3}, raising=False)
+    for text, count in (("max 100000", 4.0), ("150000 100000", 1.5), ("nonsense", 4.0)):
+        quota = tmp_path / "cpu.max"
+        quota.write_text(text)
+        monkeypatch.setattr(warming, "QUOTA", quota)
+        assert (cores(), may_warm()) == (count, count >= 2.0)
+    monkeypatch.setenv(SWITCH, "0")
+    assert not may_warm()
+
+
+@pytest.mark.parametrize("is_damaged", [False, True])
+def test_the_process_does_its_job_or_fails(monkeypatch, is_damaged):
+    """As plain Python there is nothing to compile, but all else is done."""
+    monkeypatch.setenv("EVENTSIM_INTERPRET", "1")
+    session = ReferenceSession(GAS, False)
+    session.advance(Stop(events=20), 10**6)
+    if is_damaged:
+        monkeypatch.setattr(warming.pickle, "dump", lambda job, file: file.write(b"nonsense"))
+    process = Warming(GAS, False, session.snapshot())
+    assert not process.has_failed
+    wait_for(lambda: not process.is_at_work)
+    assert process.has_failed == is_damaged
+
+
+def test_the_process_ends_with_its_parent():
+    """Which here is another one than it is told."""
+    orphan = subprocess.Popen(
+        [sys.executable, "-m", "eventsim", "warm", "--job"], stdin=subprocess.PIPE, env=os.environ | {PARENT: "1"}
+    )
+    wait_for(lambda: orphan.poll() is not None)
+    orphan.communicate()
+    assert orphan.returncode == 1
+
+
+def wait_for(condition) -> None:
+    end = time.monotonic() + 60.0
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.02)
+    assert condition()
+
+
+def test_the_command_refuses_where_nothing_compiles(monkeypatch):
+    monkeypatch.setenv("EVENTSIM_INTERPRET", "1")
+    done = CliRunner().invoke(main, ["warm", "gas"])
+    assert done.exit_code == 2
+    assert "nothing can be compiled here" in done.output
