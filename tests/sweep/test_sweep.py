@@ -179,16 +179,15 @@ def test_a_value_twice_is_refused():
         sweep(make, {"gas.0.packing_fraction": [0.1, 0.1]}, events=10)
 
 
-def test_what_is_no_float_in_the_unit_of_its_column_is_missing():
+def test_a_value_that_the_scene_refuses_has_a_row_that_says_why():
     def fast(settings, seed):
         gas = {"count": 16, "packing_fraction": 0.1, "seed": 1}
         return scene_from_dict(apply_overrides({**SCENE, "gas": [gas]}, settings), seed=seed)
 
     usual, very_fast = sweep(fast, {"gas.0.speed": [1.0, 1e250]}, events=200, engine="reference")
     assert usual["temperature"] == pytest.approx(0.5, rel=0.1)  # less the energy of the common motion
-    assert 0.5e250 < very_fast["mean_speed"] <= 1e250
     assert very_fast.get("temperature") is None
-    assert very_fast["failed"] is None
+    assert "velocity" in str(very_fast["failed"])
 
 
 @pytest.mark.slow
