@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -19,17 +19,16 @@ from eventsim.cli.columns import (
 from eventsim.cli.options import Verb, json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import say
 from eventsim.cli.source import chosen_scene, demand_no_scene_options, is_log, log_of, run_of, stop_options
-from eventsim.cli.words import aligned, as_json_text, short
+from eventsim.cli.words import as_json_text, short
 from eventsim.measure.quantities import FAMILIES
-from eventsim.measure.studies import STUDIES, study
+from eventsim.measure.studies import STUDIES, Study
 from eventsim.measure.words import table_text
 from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
     from eventsim.measure import Measures
     from eventsim.measure.found import Columns, Found
-    from eventsim.measure.structure import Structure
-    from eventsim.replay.log import AnyLog
+    from eventsim.record.events import Rows
 
 
 HELP = """Measure the run that LOG tells, or of SCENE, simulated now without keeping a log.
@@ -47,6 +46,7 @@ Examples:
   eventsim measure cooling --series --out cooling.csv
   eventsim measure jar --until 500 --profile y
   eventsim measure sinai --until 2000 --lyapunov 1
+  eventsim measure periodic-fluid --set n=1000 --events 1e6 --transport --structure
 
 \b
 Quantities:
@@ -70,7 +70,6 @@ Keys of --json:
   series                    columns time, contacts (of a disk), energy, temperature, pressure, collision_rate
   profile                   null without --profile; axis, edges, species: density, velocity, temperature, each with
                             its error, and theory of the density (hydrostatics under gravity)
-  structure                 null without --structure; psi_6, r, g
 {studies}
                             null without their options, else {{quantities, tables: name -> columns, notes}}
 
@@ -84,10 +83,10 @@ Exit codes: 0 done; 2 bad usage, scene or file, or nothing to measure; 130 inter
 def study_options(verb: Verb) -> Verb:
     """Add the options of all studies."""
     for one in reversed(STUDIES):
-        kinds = tuple(one.values.values())
+        kinds = tuple(kind for _, kind in one.values)
         how: dict[str, Any] = {"type": kinds[0] if len(kinds) == 1 else kinds} if kinds else {"is_flag": True, "default": None}
         words = f"Also {one.words}."
-        verb = click.option(f"--{one.name}", metavar=" ".join(one.values) or None, help=words, **how)(verb)
+        verb = click.option(f"--{one.name}", metavar=" ".join(name for name, _ in one.values) or None, help=words, **how)(verb)
     return verb
 
 
@@ -95,7 +94,6 @@ def study_options(verb: Verb) -> Verb:
 @scene_options(required=True, metavar="LOG|SCENE")
 @stop_options
 @click.option("--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this much time at the beginning.")
-@click.option("--structure", is_flag=True, help="Also g(r) at contact and psi_6 of the final state (needs freud).")
 @click.option("--series", is_flag=True, help="Also energy, temperature, pressure and collision rate along the run.")
 @click.option("--profile", type=click.Choice(["x", "y"]), help="Also density, velocity and temperature along an axis.")
 @study_options
@@ -109,7 +107,6 @@ def command(
     until: float | None,
     events: int | None,
     discard: float | None,
-    structure: bool,
     series: bool,
     profile: str | None,
     out: str | None,
@@ -119,20 +116,18 @@ def command(
 ) -> None:
     """Measure a run, see HELP."""
     target = writable(out, "--out", (".csv",))
-    asked = [one for one in STUDIES if studies[one.name] is not None]
+    asked = {one: _given(studies[one.name]) for one in STUDIES if studies[one.name] is not None}
     if target is not None and not series and profile is None and not asked:
         raise click.UsageError("--out is the file of the series, the profile or the tables of studies: ask for one of them")
-    measures, order, log = measured(scene, settings, seed, until, events, discard, structure, profile, bool(asked), quiet)
-    found = {one.name: study(log, one.name, *_given(studies[one.name]), discard=discard) for one in asked if log is not None}
+    measures, found = measured(scene, settings, seed, until, events, discard, profile, asked, quiet)
     columns = series_columns(measures) if series else profile_columns(measures) or study_columns(found.values())
     if target is not None:
         write_columns(columns, target)
     if as_json:
-        told = None if order is None else order.to_dict()
         made = {one.name: found[one.name].to_dict() if one.name in found else None for one in STUDIES}
-        say(as_json_text({"scene": scene, **measures.to_dict(), "structure": told, **made}))
+        say(as_json_text({"scene": scene, **measures.to_dict(), **made}))
     elif not quiet:
-        say(measures_text(scene, measures, order))
+        say(measures_text(scene, measures))
         for one in found.values():
             say("\n" + found_text(one))
         if series:
@@ -148,30 +143,44 @@ def measured(
     until: float | None,
     events: int | None,
     discard: float | None,
-    structure: bool,
     profile: str | None,
-    logged: bool,
+    asked: Mapping[Study, tuple[float, ...]],
     quiet: bool,
-) -> tuple[Measures, Structure | None, AnyLog | None]:
-    """The measures of a log file, or of a scene that is simulated now; the structure of its last state; its log, if `logged`."""
-    if structure:
-        from eventsim.measure.structure import structure_of
+) -> tuple[Measures, dict[str, Found]]:
+    """The measures of a log file, or of a scene that is simulated now; and what the studies that are asked for find."""
     if is_log(source):
         from eventsim.measure import measure, measure_file
-        from eventsim.replay.passage import Passage
 
-        if not structure and not logged:
+        if not asked:
             demand_no_scene_options(source, settings, seed, until, events)
-            return measure_file(source, discard, profile)[0], None, None
+            return measure_file(source, discard, profile)[0], {}
         log = log_of(source, settings, seed, until, events, quiet)
-        return measure(log, discard, profile), structure_of(log.scene, Passage(log).final()) if structure else None, log
+        return measure(log, discard, profile), {one.name: one.of(log, discard, *given) for one, given in asked.items()}
 
     scene = chosen_scene(source, settings, seed)
-    wanted = True if discard is None else discard
-    run = run_of(scene, source, until, events, quiet, measure=wanted, profile=profile, log=logged)
+    sinks = {one.name: one.sink(scene, discard, *given) for one, given in asked.items() if one.sink is not None}
+
+    def write(rows: Rows) -> None:
+        for sink in sinks.values():
+            sink.write(rows)
+
+    run = run_of(
+        scene,
+        source,
+        until,
+        events,
+        quiet,
+        measure=True if discard is None else discard,
+        profile=profile,
+        log=len(sinks) < len(asked),
+        on_event=write if sinks else None,
+    )
     if run.measures is None:
         raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
-    return run.measures, structure_of(scene, run.state) if structure else None, run.log
+    found = {name: sink.found(run.state.time - scene.start_time) for name, sink in sinks.items()}
+    if run.log is not None:
+        found |= {one.name: one.of(run.log, discard, *given) for one, given in asked.items() if one.sink is None}
+    return run.measures, found
 
 
 def _given(option: Any) -> tuple[float, ...]:
@@ -197,7 +206,7 @@ def found_text(found: Found) -> str:
     return "\n".join([table_text(found.quantities), *words, *tables])
 
 
-def measures_text(asked: str, measures: Measures, structure: Structure | None) -> str:
+def measures_text(asked: str, measures: Measures) -> str:
     """The measures as aligned lines: measured, theory, difference, where the theory comes from."""
     eta = "" if measures.packing_fraction is None else f", packing fraction {short(measures.packing_fraction)}"
     who = [plural(measures.disks, "disk")] if measures.disks or not measures.tracers else []
@@ -217,8 +226,6 @@ def measures_text(asked: str, measures: Measures, structure: Structure | None) -
         if histogram.misfit is not None:
             kind = f" of species {histogram.species}" if len(measures.speeds) > 1 else ""
             lines.append(f"  speeds{kind}: {histogram.misfit:.1f} standard errors from Maxwell, root mean square")
-    if structure is not None:
-        lines.append(aligned([("psi_6", f"{structure.psi_6:.4f} at the end (1: hexagonal, 0: none)")]))
     lines.append(_verdict(measures))
     return "\n".join(line.rstrip() for line in lines)
 

@@ -123,16 +123,35 @@ def cooling_exponent(restitution: float) -> float:
     return 0.5 * (1.0 - restitution * restitution)
 
 
+def enskog_viscosity(eta: float, d: float, kt: float, mass: float) -> float:
+    """Shear viscosity of equal disks, mass / time: 1.022 sqrt(m kT / pi) / 2 d (1/g + 2 eta + 0.8729 g (2 eta)^2).
+
+    1.022: Sonine polynomials beyond the first; 1.022 x 0.8729 = 1.022 / 4 + 2 / pi.
+    Source: D. M. Gass, J. Chem. Phys. 54, 1898 (1971), doi:10.1063/1.1675116.
+    """
+    g, cover = contact_value(eta, compressibility_factor(eta)), 2.0 * eta
+    return 0.511 * math.sqrt(mass * kt / math.pi) / d * (1.0 / g + cover + 0.8729 * g * cover * cover)
+
+
+def enskog_conductivity(eta: float, d: float, kt: float, mass: float) -> float:
+    """Heat conductivity of equal disks over Boltzmann's constant, 1 / time.
+
+    1.029 (2 / d) sqrt(kT / pi m) (1/g + 3/2 (2 eta) + 0.8718 g (2 eta)^2), where 1.029 x 0.8718 = 1.029 x 9 / 16 + 1 / pi.
+    Source: as of `enskog_viscosity`.
+    """
+    g, cover = contact_value(eta, compressibility_factor(eta)), 2.0 * eta
+    return 2.058 * math.sqrt(kt / (math.pi * mass)) / d * (1.0 / g + 1.5 * cover + 0.8718 * g * cover * cover)
+
+
 def shear_damping(eta: float) -> float:
     """Nu / (omega d^2): how fast shear flow dies out, per contact of a disk, kinematic viscosity nu and rate omega by Enskog.
 
-    Source: D. M. Gass, Enskog theory for a rigid disk fluid, J. Chem. Phys. 54, 1898 (1971).
+    Source: as of `enskog_viscosity`.
     """
-    g = contact_value(eta, compressibility_factor(eta))
-    cover = 2.0 * eta
-    viscosity = 1.022 * (1.0 / g + cover + 0.8729 * g * cover * cover)  # of sqrt(m kT / pi) / 2 d
+    z = compressibility_factor(eta)
     density = 4.0 * eta / math.pi  # times d^2
-    return viscosity / (4.0 * math.pi * density * density * g)
+    rate = 4.0 * (z - 1.0) / math.sqrt(math.pi)
+    return enskog_viscosity(eta, 1.0, 1.0, 1.0) / (density * rate)
 
 
 class Component(NamedTuple):

@@ -27,11 +27,22 @@ def test_text_has_theory_and_a_verdict(eventsim):
     assert "equilibrated" in text
 
 
-def test_structure_of_the_last_state(eventsim):
+def test_structure_is_looked_at_along_the_run(eventsim):
     pytest.importorskip("freud")
-    data = json.loads(eventsim("measure", *FLUID, "--structure", "--json").stdout)
-    assert 0.0 <= data["structure"]["psi_6"] <= 1.0
-    assert "periodic" in eventsim("measure", "gas", "--events", 100, "--structure").stderr
+    data = json.loads(eventsim("measure", *FLUID[:3], "--events", 300, "--structure", "--json").stdout)
+    assert 0.0 <= data["structure"]["quantities"]["psi_6"]["value"] <= 1.0
+    assert {"r", "g", "g_error"} == set(data["structure"]["tables"]["g"])
+    assert "periodic ones" in eventsim("measure", "gas", "--events", 100, "--structure").stdout
+
+
+def test_transport_needs_no_log(eventsim, tmp_path):
+    log = tmp_path / "a.npz"
+    assert eventsim("run", *FLUID[:3], "--events", 3000, "--log", log, "-q").exit_code == 0
+    with_log = json.loads(eventsim("measure", log, "--transport", "--json").stdout)["transport"]
+    without = json.loads(eventsim("measure", *FLUID[:3], "--events", 3000, "--transport", "--json").stdout)["transport"]
+    one, other = (data["quantities"]["viscosity"] for data in (with_log, without))
+    assert one["theory"] == other["theory"]
+    assert abs(one["value"] - other["value"]) < one["error"] + other["error"]  # lags differ by the pace of the first rows
 
 
 def test_studies_are_made_where_they_are_asked_for(eventsim, tmp_path):

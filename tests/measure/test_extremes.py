@@ -25,7 +25,7 @@ def test_disks_at_rest_have_no_temperature_and_no_steady_state(mass):
     assert math.isnan(measures["temperature"].value)
     assert math.isnan(measures["Z"].value)
     assert measures.doubts == ("nothing moves",)
-    assert "nan" not in measures_text("rest", measures, None)
+    assert "nan" not in measures_text("rest", measures)
 
 
 @pytest.mark.parametrize("domain", [es.Box, es.Periodic])
@@ -64,7 +64,7 @@ def test_the_open_plane_has_no_steady_state():
     measures = es.simulate(scene, until=1000.0, measure=True).measures
     assert not measures.steady
     assert measures.doubts == ("on the open plane disks fly apart",)
-    assert "no steady state: on the open plane" in measures_text("far", measures, None)
+    assert "no steady state: on the open plane" in measures_text("far", measures)
     held = es.Scene(scene.disks, es.Open(), walls=(es.Circle((50.0, 0.0), 60.0),))
     assert es.simulate(held, until=1000.0, measure=True).measures.steady
 
@@ -73,4 +73,4 @@ def test_the_open_plane_has_no_steady_state():
 def test_a_run_without_contacts_has_no_line_of_what_was_not_seen(domain):
     measures = es.simulate(two_disks(domain), until=1e-3, measure=True).measures
     assert all(math.isfinite(quantity.value) or quantity.doubt for quantity in measures.quantities)
-    assert "nan" not in measures_text("short", measures, None)
+    assert "nan" not in measures_text("short", measures)

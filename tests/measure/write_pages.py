@@ -13,7 +13,7 @@ EVENTS = 600
 def page(name):
     """The page of a short run of a scene."""
     measures = es.simulate(es.gallery(name), events=EVENTS, engine="reference", measure=True).measures
-    return measures_text(name, measures, None) + "\n"
+    return measures_text(name, measures) + "\n"
 
 
 if __name__ == "__main__":
