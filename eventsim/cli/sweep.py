@@ -28,6 +28,8 @@ SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given sever
 @click.option("--until", type=float, metavar="T", help="Stop every run at this time.")
 @click.option("--events", type=Whole(min=1), metavar="N", help="Stop every run after N events.")
 @click.option("--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this time at the beginnings.")
+@click.option("--structure", is_flag=True, help="Also g(r) at contact, S(0), psi_6 and coordination (needs freud).")
+@click.option("--transport", is_flag=True, help="Also viscosity, heat conductivity and self-diffusion.")
 @click.option("--engine", default="auto", show_default=True, metavar="NAME", help="Which engine simulates.")
 @click.option("--workers", type=click.IntRange(min=1), metavar="W", help="Processes; default: one for each core.")
 @click.option("--dask", metavar="ADDRESS", help="Let a Dask cluster do it, such as tcp://host:8786.")
@@ -43,6 +45,8 @@ def command(
     until: float | None,
     events: int | None,
     discard: float | None,
+    structure: bool,
+    transport: bool,
     engine: str,
     workers: int | None,
     dask: str | None,
@@ -98,6 +102,7 @@ def command(
                 until=until,
                 events=events,
                 discard=discard,
+                studies=[name for name, asked in (("structure", structure), ("transport", transport)) if asked],
                 engine=engine,
                 out=target,
                 workers=workers or os.cpu_count() or 1,

@@ -82,5 +82,5 @@ def identity_of(plan: Plan, first: Task) -> str:
         scene = scene_to_dict(plan.make((), 0))
     except EventsimError:  # not every scene stands without settings
         scene = {"keys": [key for key, _ in first.settings]}
-    facts = (scene, plan.until, plan.events, plan.discard, plan.engine, __version__)
+    facts = (scene, plan.until, plan.events, plan.discard, plan.engine, *plan.studies, __version__)
     return hashlib.sha256(repr(facts).encode()).hexdigest()

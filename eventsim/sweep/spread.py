@@ -35,6 +35,7 @@ def sweep(
     until: float | None = None,
     events: int | None = None,
     discard: float | None = None,
+    studies: Sequence[str] = (),
     engine: str = "auto",
     out: str | PathLike[str] | None = None,
     workers: int = 1,
@@ -46,7 +47,7 @@ def sweep(
 
     make(settings, seed) gives the scene.  grid: key of the scene -> values.  replicas: runs for each combination, every one with
     its own seed, derived from `seed`.  out: FILE.csv or .parquet; a journal beside it lets an interrupted sweep go on.
-    name: what the table calls the scene.
+    name: what the table calls the scene.  studies: names of those (`measure.studies`) that are made of each run.
     workers: processes; or else any concurrent.futures executor (that of Dask: Client(...).get_executor()).
     The rows do not depend on workers, executor, interrupts or resumption.
 
@@ -54,7 +55,7 @@ def sweep(
     """
     path = None if out is None else check_suffix(Path(out))
     tasks = tasks_of({key: [_written(value) for value in values] for key, values in grid.items()}, replicas, seed)
-    plan = Plan(make, until, events, discard, engine)
+    plan = Plan(make, until, events, discard, engine, tuple(studies))
     _demand_chance(plan, tasks[0], replicas)
     journal = None if path is None else Journal(path, identity_of(plan, tasks[0]))
     done: dict[str, Row] = {} if journal is None else journal.done
@@ -92,6 +93,7 @@ def _provenance(
         "until": plan.until,
         "events": plan.events,
         "discard": plan.discard,
+        **({"studies": list(plan.studies)} if plan.studies else {}),
         "engine": plan.engine,
     }
 

@@ -14,8 +14,10 @@ from eventsim.engines import engine_named
 from eventsim.engines.warming import SWITCH as WARM
 from eventsim.errors import EventsimError
 from eventsim.measure import Meter
+from eventsim.measure.studies import STUDIES
+from eventsim.replay.log import EventLog
 from eventsim.runner.loop import run_scene
-from eventsim.runner.options import RunOptions, stop_of
+from eventsim.runner.options import OnEvent, RunOptions, stop_of
 from eventsim.scene.scene import Scene
 from eventsim.sweep.grid import Task
 
@@ -28,13 +30,17 @@ MakeScene: TypeAlias = Callable[[tuple[str, ...], int | None], Scene]
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What all tasks have in common.  until, events: None for what the scene says.  discard: as of `Meter`."""
+    """What all tasks have in common.
+
+    until, events: None for what the scene says.  discard: as of `Meter`.  studies: names of those that are made as well.
+    """
 
     make: MakeScene
     until: float | None = None
     events: int | None = None
     discard: float | None = None
     engine: str = "auto"
+    studies: tuple[str, ...] = ()
 
 
 def row_of(plan: Plan, task: Task) -> Row:
@@ -64,12 +70,19 @@ def _measured(plan: Plan, task: Task) -> Row:
     scene = plan.make(task.overrides, task.seed)
     meter = Meter(scene, plan.discard)
     stop = stop_of(scene, plan.until, plan.events)
-    run = run_scene(engine_named(plan.engine), scene, stop, RunOptions(takers=[meter.write]))
+    asked = [one for one in STUDIES if one.name in plan.studies]
+    sinks = {one.name: one.sink(scene, plan.discard) for one in asked if one.sink is not None}
+    takers: list[OnEvent] = [meter.write, *(sink.write for sink in sinks.values())]
+    run = run_scene(engine_named(plan.engine), scene, stop, RunOptions(log=len(sinks) < len(asked), takers=takers))
     if run.stopped == "interrupted":
         raise KeyboardInterrupt
     if run.time == scene.start_time:
         raise EventsimError("no time passes in this run")
     measures = meter.finish(run.time - scene.start_time)
+    found = [sink.found(run.time - scene.start_time) for sink in sinks.values()]
+    if run.recorded is not None:
+        log = EventLog(*run.recorded)
+        found += [one.of(log, plan.discard) for one in asked if one.sink is None]
     row: Row = {
         "disks": measures.disks,
         "packing_fraction": measures.packing_fraction,
@@ -84,7 +97,7 @@ def _measured(plan: Plan, task: Task) -> Row:
         "equilibrated": measures.equilibrated,
         "doubts": "; ".join(measures.doubts) or None,
     }
-    for quantity in measures.quantities:
+    for quantity in (*measures.quantities, *(quantity for one in found for quantity in one.quantities)):
         if math.isnan(quantity.value):  # it has no meaning in this run
             continue
         row[quantity.name] = quantity.value

@@ -87,6 +87,18 @@ def test_a_sweep_writes_a_table_and_a_figure(eventsim, tmp_path):
     assert figure.read_text().startswith("<?xml")
 
 
+def test_a_sweep_makes_studies_of_each_run(eventsim, tmp_path):
+    pytest.importorskip("freud")
+    words = ["sweep", "periodic-fluid", "--set", "n=16", "--set", "packing_fraction=0.1", "--events", 1500, "--workers", 1]
+    result = eventsim(*words, "--engine", "reference", "--structure", "--transport", "--out", tmp_path / "z.csv")
+    assert result.exit_code == 0, result.stderr
+    (row,) = load_table(tmp_path / "z.csv")
+    assert row["failed"] is None
+    assert 0.0 <= row["psi_6"] <= 1.0
+    assert row["viscosity"] > 0.0
+    assert row["viscosity_theory"] > 0.0
+
+
 def test_a_sweep_of_nothing_but_failures_says_so(eventsim, tmp_path):
     result = eventsim("sweep", "periodic-fluid", "--set", "n=-1", "--events", 10, "--workers", 1, "--out", tmp_path / "z.csv")
     assert result.exit_code == 2

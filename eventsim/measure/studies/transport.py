@@ -28,7 +28,6 @@ from eventsim.measure.meter import Meter
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.replay.log import AnyLog
 from eventsim.scene.numbers import Point
-from eventsim.scene.pace import pace_of_scene
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import stage_of
 
@@ -215,9 +214,7 @@ def _no_meaning(ensemble: Ensemble) -> str | None:
         return ensemble.unsteady or ("gravity pulls" if ensemble.alone else "walls and posts take momentum")
     if ensemble.tracers is not None:
         return "there are tracers, which take no part"
-    if ensemble.no_temperature is not None:
-        return ensemble.no_temperature
-    return "the squares of speeds are no floats" if pace_of_scene(ensemble.scene) else None
+    return ensemble.no_temperature
 
 
 def _currents(velocity: Floats, mass: Floats) -> Floats:
