@@ -45,7 +45,7 @@ def command(
     """Prove what happens in SCENE: every number is a ball that the true one lies in, every comparison is certain.
 
     Where balls overlap, the run begins again with twice as many bits. Ties are decided where the numbers are rational
-    or come from equal expressions. Needs the extra `certify`.
+    or come from equal expressions. Needs the extra `certify`. Points (radius 0) that fall onto walls are refused.
 
     \b
     Examples:

@@ -7,6 +7,7 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.base import Stop
+from eventsim.errors import EventsimError
 from eventsim.record.compare import agreement
 from eventsim.scene.gallery import gallery
 from eventsim.validation.proof import prove
@@ -70,3 +71,10 @@ def test_rest_and_a_fall_onto_what_rests_are_proven():
     assert stopped in ("until", "collapse", "digits")
     assert (rows["kind"] == 2).any()
     assert len(agreement(rows, plain).pairs) >= min(len(rows), len(plain)) - 2
+
+
+def test_points_that_fall_onto_walls_are_refused():
+    walls = [es.Segment((0.0, 4.0), (2.0, 2.0)), es.Segment((2.0, 2.0), (4.0, 4.0))]
+    scene = es.Scene(es.Disks([(0.5, 5.0)], radius=0.0), es.Box((5.0, 8.0)), walls=walls, gravity=(0.0, -1.0))
+    with pytest.raises(EventsimError, match="give the disks a radius"):
+        certified(scene, events=3)

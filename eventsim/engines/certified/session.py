@@ -50,6 +50,7 @@ class CertifiedSession(Session):
     name = "certified"
 
     def __init__(self, stage: Stage, keep_rows: bool = True, options: CertifiedOptions | None = None) -> None:
+        _refuse_falling_points(stage)
         super().__init__(stage)
         options = options or CertifiedOptions()
         if not options.bits >= LEAST_BITS:
@@ -190,3 +191,13 @@ class CertifiedSession(Session):
         Raises EventsimError.
         """
         raise EventsimError("the certified engine proves a run from its start: it has no snapshots")
+
+
+def _refuse_falling_points(stage: Stage) -> None:
+    """Raise EventsimError where points fall onto walls: on which side of a wall a point is, balls that touch it do not tell."""
+    if stage.gravity is not None and stage.points:
+        raise EventsimError(
+            "the certified engine cannot prove this scene: it has gravity, walls and disks that are points to these (radius 0 or "
+            "below the last bits of places), and on which side of a wall a point is that touches it no ball tells; give the "
+            "disks a radius"
+        )
