@@ -121,6 +121,7 @@ def is_in_stadium(x, y):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_in_the_stadium_the_fiftieth_contact_is_anywhere():
     rng, arcs, sines = np.random.default_rng(11), [], []
     for _ in range(20):
@@ -197,6 +198,7 @@ def test_escape_from_a_hexagon_with_a_post_has_a_rate():
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_the_rate_of_escape_from_a_hexagon():
     values, errors = [], []
     for seed in range(6):

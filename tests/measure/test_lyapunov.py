@@ -218,8 +218,9 @@ def growth_of_neighbours(log, piece):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_the_fluid_against_two_neighbours_in_60_digits():
-    log = run_log(fluid(64), 40_000, engine="auto")
+    log = run_log(fluid(64), 80_000, engine="auto")
     entry = found(log, None, 1)["lyapunov_1"]
     with mp.workdps(60):
         other = growth_of_neighbours(log, piece=512)

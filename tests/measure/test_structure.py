@@ -95,6 +95,7 @@ def test_without_a_periodic_domain_or_freud_there_is_a_word(monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 @pytest.mark.parametrize("fraction", [0.3, 0.5])
 def test_contact_value_and_long_waves_of_a_fluid(fraction):
     log = fluid_log(4_096, fraction, 3_000_000, engine="auto")
@@ -108,6 +109,7 @@ def test_contact_value_and_long_waves_of_a_fluid(fraction):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_fifty_states_of_a_hundred_thousand_disks_take_a_minute():
     log = fluid_log(100_000, 0.5, 500_000, engine="auto")
     began = time.process_time()

@@ -112,6 +112,7 @@ def test_a_short_run_and_a_cluster_are_dashes():
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_viscosity_and_conductivity_of_a_dilute_gas():
     scene = fluid(1_000, 0.1)
     transport = Transport(scene)

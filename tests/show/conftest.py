@@ -3,6 +3,7 @@
 import pytest
 
 import eventsim as es
+from eventsim.measure.studies import structure
 
 
 def log_of(name, **stop):
@@ -21,6 +22,13 @@ def broken():
 def fluid():
     """A periodic fluid."""
     return log_of("periodic-fluid", events=600)
+
+
+@pytest.fixture(autouse=True)
+def few_states(monkeypatch):
+    """Structure is looked at in few states: what it says is tested elsewhere."""
+    monkeypatch.setattr(structure, "FEWEST", 2)
+    monkeypatch.setattr(structure, "MOST", 2)
 
 
 @pytest.fixture(scope="session")

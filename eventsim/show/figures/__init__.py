@@ -13,6 +13,7 @@ TITLES = {
     "series": "energy, temperature, pressure, collision rate along the run",
     "profile": "density and temperature in slices along gravity, or along x",
     "residuals": "energy and overlaps over time: how good the run is",
+    "structure": "g(r) and S(k) along the run (needs freud)",
     "boundary": "boundary map of a billiard: arc length and sine of the angle of each contact",
     "space-time": "positions against time, for disks in a corridor",
 }
