@@ -34,7 +34,7 @@ def log():
 def test_pairs_and_waves_are_those_of_a_plain_count(log, monkeypatch):
     monkeypatch.setattr(structure, "FEWEST", 3)
     monkeypatch.setattr(structure, "MOST", 3)
-    found = study(log, "structure")
+    found = study(log, "structure", discard=0.0)
     size, radius = np.array(log.scene.domain.size), float(log.scene.disks.radius[0])
     passage = Passage(log)
     states = list(passage.states([passage.span[1] * share for share in (1 / 6, 3 / 6, 5 / 6)]))

@@ -189,7 +189,8 @@ def found(log: AnyLog, discard: float | None, count: int) -> Found:
 
     Args:
         log: full or compact.
-        discard: time at the beginning that is left out; None: the time in which deviations turn into their directions.
+        discard: time at the beginning that is left out; None: the scene's `equilibration`, or else the time in which deviations
+            turn into their directions.
         count: at least 1; where there are fewer exponents (4 a disk that can be deflected), all of them.
 
     Raises:
@@ -198,6 +199,7 @@ def found(log: AnyLog, discard: float | None, count: int) -> Found:
     if count < 1:
         raise EventsimError(f"lyapunov: K = {count}: must be at least 1")
     scene = log.scene
+    discard = scene.equilibration if discard is None else discard
     why = _no_meaning(log)
     if why is not None:
         return Found((dash("lyapunov_1", PER_TIME, why),))

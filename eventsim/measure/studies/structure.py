@@ -32,6 +32,12 @@ Indices: TypeAlias = NDArray[np.int64]
 FEWEST, MOST, WORK = 50, 200, 1_000_000
 """States that are looked at: as many as there are `WORK` disks in, within these bounds."""
 
+SETTLING = 0.1
+"""Share of a run that is left out where neither the scene nor anybody else says how much."""
+
+FEW = 10_000
+"""Disks below which threads take longer to start than they save."""
+
 BIN, FARTHEST = 0.01, 4.0
 """Width of a bin of g(r), and how far it goes, in diameters."""
 
@@ -77,13 +83,15 @@ def found(log: AnyLog, discard: float | None) -> Found:
         return Found((dash("psi_6", "1", why),))
     passage = Passage(log)
     start, end = passage.span
-    begun = min(start + (discard or 0.0), end)
+    discard = scene.equilibration if discard is None else discard
+    begun = min(start + (SETTLING * (end - start) if discard is None else discard), end)
     count = int(np.clip(WORK // max(ensemble.n, 1), FEWEST, MOST)) if end > begun else 1
     kept = np.flatnonzero(ensemble.counted)
     looker = _Looker(freud, ensemble, kept)
     # in the middles of even spans: where a run ends with an event, two disks touch
     times = begun + (np.arange(count) + 0.5) * ((end - begun) / count)
-    samples = [looker.look(state.position[kept]) for state in passage.states(times.tolist())]
+    with freud.parallel.NumThreads(1 if len(kept) < FEW else None):
+        samples = [looker.look(state.position[kept]) for state in passage.states(times.tolist())]
     unsteady = ensemble.unsteady
     note = None if unsteady is None else f"an average over this run, which has no steady state: {unsteady}"
     contacts, g = looker.distribution(np.array([sample.pairs for sample in samples]), note)
@@ -207,7 +215,8 @@ class _Looker:
     def _structure_factor(self, place: Floats) -> Floats:
         """|sum of exp(i k r)|^2 / N at the chosen wave vectors: the waves along x times those along y, as one product."""
         x, y = (2.0 * math.pi / self._size[axis] * place[:, axis, None] for axis in (0, 1))
-        density = np.exp(1j * x * self._along_x).T @ np.exp(1j * y * self._along_y)
+        waves_x, waves_y = np.exp(1j * x * self._along_x), np.exp(1j * y * self._along_y)
+        density = np.einsum("nx,ny->xy", waves_x, waves_y) if len(place) < FEW else waves_x.T @ waves_y
         factor: Floats = (np.abs(density.ravel()[self._chosen]) ** 2) / len(place)
         return factor
 

@@ -61,7 +61,7 @@ class Transport:
 
         Args:
             scene: what is simulated.
-            discard: time at the beginning that is left out; None: none.
+            discard: time at the beginning that is left out; None: the scene's `equilibration`, or nothing.
             kicked: whether velocities are set from outside.
             corner: what places in rows are relative to; None: as engines have it now.
         """
@@ -74,7 +74,7 @@ class Transport:
         self._epoch_length, self._periods = stage.epoch_length, tuple(length or math.inf for length in stage.period)
         self._mass, self._drift = disks.mass, ensemble.drift
         self._current = _currents(disks.velocity - ensemble.drift, disks.mass).sum(axis=0)
-        self._begun, self._time = discard or 0.0, 0.0
+        self._begun, self._time = (scene.equilibration if discard is None else discard) or 0.0, 0.0
         self._moments = np.zeros(len(self._current))
         self._waiting: list[Rows] = []
         self._rows, self._step, self._next = 0, 0.0, 0
