@@ -129,7 +129,7 @@ def test_all_of_them_are_explained_or_refused():
     [
         ([es.Ellipse((0.0, 0.0), (5.0, 3.0))], (1.0, 1e-310), (0.28, 0.96)),
         ([es.Arc((0.0, 0.0), (1.0, 0.1), (2.0, 0.0))], (0.0, 1e20), (0.0, -1.0)),
-        ([], (1.0, 1.0), (5e-324, 0.0)),
+        ([], (1.0, 1.0), (1e-75, 0.0)),
     ],
     ids=["on the axis of an ellipse, but for 1e-310", "so far that an arc is below the digits", "the slowest there is"],
 )

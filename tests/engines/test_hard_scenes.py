@@ -77,11 +77,13 @@ def test_f18_one_large_disk_among_1e5_small_ones_has_one_log():
 
 @pytest.mark.parametrize("engine", BOTH)
 def test_f21_the_slowest_disk_meets_the_nearest_one_in_time(engine):
-    """A subnormal speed and the smallest gap that the coordinate 1 takes; the jump of the clock may cost a last bit."""
-    speed = 1e-310
+    """The smallest gap that the coordinate 1 takes; the jump of the clock may cost a last bit.  Slower disks are refused."""
+    speed = 1e-75
     log = log_of(on_plane([[0.0, 0.0], [1.0 + ULP, 0.0]], [[speed, 0.0], [0.0, 0.0]]), engine, events=1)
     assert log.time.tolist() == pytest.approx([float(Fraction(ULP) / Fraction(speed))], rel=ULP)
     assert (log.vxa[0], log.vxb[0]) == (0.0, speed)
+    with pytest.raises(es.SceneError, match="other units"):
+        on_plane([[0.0, 0.0], [1.0 + ULP, 0.0]], [[1e-310, 0.0], [0.0, 0.0]])
 
 
 @pytest.mark.parametrize("domain", [es.Box, es.Periodic])

@@ -84,8 +84,8 @@ def test_a_tie_that_nothing_decides_is_said_to_be_one():
     assert "more bits do not help" in session.reason
 
 
-@pytest.mark.parametrize("k", [-900, -530, 530, 900])
-def test_the_screen_judges_no_speeds_whose_squares_are_no_floats(k):
+@pytest.mark.parametrize("k", [-245, -120, 120, 245])
+def test_the_proof_is_the_same_at_the_ends_of_the_range_of_speeds(k):
     """The proof at any speed is that at speeds of about 1, and nobody warns."""
     scene = lattice_gas(8, 0.3, seed=1)
     fast = replace(scene, disks=replace(scene.disks, velocity=np.ldexp(scene.disks.velocity, k)))
