@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     default=10.0,
     show_default=True,
     metavar="S",
-    help="Seconds of computing for one engine on one scene.",
+    help="Seconds of computing for one engine on one scene; a proof has ten times as many.",
 )
 @click.option(
     "--workers",

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from eventsim.validation.stress.case import Case
+from eventsim.validation.stress.case import PROOF, Case
 from eventsim.validation.stress.catalogue import CASES
 from eventsim.validation.stress.verdict import Verdict, Word, hung, judge
 from eventsim.validation.stress.workers import Silence, answers
 
 PATIENCE = 180.0
-"""Seconds beyond the limit after which an engine is ended from outside: kernels for a scene may have to be compiled."""
+"""Seconds of computing beyond the limit after which an engine is ended from outside: kernels may have to be compiled."""
 
 COLUMNS = ("scene", "engine", "verdict", "fault", "error", "tolerance", "seconds", "sentence")
 
@@ -30,7 +30,7 @@ def atlas_of(
     # What compiles most begins first, so that all others are done beside it.
     jobs = [[(engine, case.name) for case in cases] for engine in sorted(engines, key=lambda name: name != "fast")]
     found: dict[tuple[str, str], Verdict] = {}
-    for (engine, name), answer in answers(partial(judge_named, limit=limit), jobs, workers, limit + PATIENCE):
+    for (engine, name), answer in answers(partial(judge_named, limit=limit), jobs, workers, PROOF * limit + PATIENCE):
         verdict = hung(CASES[name], engine, answer) if isinstance(answer, Silence) else answer
         found[name, engine] = verdict
         if told is not None:

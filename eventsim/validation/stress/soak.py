@@ -29,7 +29,7 @@ LIMIT = 5.0
 """Seconds for one run, of computing and without compiling; a longer one has hung."""
 
 PATIENCE = 180.0
-"""Seconds beyond it after which a run is ended from outside: kernels for a scene may have to be compiled."""
+"""Seconds of computing beyond it after which a run is ended from outside: kernels for a scene may have to be compiled."""
 
 MOST_DISKS, TRIES = 7, 40
 

@@ -9,14 +9,8 @@ from time import perf_counter
 
 from eventsim.engines import ONE_LOG
 from eventsim.errors import EventsimError
-from eventsim.validation.stress.case import Bench, Case, GaveUpError, TimeUpError
+from eventsim.validation.stress.case import CERTIFIED, Bench, Case, GaveUpError, TimeUpError
 from eventsim.validation.stress.workers import Silence
-
-CERTIFIED = "certified"
-"""It may say that it cannot prove a scene, or take its time, but not be wrong.
-
-The engines of ONE_LOG must be right, or refuse with a documented reason.
-"""
 
 COARSE = 0.1
 """Errors below it, in the case's units, are inaccurate; above it the answer is wrong."""
@@ -82,7 +76,11 @@ def hung(case: Case, engine: str, silence: Silence) -> Verdict:
 
 
 def is_fault(engine: str, word: Word, documented: bool) -> bool:
-    """Whether an engine that claims to be exact falls short of it."""
+    """Whether an engine that claims to be exact falls short of it.
+
+    The engines of ONE_LOG must be right, or refuse with a documented reason.  The certified one may say that it cannot prove a
+    scene, or take its time, but not be wrong.
+    """
     if word is Word.RIGHT or (word is Word.REFUSED and documented):
         return False
     return engine in ONE_LOG or (engine == CERTIFIED and word not in (Word.REFUSED, Word.SLOW))

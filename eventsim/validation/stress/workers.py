@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
@@ -17,6 +18,9 @@ Answer = TypeVar("Answer")
 
 TICK = 0.2
 """Seconds between two looks at processes that say nothing."""
+
+WAITED_FOR = 10.0
+"""In times of patience: how long a process is waited for by the wall clock, which other programs may fill."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,15 +49,15 @@ def answers(
 ) -> Iterator[tuple[Item, Answer | Silence]]:
     """(item, work(item)) as answers come; each job, a list of items, has a process of its own, `workers` of them at a time.
 
-    work: importable by its name; items and answers: picklable.  patience: seconds for one item.  A process that ends or takes
-    longer costs only that item, whose answer is a Silence.
+    work: importable by its name; items and answers: picklable.  patience: seconds of computing for one item.  A process that
+    ends or takes longer, or sleeps for ten times as long, costs only that item, whose answer is a Silence.
     """
     waiting = [list(job) for job in jobs if job]
     running: list[_Worker[Item]] = []
     try:
         while waiting or running:
             while waiting and len(running) < max(workers, 1):
-                running.append(_started(work, waiting.pop(0)))
+                running.append(_started(work, waiting.pop(0), patience))
             ready = wait([worker.pipe for worker in running], timeout=TICK)
             for worker in list(running):
                 answer = _heard(worker, worker.pipe in ready, patience)
@@ -72,19 +76,21 @@ def answers(
             _end(worker)
 
 
-def _started(work: Callable[[Item], Any], items: list[Item]) -> _Worker[Item]:
+def _started(work: Callable[[Item], Any], items: list[Item], patience: float) -> _Worker[Item]:
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe(duplex=False)
-    process = context.Process(target=_work, args=(work, tuple(items), there), daemon=True)
+    process = context.Process(target=_work, args=(work, tuple(items), there, patience), daemon=True)
     process.start()
     there.close()
     return _Worker(process, here, items, perf_counter())
 
 
-def _work(work: Callable[[Item], Any], items: Sequence[Item], pipe: Connection) -> None:
-    """What a process does; Ctrl-C is left to its parent."""
+def _work(work: Callable[[Item], Any], items: Sequence[Item], pipe: Connection, patience: float) -> None:
+    """What a process does; Ctrl-C is left to its parent.  The system ends it where an item takes too long."""
     obey_parent()
     for item in items:
+        if hasattr(signal, "setitimer"):
+            signal.setitimer(signal.ITIMER_PROF, patience)
         pipe.send((work(item),))
     pipe.close()
 
@@ -96,9 +102,10 @@ def _heard(worker: _Worker[Item], ready: bool, patience: float) -> tuple[Any] | 
         try:
             answer: tuple[Any] = worker.pipe.recv()
         except (EOFError, ConnectionError):
-            return Silence(seconds, ended=True)
+            worker.process.join()
+            return Silence(seconds, ended=worker.process.exitcode != -getattr(signal, "SIGPROF", 0))
         return answer
-    return Silence(seconds, ended=False) if seconds > patience else None
+    return Silence(seconds, ended=False) if seconds > WAITED_FOR * patience else None
 
 
 def _end(worker: _Worker[Item]) -> None:

@@ -17,6 +17,7 @@ from eventsim.validation.stress.catalogue import (
     pileups,
     spells,
     steps,
+    ties,
 )
 
 
@@ -32,7 +33,19 @@ CASES: dict[str, Case] = {
     for case in sorted(
         (
             case
-            for family in (grazes, clusters, digits, order, boundaries, pileups, long_runs, steps, corners, spells)
+            for family in (
+                grazes,
+                clusters,
+                digits,
+                order,
+                boundaries,
+                pileups,
+                long_runs,
+                steps,
+                corners,
+                spells,
+                ties,
+            )
             for case in family.CASES
         ),
         key=_place,

@@ -14,6 +14,8 @@ from eventsim.validation.stress.catalogue.scenes import in_box, lattice_gas, on_
 ULP = 2.0**-52
 COLLAPSE_TIME = 1.78303658
 """Of e = .0717, from 400 digits."""
+WALL_COLLAPSE_TIME = 4.16370644
+"""Of a wall and two disks with e = .17, from 400 digits."""
 
 
 def _eleven(bench: Bench) -> float:
@@ -86,6 +88,53 @@ def _no_restitution(bench: Bench) -> float:
     crowd = lattice_gas(30, 0.3, restitution=0.0, contact_duration=1e-3)
     lost = bench.run(crowd, events=500).counters.events < 500
     return abs(run.counters.events - 1) + float(lost)
+
+
+def wall_and_two(restitution: float) -> Scene:
+    """A wall, a disk at rest, and one that flies onto it; critical restitution 3 - 2 sqrt 2 = .17157."""
+    disks = Disks([[1.0, 0.0], [3.0, 0.0]], [[0.0, 0.0], [-1.0, 0.0]], 0.5)
+    return Scene(disks, Open(), walls=[Segment((-0.5, -9.0), (-0.5, 9.0))], restitution=restitution)
+
+
+def bent_three() -> Scene:
+    """Three disks, nearly in line, near the critical restitution 7 - 4 sqrt 3 = .0718."""
+    place = [[0.0, 0.0], [2.0, 0.001], [3.7, 0.0]]
+    return on_plane(place, [[1.0, 0.0], [0.0, 0.0], [-0.7, 0.0]], restitution=0.0728)
+
+
+def _within_digits(bench: Bench) -> float:
+    counts = ((0.19, 11), (0.175, 26))
+    return max(abs(bench.run(wall_and_two(e), until=20.0).counters.events - true) for e, true in counts)
+
+
+def _below_digits(bench: Bench, scene: Scene, known: int, true: float) -> float:
+    """Contacts too many or too few; a run that stops must have those that the digits tell, and none that is made up.
+
+    known: contacts that gaps above 1e-13 decide.  true: how many there are.
+    """
+    run = bench.run(scene, until=40.0, may_give_up=True)
+    count = run.counters.events
+    if run.stopped not in GOES_ON and known <= count <= true:
+        raise GaveUpError(run.stopped, run.reason)
+    return abs(count - true)
+
+
+def _critical_wall(bench: Bench) -> float:
+    """Contacts too many or too few, for ever more of them."""
+    counts = ((0.172, 74), (0.1717, 137), (0.1716, 297))
+    return max(_below_digits(bench, wall_and_two(e), 32, true) for e, true in counts)
+
+
+def _endless_wall(bench: Bench) -> float:
+    """How far the diagnosis is from the collapse in time; a run that stops for its digits must have used them."""
+    run = bench.run(wall_and_two(0.17), until=5.0, may_give_up=True)
+    if run.stopped == "digits" and run.counters.events >= 31 and run.time < WALL_COLLAPSE_TIME:
+        raise GaveUpError(run.stopped, run.reason)
+    return abs(run.time - WALL_COLLAPSE_TIME) if run.stopped in ("collapse", "digits") else math.inf
+
+
+def _bent(bench: Bench) -> float:
+    return _below_digits(bench, bent_three(), 10, 25)
 
 
 CASES = (
@@ -164,5 +213,44 @@ CASES = (
         0.0,
         "A count.",
         _no_restitution,
+    ),
+    Case(
+        "p4-within",
+        "a wall and two disks, e a little above the critical one",
+        "The gaps shrink by orders of magnitude before the contacts end.",
+        "11 contacts for e = .19, 26 for e = .175, from 400 digits (critical: 3 - 2 sqrt 2).",
+        0.0,
+        "A count.",
+        _within_digits,
+    ),
+    Case(
+        "p4-wall",
+        "a wall and two disks, e just above the critical one",
+        "The gaps sink below the digits, where rounding makes contacts up, or loses them.",
+        "74 contacts for e = .172, 137 for .1717, 297 for .1716, from 400 digits; or the statement that the digits are spent.",
+        0.0,
+        "A count; who stops must have the 32 contacts whose gaps are above 1e-13.",
+        _critical_wall,
+        ("digits", "collapse"),
+    ),
+    Case(
+        "p4-endless",
+        "a wall and two disks, e = .17, just below the critical one",
+        "The contacts never end; rounding ends them.",
+        "Collapse at 4.16370644, from 400 digits, or the statement that the digits are spent.",
+        1e-7,
+        "The time is known to 1e-8; float gaps end at about 1e-8 before it.",
+        _endless_wall,
+        ("digits", "collapse"),
+    ),
+    Case(
+        "p4-bent",
+        "three disks, nearly in line, e = .0728",
+        "The gaps sink below the digits before the bend parts the disks; the rest is rounding.",
+        "25 contacts, the last gap 7e-22, from 400 digits; or the statement that the digits are spent.",
+        0.0,
+        "A count; who stops must have the 10 contacts whose gaps are above 1e-13.",
+        _bent,
+        ("digits", "collapse"),
     ),
 )
