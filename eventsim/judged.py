@@ -69,19 +69,12 @@ class Judged:
 
 @overload
 def validate(
-    scene: Scene,
-    *,
-    trajectory: Source,
-    contacts: Source | None = ...,
-    dt: float | None = ...,
-    tolerance: float | None = ...,
+    scene: Scene, *, trajectory: Source, contacts: Source | None = ..., dt: float | None = ..., tolerance: float | None = ...
 ) -> Judged: ...
 
 
 @overload
-def validate(
-    scene: Scene, *, step: Step, dt: float, until: float | None = ..., tolerance: float | None = ...
-) -> Judged: ...
+def validate(scene: Scene, *, step: Step, dt: float, until: float | None = ..., tolerance: float | None = ...) -> Judged: ...
 
 
 @overload

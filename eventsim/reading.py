@@ -72,9 +72,7 @@ def told_as(path: Path, error: type[EventsimError], what: str) -> Iterator[None]
         raise error(f"{path}: cannot be read ({problem.strerror or problem})") from problem
     except MemoryError as problem:
         raise error(f"{path}: there is not enough memory to read it") from problem
-    except (
-        Exception
-    ) as problem:  # zipfile alone has ten kinds, and numpy's readers let those of Python's parser through
+    except Exception as problem:  # zipfile alone has ten kinds, and numpy's readers let those of Python's parser through
         raise error(f"{path}: {what} ({reason_of(problem)})") from problem
 
 

@@ -104,9 +104,7 @@ def simulate(
         wanted.takers.append(meter.write)
     if trust or (trust is None and (chosen.name == "reference" or (chosen.name == "auto" and log is not False))):
         if not chosen.replays:
-            raise EventsimError(
-                f"trust is about the last bits of event-driven runs, and the engine {chosen.name} is none"
-            )
+            raise EventsimError(f"trust is about the last bits of event-driven runs, and the engine {chosen.name} is none")
         from eventsim.measure.trust import UNASKED, TrustLine
 
         line = TrustLine(scene, None if trust or chosen.name == "reference" else UNASKED)
@@ -372,9 +370,7 @@ class Simulation:
         Raises EventsimError for a snapshot of another scene, and where what happened since is in a file.
         """
         if self._keeping is not None and saved.counters.events != self.counters.events:
-            raise EventsimError(
-                "what is in a log file cannot be taken back: keep the log in memory to restore snapshots"
-            )
+            raise EventsimError("what is in a log file cannot be taken back: keep the log in memory to restore snapshots")
         if saved.scene != self.scene:
             raise EventsimError("restore() takes what snapshot() of a simulation of the same scene gave")
         self._broken_off = False
@@ -431,9 +427,7 @@ class Simulation:
         if self._closed:
             raise EventsimError("the simulation is closed: its files are complete; resume() goes on from a checkpoint")
         if self._broken_off:
-            raise EventsimError(
-                "the simulation was broken off in the middle of an event: restore() a snapshot, or begin anew"
-            )
+            raise EventsimError("the simulation was broken off in the middle of an event: restore() a snapshot, or begin anew")
 
     def _keep(self) -> None:
         rows = unchangeable(self._session.take_rows())

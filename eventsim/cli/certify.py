@@ -81,9 +81,7 @@ def command(
     """
     path = writable(log, "--log", suffixes.LOGS)
     if most_bits < bits:
-        raise click.UsageError(
-            f"--most-bits {most_bits}: the last attempt cannot have fewer bits than the first, --bits {bits}"
-        )
+        raise click.UsageError(f"--most-bits {most_bits}: the last attempt cannot have fewer bits than the first, --bits {bits}")
 
     from eventsim.cli.progress import ProgressBar
     from eventsim.cli.signals import interruptible
@@ -175,9 +173,7 @@ def _text(asked: str, proof: Proof, log: Path | None) -> str:
     lines = [f"{title(asked, run.scene.name)}: {scene_line(run.scene)}", aligned(rows)]
     if len(run.state.position) <= DISKS_SHOWN:
         for i, (place, errors) in enumerate(zip(run.state.position, proof.enclosures, strict=True)):
-            x, y = (
-                f"{value!r} {_within(error, '+-')}" for value, error in zip(place.tolist(), errors[:2], strict=True)
-            )
+            x, y = (f"{value!r} {_within(error, '+-')}" for value, error in zip(place.tolist(), errors[:2], strict=True))
             lines.append(f"  disk {i}: x = {x}, y = {y}")
     return "\n".join(lines)
 
@@ -194,9 +190,7 @@ def _float64(proof: Proof) -> str:
     from eventsim.scene.names import plural
 
     float64 = proof.float64
-    close = (
-        f"; {plural(float64.near_ties, 'near tie')} among them, which only last bits part" if float64.near_ties else ""
-    )
+    close = f"; {plural(float64.near_ties, 'near tie')} among them, which only last bits part" if float64.near_ties else ""
     if float64.difference is None:
         extra = f", and then {plural(float64.surplus, 'event')} that there are not" if float64.surplus else ""
         return f"has {plural(float64.agreed, 'event')} in the same order{close}{extra}"
@@ -213,9 +207,7 @@ def _errors(float64: Rounded) -> str:
     if float64.deviation == float64.velocity_deviation == float64.time_deviation == 0.0:
         return "none at these contacts: float64 is right to the last bit"
     places = f"{float64.deviation:.1e} in a coordinate ({float64.deviation_share:.1e} of the largest length)"
-    velocities = (
-        f"{float64.velocity_deviation:.1e} in a velocity ({float64.velocity_deviation_share:.1e} of the fastest)"
-    )
+    velocities = f"{float64.velocity_deviation:.1e} in a velocity ({float64.velocity_deviation_share:.1e} of the fastest)"
     times = f"{float64.time_deviation:.1e} in a time"
     told = (
         (float64.deviation, places),

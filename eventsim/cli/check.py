@@ -14,9 +14,7 @@ from eventsim.suffixes import LOGS, PART
 @click.command()
 @scene_options(required=True)
 @click.option("--horizon", is_flag=True, help="Simulate a little, to estimate until when float64 is right.")
-@click.option(
-    "--all", "every", is_flag=True, help="Write out every problem: all pairs that overlap, not the first three."
-)
+@click.option("--all", "every", is_flag=True, help="Write out every problem: all pairs that overlap, not the first three.")
 @json_option
 @quiet_option
 def command(

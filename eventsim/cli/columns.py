@@ -50,10 +50,7 @@ def profile_columns(measures: Measures) -> Columns:
         for axis, name in enumerate("xy"):
             columns[f"v{name}{end}"] = one.velocity[:, axis].tolist()
             columns[f"v{name}_error{end}"] = one.velocity_error[:, axis].tolist()
-        columns |= {
-            f"temperature{end}": one.temperature.tolist(),
-            f"temperature_error{end}": one.temperature_error.tolist(),
-        }
+        columns |= {f"temperature{end}": one.temperature.tolist(), f"temperature_error{end}": one.temperature_error.tolist()}
     return columns
 
 
@@ -69,15 +66,10 @@ def study_columns(found: Iterable[Found]) -> Columns:
 def table_of(columns: Columns) -> str:
     """Columns as aligned lines; a dash where there is no number, and no column that is all dashes."""
     known = {name: column for name, column in columns.items() if not all(math.isnan(number) for number in column)}
-    cells = [
-        [name, *(EM_DASH if math.isnan(number) else f"{number:.4g}" for number in column)]
-        for name, column in known.items()
-    ]
+    cells = [[name, *(EM_DASH if math.isnan(number) else f"{number:.4g}" for number in column)] for name, column in known.items()]
     widths = [max(map(len, column)) for column in cells]
     lines = zip(*cells, strict=True)
-    return "\n".join(
-        "  " + "  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)) for line in lines
-    )
+    return "\n".join("  " + "  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)) for line in lines)
 
 
 EM_DASH = "\N{EM DASH}"

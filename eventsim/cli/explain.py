@@ -113,9 +113,7 @@ def _walls(needs: Needs) -> str:
 
 def _table(table: tuple[float, float, float]) -> str:
     area, perimeter, path = (short(number) for number in table)
-    return (
-        f"its centre sees area {area}, perimeter {perimeter}; the mean free path, over all ways, is pi A / P = {path}"
-    )
+    return f"its centre sees area {area}, perimeter {perimeter}; the mean free path, over all ways, is pi A / P = {path}"
 
 
 def _flights(needs: Needs) -> str:

@@ -30,12 +30,7 @@ def say_judged(
     judged = validate(scene, trajectory=trajectory, contacts=contacts, dt=dt, tolerance=tolerance)
     data = judgement_data(judged.judgement)
     if csv is not None:
-        facts = {
-            "scene": data["scene"],
-            "trajectory": trajectory,
-            "tolerance": data["tolerance"],
-            "verdict": data["verdict"],
-        }
+        facts = {"scene": data["scene"], "trajectory": trajectory, "tolerance": data["tolerance"], "verdict": data["verdict"]}
         write_csv(csv, judgement_rows(judged.judgement), provenance_lines(click.get_current_context().obj, facts))
     if figure is not None:
         judged.save_figure(figure)

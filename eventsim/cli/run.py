@@ -145,9 +145,7 @@ def command(
             "eventsim validate tells how far"
         )
     if horizon and engine == "certified":
-        raise click.UsageError(
-            "--horizon: what the certified engine has simulated is proven; eventsim certify compares float64"
-        )
+        raise click.UsageError("--horizon: what the certified engine has simulated is proven; eventsim certify compares float64")
     options = engine_options(engine or "auto", dt, engine_settings)
     if resume is not None and options:
         raise click.UsageError("--dt and --option: what an engine was told is not in a checkpoint")

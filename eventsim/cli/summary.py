@@ -82,9 +82,7 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
 
 def horizon_words(horizon: Horizon) -> str:
     """Return what a reader may believe of a float64 trajectory."""
-    ties = (
-        f"; {plural(horizon.near_ties, 'near tie')} until then, which only last bits part" if horizon.near_ties else ""
-    )
+    ties = f"; {plural(horizon.near_ties, 'near tie')} until then, which only last bits part" if horizon.near_ties else ""
     if horizon.event is not None and horizon.time is not None:
         return (
             f"the trajectory is right until about event {horizon.event:,}, t = {short(horizon.time)}; "

@@ -115,9 +115,7 @@ def command(
     if not judging and (contacts is not None or tolerance is not None):
         raise click.UsageError("--contacts and --tolerance belong to --trajectory")
     if judging and (against or until is not None or len(steps) > 1):
-        raise click.UsageError(
-            "--trajectory judges one motion as it is: --against, --until and several --dt do not go with it"
-        )
+        raise click.UsageError("--trajectory judges one motion as it is: --against, --until and several --dt do not go with it")
     for step in steps:
         if not 0.0 < step < math.inf:
             raise click.UsageError(f"--dt {step!r}: a step must be a finite time above 0")

@@ -163,9 +163,7 @@ def _rounds(disks: list[int], lengths: Floats, period: int, end: float, clean: f
     series = lengths[last + 1 - best : last + 1]
     ratio = _ratio(series, period, clean * float(lengths[last:].min()))
     ends_now = float(series[-1]) * ratio <= (1.0 - ratio) * 2.0 * end
-    return Rounds(
-        disks, best // period, ratio, float(series[0]), float(series[-1]), ends_now, _is_steady(series, period)
-    )
+    return Rounds(disks, best // period, ratio, float(series[0]), float(series[-1]), ends_now, _is_steady(series, period))
 
 
 def _is_steady(series: Floats, period: int) -> bool:

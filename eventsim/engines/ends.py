@@ -21,9 +21,7 @@ def end_of_clock(stage: Stage, epoch: int, end: float, due: float, ahead: bool) 
     last = clock_time(epoch, end, stage.epoch_length, stage.start_time)
     what = "may still be ahead"
     if due < np.inf:
-        what = (
-            f"is still ahead, due then or later (t = {clock_time(epoch, due, stage.epoch_length, stage.start_time):g})"
-        )
+        what = f"is still ahead, due then or later (t = {clock_time(epoch, due, stage.epoch_length, stage.start_time):g})"
     return "digits", (
         f"the clock of this scene ends at t = {last:g}, and a contact {what}; "
         "a scene that begins from the state of this end counts its time anew"

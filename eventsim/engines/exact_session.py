@@ -30,9 +30,7 @@ class ExactSession(Session):
         super().__init__(stage)
         self._idle = 0.0  # time since the end of the last window that had rows
         self._behind: Snapshot | None = None  # where the last flight began, in an earlier window
-        self._before: Snapshot | None = (
-            None  # the open window, when the clock has jumped to a contact that is still to come
-        )
+        self._before: Snapshot | None = None  # the open window, when the clock has jumped to a contact that is still to come
         self._awaited: Real = 0.0  # when that contact is due in the open window
         self._missed: Real = -1.0  # when one is due in it that does not come where the clock jumps to
         self._clear: Real = 0.0  # none is due in it before
@@ -161,11 +159,7 @@ class ExactSession(Session):
     def _stop_at_the_end(self, due: Real) -> str:
         """Stop at the end of the clock, at or before a time at which the next contact is due: why."""
         state = self.state
-        end = (
-            min(state.window_end, (MOST_EPOCHS - state.epoch) * state.epoch_length)
-            if state.opened
-            else state.window_end
-        )
+        end = min(state.window_end, (MOST_EPOCHS - state.epoch) * state.epoch_length) if state.opened else state.window_end
         word, self.reason = end_of_clock(self.stage, state.epoch, end, float(due), self._meets_again())
         if word != "quiet":
             self._pass_to(end)

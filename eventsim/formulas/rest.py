@@ -286,9 +286,7 @@ def shape_contact(
         side = flight_side(support.face, met, beside, *flight[:4], radius)
         if met != 0 and side != met:  # it has come round an end since
             since = NOT_LAST
-        delay = rest_on_face_delay(
-            support.face, side, support.low, support.high, *flight, radius, restitution, t, since
-        )
+        delay = rest_on_face_delay(support.face, side, support.low, support.high, *flight, radius, restitution, t, since)
         if delay < NEVER:
             return delay, side, SUPPORTED
         if not since < 0.0:

@@ -94,9 +94,7 @@ def resolve_exactly(
     for k in braced:
         magnitudes[k] = math.nan
     for body in sorted(tracers):
-        _resolve_alone(
-            body, [k for k, c in enumerate(contacts) if body in (c.a, c.b)], contacts, exact, impulses, solver
-        )
+        _resolve_alone(body, [k for k, c in enumerate(contacts) if body in (c.a, c.b)], contacts, exact, impulses, solver)
     return exact, magnitudes, [value > 0 for value in impulses]
 
 

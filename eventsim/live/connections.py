@@ -49,9 +49,7 @@ class Connections:
         while True:
             await asyncio.sleep(LOOK_SECONDS)
             now = clock()
-            open_ = [
-                handler.transport for handler in server.connections if handler.transport is not None
-            ]  # the oldest first
+            open_ = [handler.transport for handler in server.connections if handler.transport is not None]  # the oldest first
             self._since = {each: self._since.get(each, now) for each in open_ if each not in self._answered}
             oldest = sorted(self._since, key=self._since.__getitem__)
             surplus = oldest[: max(len(open_) - MOST, 0)]

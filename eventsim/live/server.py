@@ -160,7 +160,9 @@ class House:
         return packet("hello", version=__version__, gallery=gallery, given=given)
 
 
-def application(given: Scene | None = None, token: str = "", connections: Connections | None = None) -> web.Application:
+def application(
+    given: Scene | None = None, token: str = "", connections: Connections | None = None
+) -> web.Application:
     """Return the server's application.
 
     Args:

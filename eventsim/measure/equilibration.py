@@ -99,12 +99,12 @@ def _unmixed(ensemble: Ensemble, moved: float) -> list[str]:
         return []
     middles = []
     for kind in range(ensemble.kinds):
-        place = (ensemble.scene.disks.position[ensemble.species_of == kind] - ensemble.scene.domain.origin) / np.array(
-            size
-        )
+        place = (ensemble.scene.disks.position[ensemble.species_of == kind] - ensemble.scene.domain.origin) / np.array(size)
         chance = BY_CHANCE / np.sqrt(12.0 * len(place))  # of places that are even in a domain of width 1
         middles.append((place.mean(axis=0), chance))
-    apart = any((np.abs(here - there) > off + other).any() for here, off in middles for there, other in middles)
+    apart = any(
+        (np.abs(here - there) > off + other).any() for here, off in middles for there, other in middles
+    )
     share = moved / max(size)
     return [f"species began apart, and disks have moved {share:.2g} of the domain's length only"] if apart else []
 

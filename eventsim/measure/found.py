@@ -38,9 +38,7 @@ class Found:
         return {
             "quantities": {quantity.name: quantity.to_dict() for quantity in self.quantities},
             "tables": {
-                name: {
-                    key: [number if math.isfinite(number) else None for number in column] for key, column in one.items()
-                }
+                name: {key: [number if math.isfinite(number) else None for number in column] for key, column in one.items()}
                 for name, one in self.tables.items()
             },
             "notes": list(self.notes),

@@ -53,8 +53,7 @@ def described_walls(scene: Scene, stage: Stage, ensemble: Ensemble) -> Floats:
 def _wraps_onto_itself(stage: Stage, wall: Part) -> bool:
     """Whether a wall is longer than a period: then no image of a disk is the nearest one to all of it."""
     return any(
-        period is not None and high - low > period
-        for period, low, high in zip(stage.period, *wall.bounds(), strict=True)
+        period is not None and high - low > period for period, low, high in zip(stage.period, *wall.bounds(), strict=True)
     )
 
 

@@ -1,10 +1,10 @@
 """Readers of what other programs wrote: places of disks at times, and contacts.
 
-samples    what all readers give: positions at times
-columns    tables of named columns, one row for each disk and time, or one for each time
-csv, npz, parquet   give such columns
-xyz, gsd, lammps   formats of molecular dynamics
-contacts   who met whom, when
+    samples    what all readers give: positions at times
+    columns    tables of named columns, one row for each disk and time, or one for each time
+    csv, npz, parquet   give such columns
+    xyz, gsd, lammps   formats of molecular dynamics
+    contacts   who met whom, when
 """
 
 from __future__ import annotations

@@ -46,9 +46,7 @@ def read_contacts(path: Path, n: int) -> ToldContacts:
 def _told(named: Columns, path: Path, n: int) -> ToldContacts:
     missing = [name for name in ("time", "a", "b") if name not in named]
     if missing:
-        raise EventsimError(
-            f"{path}: lacks {', '.join(missing)}: contacts have the columns time, a, b (-1: a wall), wall"
-        )
+        raise EventsimError(f"{path}: lacks {', '.join(missing)}: contacts have the columns time, a, b (-1: a wall), wall")
     demand_alike(named, ("time", "a", "b", "wall", "kind"), str(path))
     kept = np.ones(len(named["time"]), dtype=bool)
     if "kind" in named:

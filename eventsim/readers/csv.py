@@ -28,6 +28,4 @@ def csv_columns(path: Path) -> Named:
     for number, row in enumerate(rows[1:]):
         if len(row) != len(header):
             raise EventsimError(f"{path}: row {number} has {len(row)} values under {len(header)} names")
-    return [
-        (name, np.array([row[place].strip() for row in rows[1:]], dtype=object)) for place, name in enumerate(header)
-    ]
+    return [(name, np.array([row[place].strip() for row in rows[1:]], dtype=object)) for place, name in enumerate(header)]

@@ -77,9 +77,7 @@ def _frames(path: Path, lines: list[str]) -> Iterator[Frame]:
             elif item.startswith("BOX BOUNDS"):
                 if "xy" in item + rest:
                     raise EventsimError(f"{path} line {here}: the box is tilted: must have right angles")
-                box = np.array([[float(word) for word in line.split()] for line in lines[place : place + 2]]).reshape(
-                    2, 2
-                )
+                box = np.array([[float(word) for word in line.split()] for line in lines[place : place + 2]]).reshape(2, 2)
                 place += 3
             elif item.startswith("ATOMS"):
                 names = lines[here - 1].split()[2:]
@@ -136,9 +134,7 @@ def _places(path: Path, frame: Frame) -> Floats:
     elif "xs" in known and "ys" in known:
         place = low + size * _two(frame, "xs", "ys")
     else:
-        raise EventsimError(
-            f"{path}: the atoms have the columns {', '.join(known)}: must have x and y (or xs, xu, xsu)"
-        )
+        raise EventsimError(f"{path}: the atoms have the columns {', '.join(known)}: must have x and y (or xs, xu, xsu)")
     return place + size * _two(frame, "ix", "iy") if "ix" in known and "iy" in known else place
 
 

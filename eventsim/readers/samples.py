@@ -66,15 +66,11 @@ def checked(samples: Samples, least: int = 2) -> Samples:
     """The samples, their times in order; EventsimError for what cannot be positions at `least` times."""
     shape = samples.position.shape
     if len(shape) != 3 or shape[2] != 2 or shape[0] != len(samples.times) or not shape[1]:
-        raise EventsimError(
-            f"{samples.source}: positions {shape} at times {samples.times.shape}: must be (T, n, 2) at (T,)"
-        )
+        raise EventsimError(f"{samples.source}: positions {shape} at times {samples.times.shape}: must be (T, n, 2) at (T,)")
     if len(samples.times) < least:
         raise EventsimError(f"{samples.source}: holds {len(samples.times)} times; a motion has at least two")
     if samples.velocity is not None and samples.velocity.shape != shape:
-        raise EventsimError(
-            f"{samples.source}: velocities {samples.velocity.shape} of positions {shape}: must be alike"
-        )
+        raise EventsimError(f"{samples.source}: velocities {samples.velocity.shape} of positions {shape}: must be alike")
     for name, values in (("radius", samples.radius), ("mass", samples.mass)):
         if values is not None and values.shape != shape[1:2]:
             raise EventsimError(f"{samples.source}: {name} {values.shape} of {shape[1]} disks: must be ({shape[1]},)")

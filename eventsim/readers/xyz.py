@@ -44,9 +44,7 @@ def read_xyz(path: Path, dt: float | None = None, least: int = 2) -> Samples:
     counts = [len(frame.columns["pos"]) for frame in frames]
     if len(set(counts)) > 1:
         other = next(k for k, count in enumerate(counts) if count != counts[0])
-        raise EventsimError(
-            f"{path}: frame 0 has {counts[0]} disks and frame {other} has {counts[other]}: must be the same"
-        )
+        raise EventsimError(f"{path}: frame 0 has {counts[0]} disks and frame {other} has {counts[other]}: must be the same")
     names = frames[0].columns
     velocity = next((name for name in VELOCITIES if all(name in frame.columns for frame in frames)), None)
     times = times_of_frames(str(path), [frame.time for frame in frames], dt)
@@ -68,9 +66,7 @@ def _frames(path: Path, lines: list[str]) -> Iterator[Frame]:
         except ValueError:
             raise EventsimError(f"{path} line {first + 1}: {lines[first][:40]!r}: must be a number of disks") from None
         if not 0 < n <= len(lines) - first - 2:
-            raise EventsimError(
-                f"{path} line {first + 1}: announces {n} disks, and {len(lines) - first - 2} lines follow"
-            )
+            raise EventsimError(f"{path} line {first + 1}: announces {n} disks, and {len(lines) - first - 2} lines follow")
         comment, rows = lines[first + 1], [line.split() for line in lines[first + 2 : first + 2 + n]]
         yield Frame(_time(path, first + 2, comment), _columns(path, first + 3, comment, rows))
         first += 2 + n

@@ -86,7 +86,9 @@ def agreement(one: Rows, other: Rows) -> Agreement:
     return comparison.agreement()
 
 
-def deviations(one: Rows, other: Rows, pairs: NDArray[np.int64], columns: tuple[str, ...] = COORDINATES) -> Floats:
+def deviations(
+    one: Rows, other: Rows, pairs: NDArray[np.int64], columns: tuple[str, ...] = COORDINATES
+) -> Floats:
     """The largest difference in one of the columns, one a pair of rows that are the same contact; in the columns' unit."""
     mine, theirs = one[pairs[:, 0]], other[pairs[:, 1]]
     largest: Floats = np.fmax.reduce([np.abs(mine[name] - theirs[name]) for name in columns])

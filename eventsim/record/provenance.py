@@ -25,9 +25,7 @@ FORMAT = 2
 BITS = 2
 """Version of the rules that make the bits of a log; it goes up when a rule changes what any scene writes.  Version 0.1 had 1."""
 
-UNCHECKED = (
-    "a log of format 1 does not vouch for its scene: nothing tells whether a mass, a start or a row was changed since"
-)
+UNCHECKED = "a log of format 1 does not vouch for its scene: nothing tells whether a mass, a start or a row was changed since"
 
 SUM = "metadata_digest"
 """The last key of the metadata; see `metadata_digest`."""

@@ -56,9 +56,7 @@ def audit(path: str | PathLike[str]) -> Audit:
         raise LogError(changed[0])
     ending, digest = provenance.ending, digester.hexdigest()
     if ending is not None and ending.digest not in (None, digest):
-        raise LogError(
-            f"{Path(path)}: its full rows have the digest {digest}, and those of its run had {ending.digest}"
-        )
+        raise LogError(f"{Path(path)}: its full rows have the digest {digest}, and those of its run had {ending.digest}")
     begin, end = Passage(log).span
     notes = list(dict.fromkeys(str(one.message) for one in said))
     if ending is None:

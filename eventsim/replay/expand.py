@@ -130,9 +130,7 @@ class Expansion:
             writer.write(self._session.take_rows())
             if stopped is not None and counters.events < target:
                 writer.finish()
-                raise self._unfit(
-                    self._compact[self._done], f"and the engine finds none until then (it stops: {stopped})"
-                )
+                raise self._unfit(self._compact[self._done], f"and the engine finds none until then (it stops: {stopped})")
 
     def _take(self, found: Rows) -> None:
         """Compare the engine's next rows with those of the log; with many this is done beside the engine."""

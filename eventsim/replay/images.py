@@ -34,9 +34,7 @@ def images_of(motion: Motion, states: Sequence[State]) -> Indices:
             place = np.stack([state.position[:, axis] for state in states])
             images = (scene.disks.position[:, axis] + moved[:, :, axis] - place) / period
             if np.any(np.abs(images - np.rint(images)) > SURE):
-                raise LogError(
-                    "the flights of this log do not lead to its states: how often disks went round is not known"
-                )
+                raise LogError("the flights of this log do not lead to its states: how often disks went round is not known")
             found[:, :, axis] = np.rint(images)
     return found
 

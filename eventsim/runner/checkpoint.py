@@ -221,13 +221,7 @@ def _progress(arrays: Arrays, data: dict[str, Any]) -> Progress | None:
     if data["log"] is None or not data["log"]["compact"]:
         return None
     chunks, records = arrays[CHUNKS], arrays[RECORDS]
-    if (
-        chunks.dtype != np.uint8
-        or records.dtype != np.uint8
-        or chunks.ndim != 1
-        or records.ndim != 1
-        or len(chunks) % HASH
-    ):
+    if chunks.dtype != np.uint8 or records.dtype != np.uint8 or chunks.ndim != 1 or records.ndim != 1 or len(chunks) % HASH:
         raise ValueError("its digest is none")
     progress = Progress(chunks.tobytes(), np.frombuffer(records.tobytes(), RECORD))
     if len(chunks) // HASH * CHUNK + len(progress.records) != data["log"]["rows"] or len(progress.records) >= CHUNK:

@@ -74,16 +74,7 @@ class CheckpointWriter:
         log = None if self._log is None else KeptLog(self._log.path, self._log.provenance.compact, self._log.sync())
         counters = session.counters.copy()
         checkpoint = Checkpoint(
-            self._provenance,
-            self._stop,
-            self._every,
-            session.snapshot(),
-            counters,
-            log,
-            last_rows,
-            elapsed,
-            written,
-            digest,
+            self._provenance, self._stop, self._every, session.snapshot(), counters, log, last_rows, elapsed, written, digest
         )
         try:
             save_checkpoint(self._path, checkpoint, self._text)

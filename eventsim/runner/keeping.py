@@ -26,11 +26,7 @@ class Keeping:
     """
 
     def __init__(
-        self,
-        provenance: Provenance,
-        log: str | PathLike[str] | None,
-        checkpoint: str | PathLike[str] | None,
-        every: Every,
+        self, provenance: Provenance, log: str | PathLike[str] | None, checkpoint: str | PathLike[str] | None, every: Every
     ) -> None:
         self.log = None if log is None else open_sink(Path(log), provenance)
         self._last_rows, self._checkpoints = blank_rows(0), None

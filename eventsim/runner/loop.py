@@ -108,11 +108,7 @@ def _demand_possible(engine: Engine, stop: Stop, stage: Stage, wanted: RunOption
             "a compact log leaves out what the reference and the fast engine compute: "
             f"the log of the engine {engine.name} has to be a full one"
         )
-    if (
-        stage.goes_on_as_fast
-        and stop.until is not None
-        and stop.until - stage.start_time > MOST_EPOCHS * stage.epoch_length
-    ):
+    if stage.goes_on_as_fast and stop.until is not None and stop.until - stage.start_time > MOST_EPOCHS * stage.epoch_length:
         latest = stage.start_time + MOST_EPOCHS * stage.epoch_length
         raise EventsimError(f"until = {stop.until!r}: the clock of this scene ends at {latest:g}")
     if wanted.checkpoint is None and wanted.resumed is None:

@@ -100,7 +100,9 @@ class Cells:
         order = np.argsort(keys, kind="stable")
         return _Grid(members[order], keys[order], corner, width, largest, kind)
 
-    def _search(self, grid: _Grid, queries: Indices, position: Floats, radius: Floats, kind: int) -> Iterator[Overlaps]:
+    def _search(
+        self, grid: _Grid, queries: Indices, position: Floats, radius: Floats, kind: int
+    ) -> Iterator[Overlaps]:
         """Overlaps of the disks `queries` (indices into position and radius) with those of a grid."""
         if not len(queries) or (kind == grid.kind and kind != MASSIVE):
             return

@@ -70,9 +70,7 @@ class SceneClock(NamedTuple):
         So a gas that cools does not turn its clock over for every doubling of its times.
         """
         longest = self.paced + self.slowing(fastest)
-        return min(
-            longest if self.paced == self.window_cap else max(exponent + 1, longest), MOST_EPOCHS.bit_length() - 1
-        )
+        return min(longest if self.paced == self.window_cap else max(exponent + 1, longest), MOST_EPOCHS.bit_length() - 1)
 
 
 def clock_of(scene: Scene) -> SceneClock:

@@ -81,7 +81,9 @@ def place_compressed(
     placed = []
     for gas, centre, velocity, own in zip(gases, np.split(centres, cuts), velocities, each, strict=True):
         if not clear_of(domain, walls, present, centre, disk_radius(gas, region), gas, where):
-            raise SceneError(f'{where}.arrangement = "compressed": the region must be free of walls and of other disks')
+            raise SceneError(
+                f'{where}.arrangement = "compressed": the region must be free of walls and of other disks'
+            )
         placed.append(Disks(centre, velocity, own, gas.mass))
     return placed
 

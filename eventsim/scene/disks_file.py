@@ -37,11 +37,7 @@ class DisksFile:
 
 
 def read_disks_file(
-    path: Path,
-    domain: Domain | None = None,
-    frame: int | None = None,
-    radius: float | None = None,
-    mass: float | None = None,
+    path: Path, domain: Domain | None = None, frame: int | None = None, radius: float | None = None, mass: float | None = None
 ) -> DisksFile:
     """The disks of a file with the columns x, y, vx, vy, radius, mass; further columns are ignored.
 
@@ -70,7 +66,9 @@ def read_disks_file(
         times = np.unique(columns["time"])
         if len(times) > 1:
             listed = ", ".join(str(time) for time in times[:3].tolist()) + (", ..." if len(times) > 3 else "")
-            raise SceneError(f"{path}: holds the disks at {len(times)} times ({listed}); one start needs one time")
+            raise SceneError(
+                f"{path}: holds the disks at {len(times)} times ({listed}); one start needs one time"
+            )
     x, y, vx, vy, r, m = (columns[key] if key in columns else np.full(len(columns["x"]), given[key]) for key in COLUMNS)
     return DisksFile(Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), r, m), row, number)
 
@@ -84,9 +82,7 @@ def _read_frame(path: Path, domain: Domain | None, frame: int | None, given: dic
     size = None if domain is None else domain.size
     if domain is not None and size is not None:
         if samples.cell is not None and not np.allclose(samples.cell, size, rtol=1e-6):  # single precision
-            raise SceneError(
-                f"{path}: has the box {list(samples.cell)}, and the domain the size {list(size)}: must be alike"
-            )
+            raise SceneError(f"{path}: has the box {list(samples.cell)}, and the domain the size {list(size)}: must be alike")
         samples = samples.placed(domain.origin)
     position = samples.position[0].copy()
     for axis, period in enumerate((None, None) if domain is None else domain.period):
@@ -131,7 +127,9 @@ def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dic
     return dict(zip(wanted, table.T, strict=True)), "line", np.array(number)
 
 
-def _bad_lines(path: Path, rows: list[str], number: list[int], wanted: list[str], places: list[int]) -> list[str]:
+def _bad_lines(
+    path: Path, rows: list[str], number: list[int], wanted: list[str], places: list[int]
+) -> list[str]:
     """What is wrong with the first lines that cannot be read."""
     problems: list[str] = []
     for n, cells in zip(number, csv.reader(rows), strict=False):

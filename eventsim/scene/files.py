@@ -36,7 +36,6 @@ __all__ = [
     "with_lines",
 ]
 
-
 def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
     """The scene of a .toml or .json file.
 

@@ -88,7 +88,9 @@ class _Place:
         width, height = region[2] - region[0], region[3] - region[1]
         self.wraps = (width >= self.period[0], height >= self.period[1])
         if min(width, height) < 2.0 * self.radius:
-            raise SceneError(f"{where}: a disk of radius {self.radius:.6g} is wider than the region {self._extent()}")
+            raise SceneError(
+                f"{where}: a disk of radius {self.radius:.6g} is wider than the region {self._extent()}"
+            )
         self.parts = parts_of(walls)
         masses = np.where(np.isinf(present.mass), 1.0, present.mass)
         self.others = Cells(present.position - np.array(self.origin), present.radius, masses, self.period)

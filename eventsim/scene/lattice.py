@@ -87,7 +87,11 @@ class Lattice:
         else:
             margin = float(self._margin(np.array(self._pitch(shape)), np.array(shape.rows)))
             y = y0 + margin + (height - 2.0 * margin) * (row / (shape.rows - 1))
-        there = ~((odd == 1) & (column == shape.columns - 1)) if shape.short else np.ones_like(odd, dtype=np.bool_)
+        there = (
+            ~((odd == 1) & (column == shape.columns - 1))
+            if shape.short
+            else np.ones_like(odd, dtype=np.bool_)
+        )
         return np.stack([(x0 + width * along)[there], y[there]], axis=1)
 
     def _size(self) -> tuple[float, float]:

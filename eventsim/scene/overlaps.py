@@ -86,7 +86,9 @@ def feature_overlaps(disks: Disks, domain: Domain, parts: Sequence[Part]) -> Fou
     corner = corner_of(disks, domain, parts)
     scale = coordinate_scale(disks, corner)
     chunks: list[Found] = []
-    for index, near, deep in wall_overlaps(parts, disks.position, disks.radius, domain.origin, period_of(domain)):
+    for index, near, deep in wall_overlaps(
+        parts, disks.position, disks.radius, domain.origin, period_of(domain)
+    ):
         size = parts[index].scale(corner)
         rounding = touching_depth(np.maximum(scale[near], size))
         chunks.append(Found(near, np.full(len(near), index), deep, rounding))

@@ -99,6 +99,7 @@ class Scene:
         if problems:
             raise SceneError(problems)
 
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write the scene to `path`, .toml or .json, every disk listed; `load_scene` gives back every bit.
 
@@ -113,9 +114,7 @@ class Scene:
         return f"Scene({', '.join(f'{key}: {value}' if key else value for key, value in self._facts())})"
 
     def _repr_html_(self) -> str:
-        return html_table(
-            self.name or "a scene without a name", (), [(key or "disks", value) for key, value in self._facts()]
-        )
+        return html_table(self.name or "a scene without a name", (), [(key or "disks", value) for key, value in self._facts()])
 
     def _facts(self) -> Iterator[tuple[str, str]]:
         """What there is to say in short, by key."""
@@ -147,7 +146,9 @@ def _demand_types(disks: object, domain: object, walls: Sequence[object], name: 
         problems += [f"wall[{i}] = {wall!r}: must be one of {kinds}" for i, wall in strange]
         called = [(i, getattr(wall, "name", None)) for i, wall in enumerate(walls)]
         problems += [
-            f"wall[{i}].name = {name!r}: must be a text" for i, name in called if not isinstance(name, str | None)
+            f"wall[{i}].name = {name!r}: must be a text"
+            for i, name in called
+            if not isinstance(name, str | None)
         ]
     if name is not None and not isinstance(name, str):
         problems.append(f"name = {name!r}: must be a text")

@@ -107,7 +107,9 @@ def one_of(*words: str) -> Callable[[object], str]:
 
 POINT = numbers(2, "two numbers [x, y]")
 KIND: dict[Any, Any] = {Required("kind"): text}
-SIZED = Schema({**KIND, Required("size"): numbers(2, "two numbers [width, height]"), Optional("origin"): POINT})
+SIZED = Schema(
+    {**KIND, Required("size"): numbers(2, "two numbers [width, height]"), Optional("origin"): POINT}
+)
 
 SCENE = Schema(
     {
@@ -151,9 +153,7 @@ DISKS_FILE = Schema(
 )
 WALL_KEYS: dict[str, Callable[[object], object]] = {PLACE: POINT, POINTS: points, LENGTH: number, NAME: text}
 WALL = {
-    kind: Schema(
-        {**KIND, **{(Required, Optional)[key == "name"](key): WALL_KEYS[of] for key, of in keys_of(wall).items()}}
-    )
+    kind: Schema({**KIND, **{(Required, Optional)[key == "name"](key): WALL_KEYS[of] for key, of in keys_of(wall).items()}})
     for kind, wall in WALLS.items()
 }
 SCALARS = tuple(str(key) for key in SCENE.schema)

@@ -36,18 +36,14 @@ class Sizes:
     def problems(self) -> Iterator[str]:
         """Every rule that the numbers break, one sentence each."""
         numbers = list(self.numbers)
-        if self.rule == "uniform" and not (
-            is_length(numbers[0]) and is_length(numbers[1]) and numbers[0] <= numbers[1]
-        ):
+        if self.rule == "uniform" and not (is_length(numbers[0]) and is_length(numbers[1]) and numbers[0] <= numbers[1]):
             yield f"uniform = {numbers}: must be lengths [least, largest], above 0, the least first"
         if self.rule == "lognormal" and not (is_length(numbers[0]) and 0.0 <= numbers[1] <= 2.0):
             yield f"lognormal = {numbers}: must be [median, sigma], a length above 0 and a number from 0 to 2"
         if self.rule == "values" and not (numbers and all(x == 0.0 or is_length(x) for x in numbers)):
             yield f"values = {numbers}: at least one, and each {RADII}"
         if self.weights and (
-            len(self.weights) != len(numbers)
-            or not all(0.0 <= w < math.inf for w in self.weights)
-            or not sum(self.weights)
+            len(self.weights) != len(numbers) or not all(0.0 <= w < math.inf for w in self.weights) or not sum(self.weights)
         ):
             yield f"weights = {list(self.weights)}: must be one for each of the {len(numbers)} values, at least 0, not all 0"
 

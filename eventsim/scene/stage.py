@@ -185,7 +185,10 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         common_mass=float(disks.mass[0]),
         mass_ratio=heaviest / lightest,
         low_parts=(
-            scene.gravity is None and heaviest / lightest > UNEVEN and lightest > 1.0 / EXTREME and heaviest < EXTREME
+            scene.gravity is None
+            and heaviest / lightest > UNEVEN
+            and lightest > 1.0 / EXTREME
+            and heaviest < EXTREME
         ),
         gravity=scene.gravity,
         law=law,
@@ -200,9 +203,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         corner=corner,
         start_time=scene.start_time,
         clock=clock,
-        tie_screen=tie_screen(
-            _extent(scene, x, y, corner, features), _slowest(vx, vy), clock.epoch_length / len(disks)
-        ),
+        tie_screen=tie_screen(_extent(scene, x, y, corner, features), _slowest(vx, vy), clock.epoch_length / len(disks)),
     )
 
 

@@ -121,7 +121,9 @@ def _tables(data: Mapping[str, Any], key: str, problems: list[str]) -> list[Any]
     tables = data.get(key, [])
     if isinstance(tables, list | tuple):
         return list(tables)
-    problems.append(f"{key} = {schema.shown(tables)}: must be a list of tables; write [[{key}]], in double brackets")
+    problems.append(
+        f"{key} = {schema.shown(tables)}: must be a list of tables; write [[{key}]], in double brackets"
+    )
     return []
 
 

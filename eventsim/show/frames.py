@@ -152,7 +152,8 @@ class News:
 
 
 def energy_of(log: AnyLog, state: State) -> float:
-    """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes."""
+    """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes.
+"""
     mass = np.where(np.isfinite(log.scene.disks.mass), log.scene.disks.mass, 0.0)
     energy = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
     if log.scene.gravity is not None:

@@ -92,7 +92,9 @@ def default_tasks() -> list[Task]:
     ]
 
 
-def task_of(scene: Scene, name: str, words: str = "", measure: str = "trajectory", contacts: float = CONTACTS) -> Task:
+def task_of(
+    scene: Scene, name: str, words: str = "", measure: str = "trajectory", contacts: float = CONTACTS
+) -> Task:
     """The task on a scene after so many contacts a disk, or at its end."""
     truth = truth_to_compare(scene, None).truth
     until = scene.start_time + contacts * truth.mean_free_time
@@ -101,7 +103,9 @@ def task_of(scene: Scene, name: str, words: str = "", measure: str = "trajectory
     return Task(name, scene, measure, until, words)
 
 
-def chart_of(tasks: Sequence[Task], patience_s: float, further: bool = True, tell: Tell = lambda _: None) -> Chart:
+def chart_of(
+    tasks: Sequence[Task], patience_s: float, further: bool = True, tell: Tell = lambda _: None
+) -> Chart:
     """Measure all tasks; further: also losses, chaos and rates, on the gas."""
     competitors = list(COMPETITORS.values())
     chart = Chart([curves_over_seeds(task, competitors, patience_s, tell) for task in tasks])
@@ -126,11 +130,7 @@ def chaos(n: int = 100) -> Chaos:
         run = follow(STEPPED[competitor.engine].open(truth.stage, options=competitor.at(dt)), truth.times.tolist())
         errors[f"{competitor.label}, {step:g} radii a step"] = position_errors(truth.stage, run, truth.run)
     growing = (truth.uncertainty > 1e-13) & (truth.uncertainty < 1e-3)
-    slope = (
-        float(np.polyfit(contacts[growing], np.log2(truth.uncertainty[growing]), 1)[0])
-        if growing.sum() > 2
-        else math.nan
-    )
+    slope = float(np.polyfit(contacts[growing], np.log2(truth.uncertainty[growing]), 1)[0]) if growing.sum() > 2 else math.nan
     return Chaos(contacts, errors, slope, (truth.horizon - scene.start_time) / free)
 
 

@@ -24,6 +24,7 @@ class Competitor:
         """The options of a run with step dt."""
         return replace(self.options, dt=dt)
 
+
     @property
     def settings(self) -> str:
         """What the engine is told besides the step, in words."""

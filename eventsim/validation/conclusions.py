@@ -64,9 +64,7 @@ def _steps(chart: Chart) -> Answer | None:
     if not found:
         return Answer(question, f"With every step that was tried, more than {1.0 - ALL:.0%} are.")
     best = max(found, key=lambda line: line.step)
-    return Answer(
-        question, f"Above {best.step:.2g} radii a step every engine loses more than 1 in 100 (the best: {best.label})."
-    )
+    return Answer(question, f"Above {best.step:.2g} radii a step every engine loses more than 1 in 100 (the best: {best.label}).")
 
 
 def _energy(chart: Chart) -> Answer | None:
@@ -94,9 +92,7 @@ def _stepped_wins(chart: Chart) -> Answer | None:
     if not wins:
         return Answer(question, "On none of these scenes.") if advantages(chart) else None
     win = max(wins, key=lambda one: one.ratio)
-    return Answer(
-        question, f"Where contacts last: on the {win.scene} {win.label} comes to rest {amount(win.ratio)} x sooner."
-    )
+    return Answer(question, f"Where contacts last: on the {win.scene} {win.label} comes to rest {amount(win.ratio)} x sooner.")
 
 
 class Win(NamedTuple):

@@ -260,9 +260,7 @@ def _balls(stage: Stage, bits: int) -> _Runner:
         return float(np.sqrt(np.mean(np.sum(radii**2, axis=1)))) / diameter
 
     engine = ENGINES["certified"]
-    return _Runner(
-        "certified", "bits", float(bits), lambda: engine.open(stage, options=CertifiedOptions(bits, bits)), error
-    )
+    return _Runner("certified", "bits", float(bits), lambda: engine.open(stage, options=CertifiedOptions(bits, bits)), error)
 
 
 def _proven(stage: Stage, until: float, patience_s: float, result: Curves) -> Followed | None:

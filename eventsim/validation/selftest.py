@@ -82,12 +82,8 @@ def arithmetic() -> Iterator[Finding]:
             yield Finding("numba: floats", "open", "numba is not installed, or told not to compile")
             continue
         fused = product(x, x, -(1.0 + 2.0**-29)) != 0.0
-        yield _judged(
-            f"{language}: products are rounded before sums", not fused, "multiplications and additions are fused"
-        )
-        yield _judged(
-            f"{language}: the least floats are kept", product(tiny, 1.0, 0.0) == tiny, "they are taken for zero"
-        )
+        yield _judged(f"{language}: products are rounded before sums", not fused, "multiplications and additions are fused")
+        yield _judged(f"{language}: the least floats are kept", product(tiny, 1.0, 0.0) == tiny, "they are taken for zero")
     roots = math.sqrt(2.0).hex(), float(np.sqrt(np.array([2.0]))[0]).hex()
     yield _judged("roots are rounded right", roots == ("0x1.6a09e667f3bcdp+0",) * 2, f"sqrt(2) = {roots}")
 
@@ -122,12 +118,7 @@ def gas(n: int = 8) -> Scene:
 
 def bug_report() -> dict[str, str]:
     """What a report of a fault should say: versions and machine."""
-    return {
-        **versions(),
-        "machine": platform.machine(),
-        "system": platform.platform(),
-        "libc": " ".join(platform.libc_ver()),
-    }
+    return {**versions(), "machine": platform.machine(), "system": platform.platform(), "libc": " ".join(platform.libc_ver())}
 
 
 def _engines_agree(name: str, log: EventLog, until: float) -> Finding:

@@ -74,9 +74,7 @@ def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
         found = [comparison.difference for comparison in comparisons if comparison.difference is not None]
         if found:
             first, times = min(found), np.concatenate(seen)
-            at = (
-                float(times[min(first, len(times) - 1)]) if len(times) else time
-            )  # a surplus row comes behind the last one
+            at = float(times[min(first, len(times) - 1)]) if len(times) else time  # a surplus row comes behind the last one
             return Horizon(first, at, done, float(times[-1]) if len(times) else time, true.near_ties_until(at))
         time = float(rows["time"][-1]) if len(rows) else time
     return Horizon(None, None, done, time, len(true.near_ties))

@@ -84,9 +84,7 @@ def truth_of(scene: Scene, times: Sequence[float], engine: str | None = None) ->
     name = best_engine(stage.n) if engine is None else engine
     run = follow(ENGINES[name].open(stage, keep_rows=True), times)
     if not len(run.times):
-        raise EventsimError(
-            f"the event-driven run stopped ({run.stopped}) before {times[0]:g}: there is nothing to compare"
-        )
+        raise EventsimError(f"the event-driven run stopped ({run.stopped}) before {times[0]:g}: there is nothing to compare")
     neighbour = follow(ENGINES[name].open(neighbouring(stage), keep_rows=True), times)
     uncertainty = position_errors(stage, run, neighbour)
     moving = np.isfinite(stage.radius) & np.isfinite(scene.disks.mass)

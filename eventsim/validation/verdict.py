@@ -29,9 +29,7 @@ def blindest(comparison: Comparison) -> list[Line]:
     blind = [
         line
         for line in comparison.lines
-        if line.energy is not None
-        and abs(line.energy) < PERFECT_ENERGY
-        and line.census.share(line.census.found) < ENOUGH
+        if line.energy is not None and abs(line.energy) < PERFECT_ENERGY and line.census.share(line.census.found) < ENOUGH
     ]
     return sorted(blind, key=lambda line: line.census.share(line.census.found))
 
@@ -69,9 +67,7 @@ def whole_from(comparison: Comparison) -> tuple[list[Line], list[Line]]:
 
 def _complete(comparison: Comparison) -> list[str]:
     good, bad = whole_from(comparison)
-    whole = [
-        f"{line.label} at {line.step:.2g} ({line.elapsed / comparison.exact.elapsed:.2g} x the time)" for line in good
-    ]
+    whole = [f"{line.label} at {line.step:.2g} ({line.elapsed / comparison.exact.elapsed:.2g} x the time)" for line in good]
     never = [f"{line.label} ({line.census.share(line.census.found):.1%} at {line.step:.2g})" for line in bad]
     sentences = []
     if whole:

@@ -66,9 +66,7 @@ def test_the_horizon_is_the_same_twice():
 
 def test_near_ties_up_to_the_horizon_are_counted():
     """A disk between two others that come from both sides, a last bit apart: the shadows part there."""
-    disks = es.Disks(
-        [(-3.0, 0.0), (0.0, 0.0), (math.nextafter(3.0, 4.0), 0.0)], [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)], 0.5
-    )
+    disks = es.Disks([(-3.0, 0.0), (0.0, 0.0), (math.nextafter(3.0, 4.0), 0.0)], [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)], 0.5)
     scene = es.Scene(disks, es.Open(), until=10.0)
     assert horizon(scene, Stop(10.0, None)).near_ties == 1
     assert prove(scene, Stop(10.0, None)).float64.near_ties == 1

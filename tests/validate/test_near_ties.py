@@ -76,10 +76,7 @@ def test_large_scenes_are_not_looked_at(monkeypatch):
 
 def test_walls_inside_the_domain_are_told_by_their_names():
     """A disk comes down between two walls, and meets the second one a last bit later."""
-    walls = [
-        es.Segment((0.0, 0.7), (3.0, 0.0), name="left-hand"),
-        es.Segment((3.0, 0.0), (6.0, 0.7), name="right-hand"),
-    ]
+    walls = [es.Segment((0.0, 0.7), (3.0, 0.0), name="left-hand"), es.Segment((3.0, 0.0), (6.0, 0.7), name="right-hand")]
     disks = es.Disks([(3.0 - 2.0**-51, 0.5636958593624257)], [(0.0, -1.0)], 0.5)
     (tie,) = near_ties(es.Scene(disks, es.Box((6.0, 8.0)), walls, until=0.1))
     assert {tie.first[1], tie.second[1]} == {"left-hand", "right-hand"}

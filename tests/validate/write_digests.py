@@ -1,6 +1,6 @@
 """Writes the table that `eventsim selftest` compares with: after a change that is meant to change logs.
 
-python -m tests.validate.write_digests
+    python -m tests.validate.write_digests
 """
 
 from __future__ import annotations

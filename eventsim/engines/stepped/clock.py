@@ -73,9 +73,7 @@ class StepClock:
         stage = self._stage
         if time >= MOST_EPOCHS * stage.epoch_length:
             last = stage.start_time + MOST_EPOCHS * stage.epoch_length
-            raise EventsimError(
-                f"a step of {self.dt:g} leads beyond t = {last:g}, where the clock of a scene so fast ends"
-            )
+            raise EventsimError(f"a step of {self.dt:g} leads beyond t = {last:g}, where the clock of a scene so fast ends")
         while time >= self._window_end:
             self.epoch += 1 << self.window
             self.window = next_window(self.window, self.window_rows, stage.n, stage.clock.window_cap)

@@ -68,9 +68,7 @@ def nearest(kind: int, w: Any, x: float, y: float) -> tuple[float, float, float]
         return 0.0, w[2], w[2] * (y - w[1])
     if kind == FACE:
         return face_nearest(
-            Face(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8], w[9], w[10], w[11], 0.0, 0.0, 0.0, 0.0, 0.0),
-            x,
-            y,
+            Face(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8], w[9], w[10], w[11], 0.0, 0.0, 0.0, 0.0, 0.0), x, y
         )
     if kind == POST:
         return post_nearest(Post(w[0], w[1]), x, y)

@@ -43,9 +43,7 @@ class Container(NamedTuple):
             return leaving_delay(x, y, vx, vy, radius, self.x, self.y, self.radius), -1
         if gx == 0.0 and gy == 0.0:  # an immovable disk, on which gravity does not act
             return leaving_delay(x, y, vx, vy, radius, self.x, self.y, self.radius), -1
-        return circle_delays(x - self.x, y - self.y, vx, vy, gx, gy, self.radius - radius, -1.0, ANY_OVERLAP, touches)[
-            0
-        ], -1
+        return circle_delays(x - self.x, y - self.y, vx, vy, gx, gy, self.radius - radius, -1.0, ANY_OVERLAP, touches)[0], -1
 
     def normal(self, side: int, x: Real, y: Real) -> tuple[Real, Real]:
         """The normal, of any length, that points to a disk at (x, y): from inside to the centre."""

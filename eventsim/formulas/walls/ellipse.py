@@ -146,9 +146,7 @@ ellipse_touching, ellipse_nearest = Ellipse.touching, Ellipse.nearest
 
 def along_axes(shape: Ellipse, dx: Real, dy: Real) -> tuple[Real, Real]:
     """A vector in the frame in which the ellipse is the unit circle."""
-    return (shape.ex * dx + shape.ey * dy) / shape.norm / shape.a, (
-        shape.ex * dy - shape.ey * dx
-    ) / shape.norm / shape.b
+    return (shape.ex * dx + shape.ey * dy) / shape.norm / shape.a, (shape.ex * dy - shape.ey * dx) / shape.norm / shape.b
 
 
 def foot(a: Real, b: Real, p: Real, q: Real) -> tuple[Real, Real]:

@@ -318,7 +318,9 @@ def _holds(shape: Face, side: int, along: Real, slack: Real) -> bool:
     return bool(along >= least and along <= shape.along2 + (0.0 if beyond else slack))
 
 
-def flight_side(shape: Face, met: int, beside: int | None, x: Real, y: Real, vx: Real, vy: Real, radius: Real) -> int:
+def flight_side(
+    shape: Face, met: int, beside: int | None, x: Real, y: Real, vx: Real, vy: Real, radius: Real
+) -> int:
     """The side of the line of a face that a flight begins on; met, beside: as for `Shape.delay`."""
     side = side_known(met, beside)
     distance = side * (shape.nx * (x - shape.x) + shape.ny * (y - shape.y))

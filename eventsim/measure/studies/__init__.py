@@ -44,31 +44,10 @@ class Study(NamedTuple):
 
 
 STUDIES = (
-    Study(
-        "structure",
-        (),
-        "g(r), S(k), psi_6 and coordination along the run, in periodic domains (by freud)",
-        structure.found,
-    ),
-    Study(
-        "transport",
-        (),
-        "viscosity, heat conductivity, self-diffusion against lag",
-        transport.found,
-        transport.Transport,
-    ),
-    Study(
-        "lyapunov",
-        (("K", int),),
-        "the K largest Lyapunov exponents, per time and per contact of a disk",
-        lyapunov.found,
-    ),
-    Study(
-        "boundary",
-        (),
-        "the boundary map of a billiard: arc length and sine of the angle of each contact",
-        boundary.found,
-    ),
+    Study("structure", (), "g(r), S(k), psi_6 and coordination along the run, in periodic domains (by freud)", structure.found),
+    Study("transport", (), "viscosity, heat conductivity, self-diffusion against lag", transport.found, transport.Transport),
+    Study("lyapunov", (("K", int),), "the K largest Lyapunov exponents, per time and per contact of a disk", lyapunov.found),
+    Study("boundary", (), "the boundary map of a billiard: arc length and sine of the angle of each contact", boundary.found),
     Study(
         "escape",
         tuple((name, float) for name in ("X0", "Y0", "X1", "Y1")),

@@ -91,9 +91,7 @@ def _crossings(
     ]
     for shift in product(*shifts):
         near = np.flatnonzero(
-            ((low <= ends.max(axis=0) + shift + _slack(ends)) & (high >= ends.min(axis=0) + shift - _slack(ends))).all(
-                axis=1
-            )
+            ((low <= ends.max(axis=0) + shift + _slack(ends)) & (high >= ends.min(axis=0) + shift - _slack(ends))).all(axis=1)
         )
         yield _crossing(table.at(near), ends + np.array(shift))
 
@@ -179,8 +177,4 @@ def _survival(times: Floats, duration: float) -> Columns:
     """The share of disks still inside at times since the start, with its error."""
     told = np.linspace(0.0, duration, TOLD)
     share = 1.0 - np.searchsorted(np.sort(times), told, side="right") / len(times)
-    return {
-        "time": told.tolist(),
-        "inside": share.tolist(),
-        "error": np.sqrt(share * (1.0 - share) / len(times)).tolist(),
-    }
+    return {"time": told.tolist(), "inside": share.tolist(), "error": np.sqrt(share * (1.0 - share) / len(times)).tolist()}

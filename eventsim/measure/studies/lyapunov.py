@@ -108,9 +108,7 @@ class Growth:
                 if passed.joint or kind == Kind.REST:
                     what = "contacts of one instant share disks" if passed.joint else "a disk comes to rest"
                     self._end(time)
-                    return (
-                        f"up to event {passed.event:,}, t = {start + row:.6g}: there {what}, and no tangent map goes on"
-                    )
+                    return f"up to event {passed.event:,}, t = {start + row:.6g}: there {what}, and no tangent map goes on"
                 time = row
                 self._take(passed, time)
         self._end(time)
@@ -287,8 +285,6 @@ def _entries(name: str, rates: _Rates, scene: Scene, whole: bool) -> list[Measur
         short = None if error > 0.0 or key.endswith("_sum") else "the run is too short for an error bar"
         doubts = [text for text in (short, note) if text]
         entries.append(
-            Measure(
-                value, error if unsteady is None else math.nan, unit=unit, doubt="; ".join(doubts) or None, name=key
-            )
+            Measure(value, error if unsteady is None else math.nan, unit=unit, doubt="; ".join(doubts) or None, name=key)
         )
     return entries

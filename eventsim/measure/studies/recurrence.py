@@ -36,9 +36,7 @@ def found(log: AnyLog, discard: float | None) -> Found:
     if isinstance(mapped, str):
         return Found((dash("recurrence_time", "time", mapped),))
     blocks = list(mapped.all_contacts(log))
-    every = Contacts(
-        *(np.concatenate([np.empty(0), *(block[k] for block in blocks)]) for k in range(len(Contacts._fields)))
-    )
+    every = Contacts(*(np.concatenate([np.empty(0), *(block[k] for block in blocks)]) for k in range(len(Contacts._fields))))
     late = every.time >= log.scene.start_time + (discard or 0.0)
     every = Contacts(*(column[late] for column in every))
     cells, disks = ARCS * SINES, max(int(mapped.movers.sum()), 1)
@@ -85,8 +83,4 @@ def _survival(times: Floats) -> Columns:
     ordered = np.sort(times)
     told = np.linspace(0.0, float(ordered[-1]), TOLD)
     share = 1.0 - np.searchsorted(ordered, told, side="right") / len(ordered)
-    return {
-        "time": told.tolist(),
-        "longer": share.tolist(),
-        "error": np.sqrt(share * (1.0 - share) / len(ordered)).tolist(),
-    }
+    return {"time": told.tolist(), "longer": share.tolist(), "error": np.sqrt(share * (1.0 - share) / len(ordered)).tolist()}

@@ -56,9 +56,7 @@ class Transport:
     >>> transport = Transport(scene); transport.write(rows); transport.write(more_rows); transport.found(duration)
     """
 
-    def __init__(
-        self, scene: Scene, discard: float | None = None, kicked: bool = False, corner: Point | None = None
-    ) -> None:
+    def __init__(self, scene: Scene, discard: float | None = None, kicked: bool = False, corner: Point | None = None) -> None:
         """Begin with a scene.
 
         Args:
@@ -88,9 +86,7 @@ class Transport:
             return
         joint = np.flatnonzero(rows["joint"] >= 0)
         if len(joint):
-            self.why = (
-                f"event {int(rows['event'][joint[0]]):,} is one of several contacts of one instant that share disks"
-            )
+            self.why = f"event {int(rows['event'][joint[0]]):,} is one of several contacts of one instant that share disks"
             return
         self._meter.write(rows)
         self._rows += len(rows)
@@ -108,9 +104,7 @@ class Transport:
         if self.why is not None:
             return Found(tuple(dash(name, unit, self.why) for name, unit in names))
         if self._step > 0.0:
-            self._sample(
-                np.array([duration]), np.array([self._moments + self._current * (duration - self._time)]), duration
-            )
+            self._sample(np.array([duration]), np.array([self._moments + self._current * (duration - self._time)]), duration)
         walks = np.array(self._samples).reshape(-1, len(self._current))
         if len(walks) <= TO:
             why = f"{self._rows:,} contacts: too few for a lag of {TO // SAMPLES} mean free times"
@@ -121,21 +115,14 @@ class Transport:
         columns: Columns = {"lag": [lag * self._step for lag in LAGS[1:] if lag < len(walks)]}
         entries = []
         for (name, unit), pair, scale, theory_ in zip(
-            names,
-            ((XY, DIFFERENCE), (HEAT_X, HEAT_Y)),
-            (2.0 * volume * kt, 2.0 * volume * kt * kt),
-            expected,
-            strict=False,
+            names, ((XY, DIFFERENCE), (HEAT_X, HEAT_Y)), (2.0 * volume * kt, 2.0 * volume * kt * kt), expected, strict=False
         ):
             if name == "heat_conductivity" and self._ensemble.kinds > 1:
                 entries.append(dash(name, unit, "in a mixture heat and diffusion go together"))
                 continue
             bar = _slope(walks[:, pair], FROM, TO, self._step * scale)
             entries.append(
-                beside(
-                    _entry(name, unit, bar, f"lags {FROM * self._step:.3g} to {TO * self._step:.3g}; {LOGARITHM}"),
-                    theory_,
-                )
+                beside(_entry(name, unit, bar, f"lags {FROM * self._step:.3g} to {TO * self._step:.3g}; {LOGARITHM}"), theory_)
             )
             slopes = [_slope(walks[:, pair], lag // 2, lag, self._step * scale) for lag in LAGS[1:] if lag < len(walks)]
             columns |= {name: [slope.mean for slope in slopes], f"{name}_error": [slope.error for slope in slopes]}
@@ -144,9 +131,7 @@ class Transport:
 
     def _clock(self, rows: Rows) -> Floats:
         """Times since the start (n,), ascending: logged ones may step back by an ulp."""
-        time: Floats = np.maximum.accumulate(
-            np.maximum(rows["epoch"] * self._epoch_length + rows["remainder"], self._time)
-        )
+        time: Floats = np.maximum.accumulate(np.maximum(rows["epoch"] * self._epoch_length + rows["remainder"], self._time))
         return time
 
     def _take(self, rows: Rows) -> None:

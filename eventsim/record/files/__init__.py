@@ -143,9 +143,7 @@ def _format_of(path: Path) -> Format:
 
             return parquet.FORMAT
         case "":
-            raise LogError(
-                f"{path}: this name has no suffix, and that of a log ends in one of {', '.join(suffixes.LOGS)}"
-            )
+            raise LogError(f"{path}: this name has no suffix, and that of a log ends in one of {', '.join(suffixes.LOGS)}")
         case _:
             known = ", ".join(suffixes.LOGS)
             raise LogError(f"{path}: the suffix {path.suffix!r} names no log format; use one of {known}")

@@ -60,9 +60,7 @@ class Claim:
                 return
             if not _lock(self._descriptor):
                 self.release()
-                raise self._error(
-                    f"{self._path}: another run is writing {self._what}; wait for its end or name another file"
-                )
+                raise self._error(f"{self._path}: another run is writing {self._what}; wait for its end or name another file")
             if make and not self._is_there():  # whoever had it before has just removed it
                 self.release()
 

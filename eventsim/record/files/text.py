@@ -174,9 +174,7 @@ def open_text(path: Path, form: TextForm) -> Opened:
     """The metadata of a text log and its rows in blocks; of a growing file an unfinished last line is left out."""
     with ExitStack() as opened:
         file = opened.enter_context(reading(path, LogError, "not an event log of this format"))
-        head = (
-            _line(file, path).removeprefix(BYTE_ORDER_MARK).rstrip("\n")
-        )  # some editors add the mark, and other line ends
+        head = _line(file, path).removeprefix(BYTE_ORDER_MARK).rstrip("\n")  # some editors add the mark, and other line ends
         if not head.startswith(form.prefix):
             raise LogError(f"{path}: not an event log: the first line does not hold its scene")
         provenance = provenance_from_text(head.removeprefix(form.prefix), str(path))
@@ -187,7 +185,9 @@ def open_text(path: Path, form: TextForm) -> Opened:
     raise AssertionError("either metadata or an error")
 
 
-def _blocks(opened: ExitStack, file: IO[bytes], form: TextForm, provenance: Provenance, path: Path) -> Generator[Rows]:
+def _blocks(
+    opened: ExitStack, file: IO[bytes], form: TextForm, provenance: Provenance, path: Path
+) -> Generator[Rows]:
     number = 2 + form.header_of(provenance).count("\n")
     with opened:
         while block := _whole(file.readlines(BLOCK_BYTES), path):

@@ -83,13 +83,9 @@ class Arc(Part):
         shape = numbers.arc(*self.start, *self.through, *self.end)
         px, py = position[:, 0] - shape.x, position[:, 1] - shape.y
         from_center = np.hypot(px - shape.ux, py - shape.uy)
-        excess = (px * px + py * py) - 2.0 * (
-            px * shape.ux + py * shape.uy
-        )  # nothing cancels where the arc is nearly flat
+        excess = (px * px + py * py) - 2.0 * (px * shape.ux + py * shape.uy)  # nothing cancels where the arc is nearly flat
         gap = np.abs(excess) / (from_center + shape.radius)
-        first, second = (
-            way(shape, position[:, 0], position[:, 1]) >= 0.0 for way in (numbers.from_start, numbers.from_end)
-        )
+        first, second = (way(shape, position[:, 0], position[:, 1]) >= 0.0 for way in (numbers.from_start, numbers.from_end))
         on_arc = first & second if numbers.is_minor(shape) else first | second
         ends = np.minimum(distances(position, self.start), distances(position, self.end))
         return radius - np.where((from_center == 0.0) | on_arc, gap, ends)

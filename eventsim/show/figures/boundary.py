@@ -28,19 +28,11 @@ def draw(figure: Figure, log: AnyLog) -> None:
     for block in mapped.all_contacts(log):
         shown = slice(0, max(MOST_DOTS - drawn, 0))
         axes.scatter(
-            block.arc[shown],
-            block.sine[shown],
-            s=2.0,
-            linewidths=0,
-            c=shades[block.disk[shown]],
-            alpha=0.7,
-            rasterized=True,
+            block.arc[shown], block.sine[shown], s=2.0, linewidths=0, c=shades[block.disk[shown]], alpha=0.7, rasterized=True
         )
         contacts, drawn = contacts + len(block.arc), min(contacts + len(block.arc), MOST_DOTS)
     for begin in np.append(mapped.begins, mapped.table.perimeter).tolist():
         axes.axvline(begin, color=LIGHT.wall, linewidth=0.6, alpha=0.5)
     axes.set(xlim=(0.0, mapped.table.perimeter), ylim=(-1.0, 1.0))
     told = plural(contacts, "contact") if drawn == contacts else f"the first {drawn:,} of {contacts:,} contacts"
-    label(
-        axes, f"arc length along the boundary [{LENGTH}]", "sine of the angle", f"{name_of(log)}: boundary map, {told}"
-    )
+    label(axes, f"arc length along the boundary [{LENGTH}]", "sine of the angle", f"{name_of(log)}: boundary map, {told}")

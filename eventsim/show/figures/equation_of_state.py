@@ -117,9 +117,7 @@ def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, Float
             # the same setting may differ in the last digit of what the disks cover
             groups.setdefault((round(float(row["packing_fraction"] or 0.0), 12), row.get("disks")), []).append(row)
     if not groups:
-        raise EventsimError(
-            "there is nothing to draw: no run of the table has a packing fraction and a Z with an error bar"
-        )
+        raise EventsimError("there is nothing to draw: no run of the table has a packing fraction and a Z with an error bar")
     means = [_mean(group) for _, group in sorted(groups.items(), key=lambda item: item[0][0])]
     z, error, theory, accuracy, settled = (np.array([mean[k] for mean in means]) for k in range(5))
     return np.array(sorted(eta for eta, _ in groups)), z, error, theory, accuracy, settled.astype(np.bool_)

@@ -54,9 +54,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
     theory = None if told is None or math.isnan(told.value) else told.theory
     if theory is not None:
         x = np.linspace(0.0, edges[-1], 200)
-        axes.plot(
-            x, path_density(x / theory) / theory, color=ORANGE, lw=1.5, label=f"kinetic theory, mean {theory:.4g}"
-        )
+        axes.plot(x, path_density(x / theory) / theory, color=ORANGE, lw=1.5, label=f"kinetic theory, mean {theory:.4g}")
     if told is not None and told.value > 0.0 and not math.isnan(told.error):
         mean, error = told.value, told.error  # flights that the run cuts off included
     verdict = f"mean free path {mean:.4g} \N{PLUS-MINUS SIGN} {error:.1g}"

@@ -38,9 +38,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
     _draw_diffusion(below, measures, log)
     who = plural(measures.disks, "disk") if measures.disks else plural(measures.tracers, "tracer")
     told = measures.by_name.get("diffusion")
-    verdict = (
-        "" if told is None or math.isnan(told.error) else f", D = {told.value:.3g} \N{PLUS-MINUS SIGN} {told.error:.1g}"
-    )
+    verdict = "" if told is None or math.isnan(told.error) else f", D = {told.value:.3g} \N{PLUS-MINUS SIGN} {told.error:.1g}"
     verdict += "" if measures.steady else ", an average over a run without a steady state"
     label(above, "", f"$\\langle r^2\\rangle$ [{LENGTH}$^2$]", f"{name_of(log)}: {who}{verdict}")
     label(below, f"lag [{TIME}]", "D [area / time]", "")

@@ -36,9 +36,7 @@ class OnAxes:
     def subplots(self, *panels: int, **how: Any) -> Axes:
         """Give the axes where one panel is wanted; EventsimError for more."""
         if panels:
-            raise EventsimError(
-                f"the figure {self._kind} has several panels: leave ax out, and it makes a figure of its own"
-            )
+            raise EventsimError(f"the figure {self._kind} has several panels: leave ax out, and it makes a figure of its own")
         return self.add_subplot(**how)
 
     def set_size_inches(self, *size: float) -> None:

@@ -18,14 +18,7 @@ class Look(NamedTuple):
     def drawn(self, size: float) -> dict[str, Any]:
         """What matplotlib's `plot` wants to know."""
         face = "white" if self.hollow else self.colour
-        return {
-            "color": self.colour,
-            "marker": self.marker,
-            "ls": self.line,
-            "ms": size,
-            "mfc": face,
-            "mec": self.colour,
-        }
+        return {"color": self.colour, "marker": self.marker, "ls": self.line, "ms": size, "mfc": face, "mec": self.colour}
 
 
 PURPLE = "#6A3D9A"

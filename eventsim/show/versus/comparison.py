@@ -27,9 +27,7 @@ def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> None:
     """Draw a comparison to `path`: .png, .svg or .pdf.  Raises EventsimError where it cannot be written."""
     figure = Figure(figsize=(15.0, 9.6), dpi=110, facecolor="white", layout="constrained")
     first = verdict(comparison)[0]
-    figure.suptitle(
-        as_written(fill(f"{comparison.name}: {first}", 150)), fontsize=12, x=0.01, ha="left", color=LIGHT.ink
-    )
+    figure.suptitle(as_written(fill(f"{comparison.name}: {first}", 150)), fontsize=12, x=0.01, ha="left", color=LIGHT.ink)
     grid = figure.subplots(2, 3)
     draw_missed(grid[0, 0], comparison)
     draw_energy(grid[0, 1], comparison)
@@ -40,27 +38,12 @@ def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> None:
     _panel(angles, comparison, _angle, "mean error [degrees]", "Deflection angles of found contacts", log=True)
     if any(_angle(line) == EXACT_ANGLE for line in comparison.lines):
         note(angles, f"{EXACT_ANGLE:g} or less", (0.0, EXACT_ANGLE), ACROSS, (4, 6))
-    _panel(
-        pressure,
-        comparison,
-        lambda line: 100.0 * line.pressure,
-        "against event-driven [%]",
-        "Bias of the pressure (virial)",
-    )
+    _panel(pressure, comparison, lambda line: 100.0 * line.pressure, "against event-driven [%]", "Bias of the pressure (virial)")
     pressure.axhline(0.0, color=LIGHT.ink, lw=0.9)
-    _panel(
-        times,
-        comparison,
-        lambda line: line.elapsed,
-        "CPU seconds per time unit of the scene",
-        "Computing time",
-        log=True,
-    )
+    _panel(times, comparison, lambda line: line.elapsed, "CPU seconds per time unit of the scene", "Computing time", log=True)
     for line in comparison.lines:
         spread = [[line.timing.median - line.timing.least], [line.timing.most - line.timing.median]]
-        times.errorbar(
-            [line.step], [line.elapsed], yerr=spread, fmt="none", ecolor=look(line.label).colour, elinewidth=0.9
-        )
+        times.errorbar([line.step], [line.elapsed], yerr=spread, fmt="none", ecolor=look(line.label).colour, elinewidth=0.9)
     times.axhline(comparison.exact.elapsed, color=LIGHT.ink, lw=1.2, ls="--")
     note(times, "event-driven", (0.0, comparison.exact.elapsed), ACROSS, (4, 4))
     handles = grid[0, 0].get_legend_handles_labels()

@@ -48,18 +48,14 @@ def write_judgement(judgement: Judgement, path: str | PathLike[str]) -> None:
     for axes in (grid[0, 0], grid[1, 0], grid[0, 1]):
         axes.set_xlim(judgement.times[0], judgement.times[-1])
         for place, fault in enumerate(judgement.faults[:MOST_MARKS]):
-            axes.axvline(
-                fault.time, color=WRONG, lw=1.6 if place == 0 else 0.5, alpha=1.0 if place == 0 else 0.35, zorder=1
-            )
+            axes.axvline(fault.time, color=WRONG, lw=1.6 if place == 0 else 0.5, alpha=1.0 if place == 0 else 0.35, zorder=1)
     save_page(figure, path)
 
 
 def _draw_positions(axes: Axes, judgement: Judgement) -> None:
     """Errors of positions, and what float64 can know of them; both horizons."""
     truth = judgement.truth
-    axes.semilogy(
-        judgement.looks, np.maximum(judgement.errors, LEAST), color=KINDS[0], lw=1.6, label="the engine judged"
-    )
+    axes.semilogy(judgement.looks, np.maximum(judgement.errors, LEAST), color=KINDS[0], lw=1.6, label="the engine judged")
     doubt = np.maximum(truth.uncertainty, LEAST)
     axes.semilogy(judgement.looks, doubt, color=LIGHT.faint, lw=1.2, label="the last bit of the start (event-driven)")
     axes.axhline(ASTRAY, color=LIGHT.ink, lw=0.8, ls=(0, (4, 3)))
@@ -107,6 +103,4 @@ def _draw_words(axes: Axes, sentences: list[str]) -> None:
     """The rest of the verdict."""
     axes.set_axis_off()
     text = "\n\n".join(fill(sentence, LETTERS) for sentence in sentences)
-    axes.text(
-        0.0, 1.0, as_written(text), transform=axes.transAxes, va="top", fontsize=10.5, color=LIGHT.ink, linespacing=1.25
-    )
+    axes.text(0.0, 1.0, as_written(text), transform=axes.transAxes, va="top", fontsize=10.5, color=LIGHT.ink, linespacing=1.25)

@@ -46,9 +46,7 @@ def draw_energy(axes: Axes, comparison: Comparison) -> None:
     text = "energy looks perfect here"
     if blind:
         labels = list(dict.fromkeys(line.label for line in blind))
-        named = ", ".join(labels[:MOST_NAMES]) + (
-            f" and {len(labels) - MOST_NAMES} more" if len(labels) > MOST_NAMES else ""
-        )
+        named = ", ".join(labels[:MOST_NAMES]) + (f" and {len(labels) - MOST_NAMES} more" if len(labels) > MOST_NAMES else "")
         share = blind[0].census.share(blind[0].census.missed)
         text += f",\nwith up to {share:.0%} of the contacts missed\n({named})"
     note(axes, text, (0.03, 3e-10), ACROSS, va="top", bbox=None)
@@ -60,9 +58,7 @@ def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) ->
     for name in dict.fromkeys(line.label for line in comparison.lines):
         lines = [line for line in comparison.lines if line.label == name]
         style = look(name).drawn(5.5)
-        axes.plot(
-            [line.step for line in lines], [value(line) for line in lines], lw=1.3, label=NAMES.get(name, name), **style
-        )
+        axes.plot([line.step for line in lines], [value(line) for line in lines], lw=1.3, label=NAMES.get(name, name), **style)
     scale_steps(axes, comparison)
     axes.set_yscale("log")
 

@@ -12,12 +12,7 @@ BACK = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6}
 
 
 def note(
-    axes: Axes,
-    text: str,
-    at: tuple[float, float],
-    coords: Any = "data",
-    offset: tuple[float, float] = (0, 0),
-    **style: Any,
+    axes: Axes, text: str, at: tuple[float, float], coords: Any = "data", offset: tuple[float, float] = (0, 0), **style: Any
 ) -> None:
     """Write `text` at a place, moved by `offset` points."""
     style = {"fontsize": 9, "zorder": 6, "color": LIGHT.ink, "bbox": BACK, **style}

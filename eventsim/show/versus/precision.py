@@ -58,9 +58,7 @@ def write_chart(chart: Chart, path: str | PathLike[str]) -> None:
     head_height = TITLE + LINE * (len(lines) + 1) + LEGEND_LINE * -(-len(present(chart)) // COLUMNS)
     table_height = [] if beside or not rows else [0.34 * (len(rows) + 3)]
     heights = [head_height, *[PANEL[1]] * last, *table_height]
-    figure = Figure(
-        figsize=(max(across * PANEL[0], HEAD_WIDTH), sum(heights)), dpi=120, facecolor="white", layout="constrained"
-    )
+    figure = Figure(figsize=(max(across * PANEL[0], HEAD_WIDTH), sum(heights)), dpi=120, facecolor="white", layout="constrained")
     grid = figure.add_gridspec(len(heights), across, height_ratios=heights)
     draw_head(figure.add_subplot(grid[0, :]), chart, lines, head_height)
     for place, draw in enumerate(panels):
@@ -101,9 +99,7 @@ def draw_head(axes: Axes, chart: Chart, lines: list[tuple[str, str]], height: fl
     """The title, the answers, and the legend of all panels; height: of the axes, inches."""
     axes.set_axis_off()
     above: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "color": LIGHT.ink}
-    axes.text(
-        0.0, 1.0, "Speed against accuracy, and where each engine is the right one", fontsize=16, weight="bold", **above
-    )
+    axes.text(0.0, 1.0, "Speed against accuracy, and where each engine is the right one", fontsize=16, weight="bold", **above)
     for place, (question, text) in enumerate(lines):
         y = 1.0 - (TITLE + LINE * place) / height
         axes.text(0.0, y, question, fontsize=11, weight="bold", **above)

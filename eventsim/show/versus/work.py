@@ -96,14 +96,7 @@ def _draw_advantages(axes: Axes, curves: Curves) -> None:
         middle = math.sqrt(best.error * best.error * nearest.error_ratio)
         text = f"equal time: the next\nerrs {amount(nearest.error_ratio)} x as much"
         right = _is_right(axes, best.elapsed)
-        note(
-            axes,
-            text,
-            (best.elapsed, middle),
-            offset=(-6 if right else 6, 0),
-            va="center",
-            ha="right" if right else "left",
-        )
+        note(axes, text, (best.elapsed, middle), offset=(-6 if right else 6, 0), va="center", ha="right" if right else "left")
     axes.axhline(wanted, color=ARROW, lw=0.8, ls=(0, (4, 3)), zorder=1)
     note(axes, f"{wanted:g}", (1.0, wanted), ACROSS, (0, 3), ha="right")
     _draw_time(axes, curves, found, time_at(own, wanted), wanted)

@@ -36,9 +36,7 @@ def scene_at(scene: Scene, first: float) -> Scene:
     """The scene as the event-driven run has it at a later time."""
     run = truth_of(scene, [first]).run
     if run.stopped is not None:
-        raise EventsimError(
-            f"the motion begins at t = {first:g}, and the event-driven run stopped before ({run.stopped})"
-        )
+        raise EventsimError(f"the motion begins at t = {first:g}, and the event-driven run stopped before ({run.stopped})")
     disks = Disks(run.position[0], run.velocity[0], scene.disks.radius, scene.disks.mass)
     return Scene(
         disks=disks,
@@ -61,9 +59,7 @@ def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
             if samples.cell is not None and np.all(told == told[0]):
                 continue  # what the gsd library gives where a file tells nothing
             disk = int(np.argmax(~np.isclose(told, own, rtol=1e-5, atol=0.0)))
-            raise EventsimError(
-                f"{samples.source}: disk {disk} has the {name} {told[disk]:g}, in the scene {own[disk]:g}"
-            )
+            raise EventsimError(f"{samples.source}: disk {disk} has the {name} {told[disk]:g}, in the scene {own[disk]:g}")
     samples = samples.placed(scene.domain.origin if scene.domain.size is not None else (0.0, 0.0))
     begin, first = scene.start_time, float(samples.times[0])
     if first < begin - 1e-9 * abs(begin):

@@ -103,11 +103,7 @@ def charged(truth: Truth, met: Sequence[Met], window: Window, witness: Witness, 
         fault = witness.surplus(one, _nearest(met, j))
         if fault is None:
             who = named(one.key, stage)
-            _parts(
-                charge,
-                one.time,
-                f"its path leads to a contact of {who} at t = {one.time:.6g}, which the true one has not",
-            )
+            _parts(charge, one.time, f"its path leads to a contact of {who} at t = {one.time:.6g}, which the true one has not")
             continue
         charge.faults.append(fault)
         if fault.kind == "doubled":
@@ -158,15 +154,11 @@ def in_our_form(contacts: ToldContacts, stage: Stage) -> list[Met]:
     """Contacts that an engine tells, in our form; walls by their names, the only wall where it tells none."""
     names = {name: number for number, name in enumerate(stage.wall_names)}
     found = []
-    for time, a, b, wall in zip(
-        contacts.time.tolist(), contacts.a.tolist(), contacts.b.tolist(), contacts.wall, strict=True
-    ):
+    for time, a, b, wall in zip(contacts.time.tolist(), contacts.a.tolist(), contacts.b.tolist(), contacts.wall, strict=True):
         if b >= 0:
             found.append(Met((int(Kind.PAIR), a, b), time, 0, 0))
         else:
             if wall and wall not in names:
-                raise EventsimError(
-                    f"the contacts name a wall {wall!r}; the scene has {', '.join(stage.wall_names) or 'none'}"
-                )
+                raise EventsimError(f"the contacts name a wall {wall!r}; the scene has {', '.join(stage.wall_names) or 'none'}")
             found.append(Met((int(Kind.WALL), a, names.get(wall, -1)), time, 0, 0))
     return found

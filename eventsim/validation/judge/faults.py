@@ -75,11 +75,7 @@ class Witness:
         if gap >= -self._resolution:
             return None
         deep = -gap / reach if reach > 0.0 else 0.0
-        how = (
-            f"a graze: their paths overlap by {deep:.2%} of their reach"
-            if deep < GRAZE
-            else f"they overlap by {deep:.0%}"
-        )
+        how = f"a graze: their paths overlap by {deep:.2%} of their reach" if deep < GRAZE else f"they overlap by {deep:.0%}"
         clear = -gap > self._flown(span, a) + self._flown(span, other)
         return Fault(time, "missed", f"missed: the contact of {who} at t = {time:.6g} ({how})", (a, other), clear)
 

@@ -118,9 +118,7 @@ class Flights:
         return Turn(disk, first, last, time, before + pull * (time - float(self.times[first])), change, ends)
 
 
-def flights_of(
-    stage: Stage, times: Floats, place: Floats, velocity: Floats | None, start: Floats, step: float
-) -> Flights:
+def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | None, start: Floats, step: float) -> Flights:
     """The flights through samples; the first is the start of the scene.
 
     Args:
@@ -138,9 +136,7 @@ def flights_of(
     place = np.concatenate([place[:1], place[:1] + np.cumsum(way, axis=0)])
     mean = way / dt
     speed = typical_speed(mean[..., 0], mean[..., 1]) or 1.0
-    told = (
-        velocity is not None and float(np.median(np.abs(mean - 0.5 * (velocity[1:] + velocity[:-1])))) < UNLIKE * speed
-    )
+    told = velocity is not None and float(np.median(np.abs(mean - 0.5 * (velocity[1:] + velocity[:-1])))) < UNLIKE * speed
     if told:
         assert velocity is not None
         before = after = velocity

@@ -105,9 +105,7 @@ class Judgement:
         return math.inf if good else self.truth.horizon
 
 
-def judge(
-    scene: Scene, samples: Samples, contacts: ToldContacts | None = None, tolerance: float | None = None
-) -> Judgement:
+def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, tolerance: float | None = None) -> Judgement:
     """Judge a motion.
 
     Args:
@@ -123,9 +121,7 @@ def judge(
     if begins_late(scene, samples):
         first = float(samples.times[0])
         scene, contacts = scene_at(scene, first), None if contacts is None else contacts.since(first)
-        remarks.append(
-            f"the motion begins at t = {first:g}: it is judged from the state that the event-driven run has then"
-        )
+        remarks.append(f"the motion begins at t = {first:g}: it is judged from the state that the event-driven run has then")
     stage = stage_of(scene)
     samples = placed(scene, stage, samples)
     times = samples.times
@@ -171,9 +167,7 @@ def judge(
         charge=charge,
         looks=looks,
         errors=np.sqrt(np.mean(apart**2, axis=1)),
-        energy=_smooth(energy / energy[0] - 1.0, flights.told)
-        if energy[0] > 0.0 and (flights.told or not blind)
-        else None,
+        energy=_smooth(energy / energy[0] - 1.0, flights.told) if energy[0] > 0.0 and (flights.told or not blind) else None,
         momentum=_momentum(velocity, stage, mass),
         deepest=_deepest(scene, samples, looks, seen),
         blind=BLIND if blind and contacts is None else None,

@@ -66,7 +66,5 @@ def _state(given: Any, number: int) -> tuple[Any, Any]:
     try:
         position, velocity = given
     except (TypeError, ValueError):
-        raise EventsimError(
-            f"step {number} returns {type(given).__name__}: must be (position, velocity), or None"
-        ) from None
+        raise EventsimError(f"step {number} returns {type(given).__name__}: must be (position, velocity), or None") from None
     return position, velocity

@@ -57,9 +57,7 @@ class Surroundings:
 
     def to_wall(self, surface: int, place: Floats) -> tuple[Vector, float]:
         """(unit normal towards a place (2,), distance) of a surface; a side of the domain counts beyond it as negative."""
-        x, y = (
-            float(v) if math.isinf(length) else float(v % length) for v, length in zip(place, self._period, strict=True)
-        )
+        x, y = (float(v) if math.isinf(length) else float(v % length) for v, length in zip(place, self._period, strict=True))
         nx, ny, distance = DISTANCE(int(self._ground.kind[surface]), self._ground.numbers[surface], x, y)
         return (float(nx), float(ny)), float(distance)
 

@@ -24,9 +24,7 @@ def judgement_data(judgement: Judgement) -> dict[str, Any]:
         "told": judgement.told,
         "first_fault": None if fault is None else asdict(fault),
         "parting": None if charge.parting is None else dict(zip(("time", "sentence"), charge.parting, strict=True)),
-        "contacts": {
-            name: getattr(charge, name) for name in ("found", "missed", "doubled", "false", "elsewhere", "unseen")
-        },
+        "contacts": {name: getattr(charge, name) for name in ("found", "missed", "doubled", "false", "elsewhere", "unseen")},
         "tolerance": judgement.tolerance,
         "late": {
             "mean": float(late.mean()) if len(late) else None,

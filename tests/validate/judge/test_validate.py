@@ -39,9 +39,7 @@ def test_the_command_prints_the_verdict_and_draws_it(files, tmp_path):
     assert "First wrong event: missed: the contact of disks 3 and 4 at t = 0.550291" in done.output
     assert "Contacts are matched within" in done.output
     assert (tmp_path / "a.svg").read_text().startswith("<?xml")
-    rows = list(
-        csv.DictReader(line for line in (tmp_path / "a.csv").read_text().splitlines() if not line.startswith("#"))
-    )
+    rows = list(csv.DictReader(line for line in (tmp_path / "a.csv").read_text().splitlines() if not line.startswith("#")))
     assert {"found", "missed", "position"} <= {row["what"] for row in rows}
     data = json.loads(CliRunner().invoke(main, [*told, "--json"]).output)
     assert data["first_fault"]["kind"] == "missed"
@@ -137,9 +135,7 @@ def test_a_motion_that_begins_late_is_judged_from_there_on():
     """What an engine did before nobody knows: it is charged with nothing."""
     times, places, _, contacts = motion(SCENE)
     begin = int(np.searchsorted(times, contacts[3][0])) + 1
-    judged = es.validate(
-        SCENE, trajectory=(times[begin:], places[begin:]), contacts=[(t, a, b) for t, a, b, _ in contacts]
-    )
+    judged = es.validate(SCENE, trajectory=(times[begin:], places[begin:]), contacts=[(t, a, b) for t, a, b, _ in contacts])
     assert judged.first_fault is None
     assert judged.judgement.charge.found > 30
     assert "it is judged from the state" in judged.verdict[-1]
@@ -150,9 +146,7 @@ def test_a_motion_that_begins_late_is_judged_from_there_on():
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
 def test_a_motion_in_another_unit_of_time_is_refused(unit):
     times, places, _, _ = motion(SCENE)
-    with pytest.raises(
-        es.EventsimError, match=f"its disks begin with {1.0 / unit:g} times the velocities of the scene"
-    ):
+    with pytest.raises(es.EventsimError, match=f"its disks begin with {1.0 / unit:g} times the velocities of the scene"):
         es.validate(SCENE, trajectory=(unit * times, places))
 
 

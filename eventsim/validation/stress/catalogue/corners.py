@@ -66,7 +66,9 @@ def _chain(bench: Bench) -> float:
     worst = 0.0
     chain = Polyline(((0.0, 0.2), (0.4, 0.2), (0.8, 0.2), (3.0, 0.2)))
     for gravity in (None, (0.0, -1.0)):
-        scene = Scene(Disks([[0.3, 0.3]], [[1.0, 0.0]], 0.1), Open(), walls=[chain], gravity=gravity, restitution=0.5)
+        scene = Scene(
+            Disks([[0.3, 0.3]], [[1.0, 0.0]], 0.1), Open(), walls=[chain], gravity=gravity, restitution=0.5
+        )
         state = bench.run(scene, until=2.0).state
         worst = max(worst, off(state.position, [[2.3, 0.3]]) / 0.1, off(state.velocity, [[1.0, 0.0]]))
     return worst

@@ -33,9 +33,7 @@ def bounce(restitution: float, height: float, gravity: float, time: float) -> tu
     if time < first:
         return height - 0.5 * gravity * time * time, -gravity * time
     flight, lag = 2.0 * restitution * first, time - first
-    count = (
-        math.floor(math.log1p(-lag * (1.0 - restitution) / flight) / math.log(restitution)) if restitution < 1.0 else 0
-    )
+    count = math.floor(math.log1p(-lag * (1.0 - restitution) / flight) / math.log(restitution)) if restitution < 1.0 else 0
     begin = flight * (1.0 - restitution**count) / (1.0 - restitution)
     speed = 0.5 * gravity * flight * restitution**count
     lag -= begin
