@@ -182,31 +182,33 @@ def is_in_hexagon(x, y):
     return np.logical_and.reduce(around) & (np.hypot(x, y) > 0.801)
 
 
-def escape_from_hexagon(count, until, seed, **stop):
-    """Escapes of points through 0.12 of the side below."""
+def escape_from_hexagon(length, count, until, seed, **stop):
+    """Escapes of points through an opening in the middle of the side below."""
     places, velocities = inside(np.random.default_rng(seed), count, (-1.0, -1.0), (1.0, 1.0), is_in_hexagon)
     scene = points(places, velocities, walls=[hexagon()], posts=[((0.0, 0.0), 0.8)])
     height = -math.sqrt(0.75)
-    return study(run_log(scene, until=until, **stop), "escape", -0.06, height, 0.06, height)
+    return study(run_log(scene, until=until, **stop), "escape", -0.5 * length, height, 0.5 * length, height)
 
 
 def test_escape_from_a_hexagon_with_a_post_has_a_rate():
-    found = escape_from_hexagon(60, 12.0, 3)
-    rate = found["escape_rate"]
+    rate = escape_from_hexagon(0.12, 60, 12.0, 3)["escape_rate"]
     assert rate.theory == pytest.approx(0.12 / (math.pi * (1.5 * math.sqrt(3.0) - 0.64 * math.pi)), rel=1e-9)
-    assert abs(rate.value - rate.theory) < 4.0 * rate.error + 0.05 * rate.theory
+    # necks of 0.066 join six pockets: through so wide an opening a pocket empties before the others come
+    assert 0.3 * rate.theory < rate.value + 4.0 * rate.error
+    assert rate.value < rate.theory + 4.0 * rate.error
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(1500)
+@pytest.mark.timeout(3600)
 def test_the_rate_of_escape_from_a_hexagon():
+    """The way through the necks takes 11 units of time (from the rate at 0.12), so the opening has to be as small as this."""
     values, errors = [], []
-    for seed in range(6):
-        found = escape_from_hexagon(2_000, 60.0, seed, engine="auto")["escape_rate"]
+    for seed in range(13):
+        found = escape_from_hexagon(0.006, 2_000, 150.0, seed, engine="auto")["escape_rate"]
         values.append(found.value)
         errors.append(found.error)
     rate, error = float(np.mean(values)), math.sqrt(sum(e * e for e in errors)) / len(errors)
-    print(rate, error, found.theory, found.doubt, np.std(values) / math.sqrt(6))
+    print(rate, error, found.theory, found.doubt, np.std(values) / math.sqrt(len(values)))
     assert error < 0.01 * rate
     assert abs(rate - found.theory) < 0.05 * found.theory
 

@@ -1,7 +1,6 @@
 """Structure along a run, against closed forms, theory and a plain count."""
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -106,15 +105,3 @@ def test_contact_value_and_long_waves_of_a_fluid(fraction):
         assert abs(one.value - one.theory) < 3.0 * one.error
         assert one.error < most * one.value
     assert abs(found["g_contact"].value / found["g_contact"].theory - 1.0) < 0.01
-
-
-@pytest.mark.slow
-@pytest.mark.timeout(1500)
-def test_fifty_states_of_a_hundred_thousand_disks_take_a_minute():
-    log = fluid_log(100_000, 0.5, 500_000, engine="auto")
-    began = time.process_time()
-    found = study(log, "structure")
-    spent = time.process_time() - began
-    print(spent, found.notes)
-    assert found.notes[0].startswith("50 states")
-    assert spent < 60.0
