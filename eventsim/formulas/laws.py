@@ -1,7 +1,6 @@
 """The laws of contacts: how much of the approach velocity comes back, and what follows from that for a run.
 
-Kernels know a law by its restitutions and its duration (`impulse.contact_restitution`).  To add a law: a class here, a place in
-`LAWS`, its keys in `scene`.
+Kernels know a law by its restitutions and its duration (`impulse.contact_restitution`).  To add a law: see `EXTENDING.md`.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from eventsim.scene.keys import Invalid, Optional, Required, Schema
 from eventsim.scene.numbers import as_number, as_whole
 from eventsim.scene.sizes import RULES, Sizes
 from eventsim.scene.walls import WALLS
-from eventsim.scene.walls.wall import LENGTH, NAME, POINTS, keys_of
+from eventsim.scene.walls.wall import LENGTH, NAME, POINTS, keys_of, optional_keys
 from eventsim.scene.walls.wall import POINT as PLACE
 
 MOST_FRAMES = 10**9
@@ -153,7 +153,9 @@ DISKS_FILE = Schema(
 )
 WALL_KEYS: dict[str, Callable[[object], object]] = {PLACE: POINT, POINTS: points, LENGTH: number, NAME: text}
 WALL = {
-    kind: Schema({**KIND, **{(Required, Optional)[key == "name"](key): WALL_KEYS[of] for key, of in keys_of(wall).items()}})
+    kind: Schema(
+        {**KIND, **{(Required, Optional)[key in optional_keys(wall)](key): WALL_KEYS[of] for key, of in keys_of(wall).items()}}
+    )
     for kind, wall in WALLS.items()
 }
 SCALARS = tuple(str(key) for key in SCENE.schema)

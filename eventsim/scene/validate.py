@@ -155,10 +155,10 @@ def _point_wall_problems(disks: Disks, walls: Sequence[Wall], gravity: Point | N
         if not wall.for_points:
             continue
         if gravity is not None and any(gravity):
-            yield f"wall[{i}]: gravity = {list(gravity)}: points that fall cannot meet an {wall.kind}; leave gravity out"
+            yield f"wall[{i}]: gravity = {list(gravity)}: points that fall cannot meet this {wall.kind}; leave gravity out"
         moving = np.isfinite(disks.mass) | (disks.velocity != 0.0).any(axis=1)
         for k in np.flatnonzero(moving & (disks.radius > 0.0))[: WRITTEN_OUT.get()]:
-            yield f"wall[{i}]: {names.disk(int(k))} has radius {disks.radius[k]}: only points (radius 0) can meet an {wall.kind}"
+            yield f"wall[{i}]: {names.disk(int(k))} has radius {disks.radius[k]}: only points (radius 0) meet this {wall.kind}"
 
 
 def _wall_name_problems(walls: Sequence[Wall], sides: Sequence[str]) -> Iterator[str]:

@@ -7,6 +7,7 @@ import math
 import os
 import secrets
 from collections.abc import Iterator
+from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -78,7 +79,7 @@ def _tables(scene: Scene) -> dict[str, Any]:
     if scene.gravity is not None:
         data["gravity"] = list(scene.gravity)
     if scene.restitution is not None:
-        data["restitution"] = {"pair": scene.restitution.pair, "wall": scene.restitution.wall}
+        data["restitution"] = {key: value for key, value in asdict(scene.restitution).items() if value is not None}
     data["domain"] = _domain_table(scene.domain)
     data["disk"] = []
     if scene.walls:

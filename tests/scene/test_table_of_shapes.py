@@ -24,13 +24,17 @@ EXAMPLES = {
 }
 
 
+INSIDE = (2.0, 1.6)
+"""A place in every wall that holds disks."""
+
+
 def missing(shape: type) -> set[str]:
     """What a shape lacks of all that is asked of one."""
     asked = {name for name in vars(Shape) if not name.startswith("_") or name == "__iter__"}
     return {name for name in asked if not hasattr(shape, name)}
 
 
-def walls_within(position=(2.0, 1.6), kind="segment"):
+def walls_within(position=INSIDE, kind="segment"):
     disks = es.Disks([position], [(0.3, 0.1)], 0.0 if WALLS[kind].for_points else 0.05)
     return es.Scene(disks, es.Box((4.0, 4.0)), [EXAMPLES[kind]], until=1.0)
 
@@ -94,9 +98,15 @@ def test_a_wall_gives_the_shapes_that_it_is_made_of(kind):
 
 @pytest.mark.parametrize("kind", WALLS)
 def test_a_wall_survives_a_scene_file(kind):
-    position = (2.0, 1.6) if kind in ("circle", "polygon") else (0.5, 0.5)
-    scene = walls_within(position, kind)
+    scene = walls_within(INSIDE if WALLS[kind].holds else (0.5, 0.5), kind)
     assert scene_from_dict(scene_to_dict(scene)) == scene
+
+
+def test_what_has_a_default_may_be_left_out_of_a_scene_file():
+    scene = es.Scene(es.Disks([(0.5, 0.5)], radius=0.0), es.Open(), [es.Ellipse((2.0, 2.0), (2.0, 1.0))], until=1.0)
+    tables = scene_to_dict(scene)
+    del tables["wall"][0]["direction"]
+    assert scene_from_dict(tables) == scene
 
 
 @pytest.mark.parametrize("kind", WALLS)
@@ -129,7 +139,7 @@ def test_engines_meet_the_outline_of_a_wall(kind):
 
 def test_every_shape_on_a_stage_has_the_number_of_a_wall():
     for kind in WALLS:
-        stage = stage_of(walls_within((2.0, 1.6) if kind in ("circle", "polygon") else (0.5, 0.5), kind))
+        stage = stage_of(walls_within(INSIDE if WALLS[kind].holds else (0.5, 0.5), kind))
         named = {stage.wall_names[surface.wall] for surface in stage.surfaces}
         assert named == set(stage.wall_names)
 

@@ -89,10 +89,11 @@ class Arrays(NamedTuple):
 class Rules(NamedTuple):
     """What the scene says; None: it does not have that.
 
-    wall_x, wall_y: place of the first of two hard walls across an axis.  duration: of a contact.  classes: there are immovable
-    disks or tracers.  features: number of wall shapes; shapes: of each of the kinds of `shapes` whether there is one;
-    first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.  still: see `stillness_of`, None where
-    disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.  sinks: gaps can sink below the digits.
+    wall_x, wall_y: place of the first of two hard walls across an axis.  series_restitution: see `Law.series`.  duration: of a
+    contact.  classes: there are immovable disks or tracers.  features: number of wall shapes; shapes: of each of the kinds of
+    `shapes` whether there is one; first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.  still: see
+    `stillness_of`, None where disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.  sinks: gaps can
+    sink below the digits.
     """
 
     gx: object
@@ -105,6 +106,7 @@ class Rules(NamedTuple):
     height: float
     pair_restitution: float
     wall_restitution: float
+    series_restitution: float
     duration: object
     classes: object
     common_mass: float

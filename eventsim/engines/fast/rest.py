@@ -144,12 +144,6 @@ def _may_be_spent(m, rules, i, time):
 
 
 @inline
-def _series(restitution, duration):
-    """The restitution of bounces that follow each other ever faster; in the TC model they are elastic in the end."""
-    return restitution if duration is None else 1.0
-
-
-@inline
 def rests(m, i):
     """Whether disk i rests on a wall."""
     return word(m.disks, i * WORDS + FLAGS) & RESTING != 0
@@ -182,8 +176,8 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     if rests(m, i) and word(m.disks, i * WORDS + MET) == -1 - place:
         return NEVER, STRUCK
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
-    restitution = _series(rules.wall_restitution, rules.duration)
-    delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, _since_met(m, i, place))
+    restitution, since = rules.series_restitution, _since_met(m, i, place)
+    delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, since)
     if how == SUPPORTED and is_cornered(
         m, rules, i, place, side, real(m.disks, f + X), real(m.disks, f + Y), rules.still
     ):
@@ -225,7 +219,7 @@ def shape_rest(m, rules, i, k):
     before = side_met(m, i, place)
     close = beside(m, rules, i, k, m.sides)
     side = flight_side(face, before, close, x, y, vx, vy, r)
-    restitution, since = _series(rules.wall_restitution, rules.duration), _since_met(m, i, place)
+    restitution, since = rules.series_restitution, _since_met(m, i, place)
     if before != 0 and side != before:  # it has come round an end since
         since = NOT_LAST
     delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t, since)

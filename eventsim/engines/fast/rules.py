@@ -38,6 +38,7 @@ def rules_of(stage: Stage) -> Rules:
         height,
         stage.law.pair,
         stage.law.wall,
+        stage.law.series(),
         stage.law.duration,
         1 if classes else None,
         stage.common_mass,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, TypeAlias
@@ -33,7 +33,7 @@ class Wall(ABC):
     """A wall at rest that reflects every disk.
 
     Its class is a frozen dataclass.  The fields are the keys of its [[wall]] table, each a Point, a tuple[Point, ...] or a float,
-    which is a length; and a name.
+    which is a length; and a name.  One with a default may be left out.
 
     Attributes:
         kind: what a scene file calls it.
@@ -153,6 +153,11 @@ class Part(Wall):
 def keys_of(kind: type[Wall]) -> dict[str, str]:
     """The keys of the [[wall]] table of a kind, with the types that the class writes."""
     return {item.name: str(item.type) for item in fields(kind)}  # type: ignore[arg-type]  # every class of walls is a dataclass
+
+
+def optional_keys(kind: type[Wall]) -> frozenset[str]:
+    """Those of them that may be left out."""
+    return frozenset(item.name for item in fields(kind) if item.default is not MISSING)  # type: ignore[arg-type]  # as above
 
 
 def shifts(bounds: Bounds, corner: Point, period: Point, reach: float) -> list[Point]:
