@@ -93,7 +93,7 @@ class FastSession(ExactSession):
             until = self._remainder(stop.until)
             turns = state.window_end <= until
             limit = state.window_end if turns else math.nextafter(until, math.inf)
-            if self._before is not None:
+            if waits := self._before is not None:
                 limit = min(limit, self._latest)
             now, most = state.now, target
             if state.opened:
@@ -132,6 +132,8 @@ class FastSession(ExactSession):
                 elif self._before is not None:
                     if self._jump_back(until, stop.until):
                         return "until"
+                elif waits:
+                    continue  # what it waited for has come; the window goes on
                 elif turns and not (empty and for_ever):
                     if for_ever and not state.window_rows and self._only_looks():
                         machine.give_up_cells()
