@@ -7,6 +7,7 @@ None.  `origin` and `start_time` end here: a shifted or a late scene has the sam
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +18,7 @@ from eventsim.formulas.motion import periods
 from eventsim.formulas.real import Real, is_float
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.boundary import Boundary
-from eventsim.formulas.walls.point import is_point
+from eventsim.formulas.walls.point import closeness, is_near, is_point
 from eventsim.formulas.walls.post import is_post_to
 from eventsim.formulas.walls.shape import Closed, Thin
 from eventsim.scene.clock import SceneClock, clock_of
@@ -119,6 +120,21 @@ class Stage:
         if isinstance(found, Boundary):
             return found.normal()
         return found.shape.normal(side, x, y)
+
+    def at_end(self, met: Iterable[int], x: Real, y: Real, reached: float, radius: float) -> tuple[Real, Real]:
+        """The place of a point that meets several surfaces at once: the end of a wall, if it is there but for the last bits.
+
+        reached: how far it may have flown there.
+        """
+        for surface in met:
+            found = self.surfaces[surface]
+            shape = None if isinstance(found, Boundary) else found.shape
+            if isinstance(shape, Thin) and is_point(radius, shape.size) and is_float(x):
+                close = closeness(shape.size + reached, x, y, 0.0, 0.0, 0.0)
+                for px, py in ((shape.x, shape.y), (shape.x1, shape.y1)):
+                    if is_near(px, py, x, y, close):
+                        return px, py
+        return x, y
 
     def touching(self, surface: int, side: int, x: Real, y: Real, radius: Real) -> tuple[Real, Real]:
         """The place of a disk on the surface that it meets: exactly on a boundary of the domain.

@@ -98,3 +98,20 @@ def test_the_energy_left_in_a_corner_counts_from_its_lowest_place():
     assert not is_spent(*corner, *pull, 1e-6, 0.0, 0.0, 1.0, 0.5)
     assert not is_spent(*corner, *pull, 1e-8, 0.0, 1e-4, 1.0, 0.5)
     assert is_spent(*corner, *pull, 1e-8, 0.0, 1e-9, 1.0, 0.5)
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_a_point_that_falls_into_a_corner_comes_back_the_way_it_came(engine):
+    """Both walls turn it round together, and it is at the corner then, so that it falls into the corner again."""
+    floor = es.Polyline([(0.0, 2.6471313603262714), (1.3258378352915325, 0.7045635217200495), (4.0, 1.2012323277492247)])
+    scene = es.Scene(
+        es.Disks([(1.3258378352915325, 2.42306320799595)], radius=0.0),
+        es.Box((4.0, 8.0)),
+        (floor,),
+        gravity=(0.0, -9.81),
+        restitution=0.6,
+    )
+    log = es.simulate(scene, events=8, engine=engine, log=True).log
+    assert log.xa.tolist() == [1.3258378352915325] * 8
+    assert log.vxa.tolist() == [0.0] * 8
+    assert (log.vya[2::2] / log.vya[:-2:2]).tolist() == pytest.approx([0.6] * 3, rel=1e-14)

@@ -241,6 +241,10 @@ class Resolver:
                     x, y = self._place_on(-1 - component[k].b, component[k].image[0], i, x, y)
             self._rests.free(i, t)
             own = [component[k] for k in active if component[k].a == i and component[k].b < 0]
+            if len(own) > 1:
+                u, w = before[number[i]]
+                reached = (abs(u) + abs(w)) * t
+                x, y = stage.at_end([-1 - event.b for event in own], x, y, reached, self._radius[i])
             leaves = outcome.velocities[number[i]]
             state.keep_sides(i, t, (x, y), leaves, tuple((-1 - event.b, event.image[0]) for event in own))
             state.anchor(i, t, x, y, *leaves)
