@@ -86,13 +86,14 @@ def horizon_words(horizon: Horizon) -> str:
     if horizon.event is not None and horizon.time is not None:
         return (
             f"the trajectory is right until about event {horizon.event:,}, t = {short(horizon.time)}; "
-            f"after that only its statistics are{ties}"
+            f"after that only its statistics are; times before it differ by {horizon.apart:.1g} at most{ties}"
         )
     if horizon.events == 0:
         return "no event was there to be compared"
     return (
         f"not reached in {plural(horizon.events, 'event')}, to t = {short(horizon.until)}: "
-        f"starts that differ in the last bit still tell the same story there{ties}"
+        f"starts that differ in the last bit still tell the same story there, at times that differ by {horizon.apart:.1g} "
+        f"at most{ties}"
     )
 
 

@@ -14,14 +14,17 @@ import numpy as np
 
 from eventsim.engines.base import Session, Stop
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.record.compare import Comparison
-from eventsim.record.events import Floats
+from eventsim.record.compare import Comparison, time_differences
+from eventsim.record.events import Floats, Rows
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.near_ties import WatchfulSession
 
 SHADOWS, SEED = 4, 1
 """Shadows, and the seed of the last bits that they differ by."""
+
+CLOCK = ["time", "epoch", "remainder"]
+"""The columns that are kept of rows that have been compared."""
 
 BLOCK = 4
 """Rows per disk between two comparisons."""
@@ -37,6 +40,7 @@ class Horizon:
     event, time: of the first row that differs in a shadow, or that only one of both has (time on the scene's clock); None where
     none differs in the `events` rows that were compared, up to the time `until`.
     near_ties: contacts until then that share a disk and that only last bits part.
+    apart: the largest difference, time, between when a contact before that event comes in the scene and in a shadow.
     """
 
     event: int | None
@@ -44,6 +48,7 @@ class Horizon:
     events: int
     until: float
     near_ties: int = 0
+    apart: float = 0.0
 
 
 def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
@@ -58,26 +63,44 @@ def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
     comparisons = [Comparison() for _ in shadows]
     limit = farthest * stage.n if stop.events is None else min(farthest * stage.n, stop.events)
     done, time = 0, stage.start_time
-    seen: list[Floats] = []
+    seen: list[Rows] = []
+    theirs: list[list[Rows]] = [[] for _ in shadows]
     stopped: str | None = None
     while stopped in (None, "events") and done < limit:
         target = min(limit, done + BLOCK * stage.n)
         stopped = _advance(true, stop.until, target)
         rows = true.take_rows()
         done += len(rows)
-        seen.append(rows["time"])
-        for shadow, comparison in zip(shadows, comparisons, strict=True):
+        seen.append(rows[CLOCK])
+        for shadow, comparison, kept in zip(shadows, comparisons, theirs, strict=True):
             ended = _advance(shadow, stop.until, target)
-            comparison.add(rows, shadow.take_rows())
+            other = shadow.take_rows()
+            kept.append(other[CLOCK])
+            comparison.add(rows, other)
             if stopped not in (None, "events") and ended not in (None, "events"):
                 comparison.end()
         found = [comparison.difference for comparison in comparisons if comparison.difference is not None]
         if found:
-            first, times = min(found), np.concatenate(seen)
+            first, times = min(found), np.concatenate(seen)["time"]
             at = float(times[min(first, len(times) - 1)]) if len(times) else time  # a surplus row comes behind the last one
-            return Horizon(first, at, done, float(times[-1]) if len(times) else time, true.near_ties_until(at))
+            apart = _apart(stage, seen, theirs, comparisons, first)
+            return Horizon(first, at, done, float(times[-1]) if len(times) else time, true.near_ties_until(at), apart)
         time = float(rows["time"][-1]) if len(rows) else time
-    return Horizon(None, None, done, time, len(true.near_ties))
+    return Horizon(None, None, done, time, len(true.near_ties), _apart(stage, seen, theirs, comparisons, done))
+
+
+def _apart(
+    stage: Stage, seen: list[Rows], theirs: list[list[Rows]], comparisons: list[Comparison], first: int
+) -> float:
+    """The largest difference in time of the contacts before row `first` that a shadow has too; time."""
+    largest = 0.0
+    for kept, comparison in zip(theirs, comparisons, strict=True):
+        pairs = comparison.agreement().pairs
+        pairs = pairs[pairs[:, 0] < first]
+        if len(pairs):
+            differences = time_differences(np.concatenate(seen), np.concatenate(kept), pairs, stage.epoch_length)
+            largest = max(largest, float(differences.max()))
+    return largest
 
 
 def _advance(session: Session, until: float | Fraction | None, events: int) -> str | None:

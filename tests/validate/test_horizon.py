@@ -51,6 +51,16 @@ def test_the_horizon_has_the_time_of_its_event():
     assert told.time == rows_of(scene, events=1000)["time"][told.event]
 
 
+def test_the_horizon_tells_how_far_apart_the_times_of_matched_contacts_are():
+    """Last bits of places of about 1, which every contact of a disk amplifies until the order of contacts is another one."""
+    scene = lattice_gas(16, 0.3, seed=1)
+    few, more, all_of_them = (horizon(scene, Stop(None, events)) for events in (2, 150, 1000))
+    assert 0.0 < few.apart < 1e-14
+    assert few.apart < 1e-3 * more.apart
+    assert more.apart < 1e-3 * all_of_them.apart
+    assert all_of_them.apart < all_of_them.time
+
+
 def test_a_run_that_ends_before_has_no_horizon():
     told = horizon(lattice_gas(16, 0.3, seed=1), Stop(None, 100))
     assert (told.event, told.time) == (None, None)

@@ -17,8 +17,8 @@ DROPS = (2.0**-20, 0.0502817, 1.0, 6.5)
 AFTER_TIE = np.array([[5247.0, 1056.0], [3490.0, 8376.0], [7074.0, -9432.0]]) / 15811.0
 """(3, 2) the velocities that the disks of `two_partners` leave with."""
 
-PACES = (0.25, 16.0, 1024.0)
-"""Speeds of a spectator that has a unit to go: it is met never, a few times, hundreds of times before the tie."""
+PACES = (0.25, 16.0, 256.0)
+"""Speeds of a spectator that has a unit to go: it meets walls never, a few times, a hundred times before the tie."""
 
 
 def valley(drop: float) -> Scene:
