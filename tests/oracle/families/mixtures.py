@@ -50,22 +50,24 @@ def small_boxes(rng: np.random.Generator) -> Case:
     size = (float(rng.uniform(1.05, 4.0)), float(rng.uniform(1.05, 4.0)))
     radii = [0.5] * n if rng.random() < 0.7 else [float(r) for r in rng.uniform(0.2, 0.5, n)]
     places: list[tuple[float, float]] = []
+    placed: list[float] = []
     for r in radii:
         for _ in range(200):
             x, y = float(rng.uniform(0, size[0])), float(rng.uniform(0, size[1]))
             if all(
                 math.hypot(x - px + i * size[0], y - py + j * size[1]) > 1.0001 * (r + pr)
-                for (px, py), pr in zip(places, radii, strict=False)
+                for (px, py), pr in zip(places, placed, strict=True)
                 for i in (-1, 0, 1)
                 for j in (-1, 0, 1)
             ):
                 places.append((x, y))
+                placed.append(r)
                 break
     n = len(places)
     made = scene(
         position=places,
         velocity=rng.normal(0, 1, (n, 2)),
-        radius=radii[:n],
+        radius=placed,
         domain=es.Periodic(size),
         restitution=float(rng.choice([1.0, 1.0, 0.9])),
         until=float(rng.uniform(3, 20)),
