@@ -92,7 +92,7 @@ def horizon_words(horizon: Horizon) -> str:
         return "no event was there to be compared"
     return (
         f"not reached in {plural(horizon.events, 'event')}, to t = {short(horizon.until)}: "
-        f"starts that differ in the last bit still tell the same story there, at times that differ by {horizon.apart:.1g} "
+        f"runs that differ in last bits still tell the same story there, at times that differ by {horizon.apart:.1g} "
         f"at most{ties}"
     )
 

@@ -1,19 +1,22 @@
-"""The horizon: up to which event a float64 trajectory is the true one, told by shadows that start a last bit beside it.
+"""The horizon: up to which event a float64 trajectory is the true one, told by shadows with last bits of their own.
 
-Rounding moves a trajectory by last bits; from then on its error grows as that of any other trajectory which is a last bit
-away.  So where the first of a few such shadows takes another order of events, the true one is about to do so too: an error that
-is twice as large is only as early as it takes to gain a bit, one of 53.
+Rounding moves a trajectory by last bits, at its start and at every contact; from then on its error grows as that of any other
+trajectory which is a last bit away.  So where the first of a few such shadows takes another order of events, the true one is
+about to do so too: an error that is twice as large is only as early as it takes to gain a bit, one of 53.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 
 from eventsim.engines.base import Session, Stop
+from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.engines.reference.resolve import Resolver
 from eventsim.record.compare import Comparison, time_differences
 from eventsim.record.events import Floats, Rows
 from eventsim.scene import Scene
@@ -59,7 +62,7 @@ def horizon(scene: Scene, stop: Stop, farthest: int = FARTHEST) -> Horizon:
     stage = stage_of(scene)
     rng = np.random.default_rng(SEED)
     true = WatchfulSession(stage, keep_rows=True)
-    shadows: list[Session] = [ReferenceSession(_moved(stage, rng)) for _ in range(SHADOWS)]
+    shadows: list[Session] = [_Shadow(_moved(stage, rng), rng) for _ in range(SHADOWS)]
     comparisons = [Comparison() for _ in shadows]
     limit = farthest * stage.n if stop.events is None else min(farthest * stage.n, stop.events)
     done, time = 0, stage.start_time
@@ -109,6 +112,32 @@ def _advance(session: Session, until: float | Fraction | None, events: int) -> s
     while stopped is None:
         stopped = session.advance(Stop(until, events), 1 << 20)
     return stopped
+
+
+class _Noisy(Resolver):
+    """Leaves the velocities behind a contact by a last bit off, up or down; not those of what rests, or what nothing deflects."""
+
+    rng: np.random.Generator
+
+    def resolve(self, component: list[Event]) -> list[int]:
+        changed = super().resolve(component)
+        for i in changed:
+            if self._state.support_of(i) is None and not self._masses.is_immovable(i):
+                for values in (self._state.vx, self._state.vy):
+                    if values[i] != 0.0:
+                        values[i] = math.nextafter(values[i], math.inf if self.rng.random() < 0.5 else -math.inf)
+        return changed
+
+
+class _Shadow(ReferenceSession):
+    """The reference engine with other last bits at every contact."""
+
+    resolver = _Noisy
+
+    def __init__(self, stage: Stage, rng: np.random.Generator) -> None:
+        super().__init__(stage)
+        assert isinstance(self._resolver, _Noisy)
+        self._resolver.rng = rng
 
 
 def _moved(stage: Stage, rng: np.random.Generator) -> Stage:

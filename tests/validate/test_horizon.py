@@ -61,6 +61,14 @@ def test_the_horizon_tells_how_far_apart_the_times_of_matched_contacts_are():
     assert all_of_them.apart < all_of_them.time
 
 
+def test_what_falls_from_rest_has_a_horizon():
+    """Nothing moves at the start, so shadows are told apart by the last bits of contacts alone."""
+    scene = gallery("sculpture")
+    told = horizon(scene, Stop(scene.until, 400))
+    assert told.event is not None
+    assert told.event > 100
+
+
 def test_a_run_that_ends_before_has_no_horizon():
     told = horizon(lattice_gas(16, 0.3, seed=1), Stop(None, 100))
     assert (told.event, told.time) == (None, None)
