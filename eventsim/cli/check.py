@@ -61,8 +61,8 @@ def command(
                                   that share a disk and that only rounding parts; null in scenes of more
                                   than 1,000 disks
       until, events, engine       the stop of the scene; what auto chooses
-      horizon                     null without --horizon; {event, time} of the first contact that runs from
-                                  starts a last bit apart disagree on (null: none; exact ties part them at
+      horizon                     null without --horizon; {event, time} of the first contact that runs with
+                                  other last bits disagree on (null: none; exact ties part them at
                                   once), {events, until} compared, near_ties until then, apart: largest
                                   difference in time of contacts before it
       explanation                 topic -> words, as the text prints them

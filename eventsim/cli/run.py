@@ -105,11 +105,11 @@ def command(
       residuals                energy (relative change; null where it is not conserved),
                                momentum (share of sum m |v| not booked at walls),
                                max_overlap (deepest overlap at a contact, in reaches)
-      horizon                  null without --horizon; {event, time: of the first contact that runs from
-                               starts a last bit apart disagree on, null where none (exact ties part
+      horizon                  null without --horizon; {event, time: of the first contact that runs with
+                               other last bits disagree on, null where none (exact ties part
                                them at once); events, until: how far they were compared; near_ties:
                                contacts until then that only last bits part; apart: largest difference
-                               in time of contacts before it, from those of such a start}
+                               in time of contacts before it, from those of such a run}
       trust                    null where nobody asked and it would cost; {event, time: from which on places
                                are off by more than 1e-3 of length (null: never); error: in shares of
                                length, the smallest reach; events looked at; gentle: errors grow as a power
