@@ -69,7 +69,13 @@ class Judged:
 
 @overload
 def validate(
-    scene: Scene, *, trajectory: Source, contacts: Source | None = ..., dt: float | None = ..., tolerance: float | None = ...
+    scene: Scene,
+    *,
+    trajectory: Source,
+    contacts: Source | None = ...,
+    dt: float | None = ...,
+    until: float | None = ...,
+    tolerance: float | None = ...,
 ) -> Judged: ...
 
 
@@ -106,7 +112,7 @@ def validate(
             are read from the paths.
         step: a function step(position, velocity, dt) that returns both after dt, or changes them in place and returns None.
         dt: the step; of a trajectory the time between frames that tell none; without both, one or several steps to compare.
-        until: when to stop; None: when the scene does.
+        until: when to stop; None: when the scene, or the trajectory, does.
         tolerance: how far apart the times of one contact may be; None: two steps and what a disk needs for a tenth of a diameter.
         against: the engines to compare with; none: all.
 
@@ -131,7 +137,8 @@ def validate(
         return Judged(found)
     assert trajectory is not None
     told = None if contacts is None else _contacts(contacts, len(scene.disks))
-    return Judged(judge(scene, _samples(trajectory, dt), told, tolerance))
+    samples = _samples(trajectory, dt)
+    return Judged(judge(scene, samples if until is None else samples.until(until), told, tolerance))
 
 
 def _samples(trajectory: Source, dt: float | None) -> Samples:

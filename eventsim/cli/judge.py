@@ -20,6 +20,7 @@ def say_judged(
     contacts: str | None,
     steps: tuple[float, ...],
     tolerance: float | None,
+    until: float | None,
     csv: Path | None,
     figure: Path | None,
     as_json: bool,
@@ -27,7 +28,7 @@ def say_judged(
 ) -> None:
     """Judge a motion, write what was asked for, and print the verdict."""
     dt = steps[0] if steps else None
-    judged = validate(scene, trajectory=trajectory, contacts=contacts, dt=dt, tolerance=tolerance)
+    judged = validate(scene, trajectory=trajectory, contacts=contacts, dt=dt, until=until, tolerance=tolerance)
     data = judgement_data(judged.judgement)
     if csv is not None:
         facts = {"scene": data["scene"], "trajectory": trajectory, "tolerance": data["tolerance"], "verdict": data["verdict"]}

@@ -21,6 +21,9 @@ from eventsim.reading import told_as
 CONTACTS = ("pair", "wall")
 """Kinds of rows of an event log that are contacts."""
 
+SAME = 1e-9
+"""Of the latest time: contacts that are nearer are at one time, told with rounding."""
+
 
 @dataclass(frozen=True, slots=True)
 class ToldContacts:
@@ -30,6 +33,13 @@ class ToldContacts:
     a: NDArray[np.int64]
     b: NDArray[np.int64]
     wall: tuple[str, ...]
+
+    @property
+    def step(self) -> float:
+        """The least time between two of them at different times: a step of an engine that has steps; inf where there are none."""
+        apart = np.diff(self.time)
+        apart = apart[apart > SAME * np.abs(self.time).max(initial=0.0)]
+        return float(apart.min(initial=np.inf))
 
     def since(self, time: float) -> ToldContacts:
         """Those after a time."""
@@ -56,8 +66,7 @@ def _told(named: Columns, path: Path, n: int) -> ToldContacts:
         b = np.where(b == "", "-1", b)
     wall = list(map(str, named["wall"][kept].tolist())) if "wall" in named else [""] * int(kept.sum())
     time, a, b = (
-        numbers_of(column, name, str(path))
-        for name, column in (("time", named["time"][kept]), ("a", named["a"][kept]), ("b", b))
+        numbers_of(column, name, str(path)) for name, column in (("time", named["time"][kept]), ("a", named["a"][kept]), ("b", b))
     )
     return told_from(time, a, np.where(np.isfinite(b), b, -1.0), wall, n, str(path))
 

@@ -48,6 +48,12 @@ class Samples:
         """The number of disks."""
         return int(self.position.shape[1])
 
+    def until(self, time: float) -> Samples:
+        """Those until a time."""
+        last = int(np.searchsorted(self.times, time, side="right"))
+        velocity = None if self.velocity is None else self.velocity[:last]
+        return checked(replace(self, times=self.times[:last], position=self.position[:last], velocity=velocity))
+
     def at(self, frame: int) -> Samples:
         """One of them alone."""
         chosen = slice(frame, frame + 1 or None)

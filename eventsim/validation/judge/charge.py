@@ -25,7 +25,8 @@ class Charge:
 
     found, missed: of the truth.  doubled, false: of the engine.  elsewhere: of the truth or the engine, where the engine's own
     path, off by errors before, asks for what it did.  unseen: of the truth, too weak to be
-    seen in the samples, or too close to other contacts.
+    seen in the samples, or too close to other contacts; unseen_at: when they are.
+    all_at, compared_at: the times of all contacts of the truth, and of those that were found or missed.
     errors: (found, 2) the time of each found contact, and by how much the engine's is later.
     parting: (time, sentence) of the first contact elsewhere.
     """
@@ -35,10 +36,21 @@ class Charge:
     doubled: int = 0
     false: int = 0
     elsewhere: int = 0
-    unseen: int = 0
+    unseen_at: list[float] = field(default_factory=list)
+    all_at: list[float] = field(default_factory=list)
+    compared_at: list[float] = field(default_factory=list)
     errors: Floats = field(default_factory=lambda: np.empty((0, 2)))
     faults: list[Fault] = field(default_factory=list)
     parting: tuple[float, str] | None = None
+
+    @property
+    def unseen(self) -> int:
+        """The contacts of the truth that samples cannot show."""
+        return len(self.unseen_at)
+
+    def unchecked(self, before: float) -> int:
+        """The contacts of the truth before a time that were neither found nor missed."""
+        return sum(time < before for time in self.all_at) - sum(time < before for time in self.compared_at)
 
     @property
     def ahead(self) -> int:
@@ -61,8 +73,7 @@ class Window:
 
     def covers(self, key: Key, time: float) -> bool:
         """Whether a contact counts: its disks are in place, and it cannot be matched with one behind the end."""
-        disks = key[1:] if key[0] == Kind.PAIR else key[1:2]
-        return all(time <= self.lost[disk] for disk in disks) and time + self.tolerance <= self.end
+        return all(time <= self.lost[disk] for disk in _disks(key)) and time + self.tolerance <= self.end
 
 
 def charged(truth: Truth, met: Sequence[Met], window: Window, witness: Witness, least: float) -> Charge:
@@ -80,27 +91,35 @@ def charged(truth: Truth, met: Sequence[Met], window: Window, witness: Witness, 
     whole = _once(list(zip(keys_of(rows), rows["time"].tolist(), rows["impulse"].tolist(), strict=True)), window.step)
     exact = [(_plain(key, named_walls), time) for key, time, _ in whole]
     match = matched(exact, [(_plain(one.key, named_walls), one.time) for one in met], window.tolerance)
-    charge = Charge()
+    charge = Charge(all_at=[time for _, time, _ in whole if time <= window.end])
     pairs = [(exact[i][1], met[j].time) for i, j in match.pairs if window.covers(*exact[i])]
-    charge.found = len(pairs)
+    charge.found, charge.compared_at = len(pairs), [time for time, _ in pairs]
     charge.errors = np.array([(time, told - time) for time, told in pairs]).reshape(-1, 2)
     for i in match.missed:
         key, time, impulse = whole[i]
         if not window.covers(key, time):
             continue
         fault, weak = witness.missed(key, time), _change(key, impulse, stage) < 2.0 * least
-        if weak or (least and (fault is None or not fault.clear) and witness.is_blurred(key, time)):
-            charge.unseen += 1
+        if (
+            weak
+            or (least and (fault is None or not fault.clear) and witness.is_blurred(key, time))
+            or (fault is not None and _is_answered(exact[i], met, named_walls, window.tolerance))
+        ):
+            charge.unseen_at.append(time)
         elif fault is not None:
             charge.missed += 1
+            charge.compared_at.append(time)
             charge.faults.append(fault)
         else:
             _parts(charge, time, f"its path does not come to the contact of {named(key, stage)} at t = {time:.6g}")
     for j in match.surplus:
         one = met[j]
-        if not window.covers(one.key, one.time):
-            continue
-        fault = witness.surplus(one, _nearest(met, j))
+        if not window.covers(one.key, one.time) or (least and not one.alone):
+            continue  # turns of several contacts do not tell who met
+        near = _nearest(met, j)
+        if near is not None and not least and (_is_any_wall(one.key, stage) or _has_met_between(met, one, near)):
+            near = None
+        fault = witness.surplus(one, near)
         if fault is None:
             who = named(one.key, stage)
             _parts(charge, one.time, f"its path leads to a contact of {who} at t = {one.time:.6g}, which the true one has not")
@@ -111,6 +130,29 @@ def charged(truth: Truth, met: Sequence[Met], window: Window, witness: Witness, 
         else:
             charge.false += 1
     return charge
+
+
+def _is_answered(contact: tuple[Key, float], met: Sequence[Met], named_walls: bool, tolerance: float) -> bool:
+    """Whether the same two meet then all the same, so that an overlap is that of a late contact of theirs."""
+    key, time = contact
+    return any(abs(one.time - time) <= tolerance and _plain(one.key, named_walls) == key for one in met)
+
+
+def _has_met_between(met: Sequence[Met], one: Met, other: Met) -> bool:
+    """Whether one of the two has met something else between two contacts of theirs, so that they may meet again."""
+    begin, end = sorted((one.time, other.time))
+    disks = {disk for disk in _disks(one.key) if disk >= 0}
+    return any(begin <= each.time <= end and each.key != one.key and not disks.isdisjoint(_disks(each.key)) for each in met)
+
+
+def _is_any_wall(key: Key, stage: Stage) -> bool:
+    """Whether a wall is meant that is not named, and there are several: the next contact may be with another one."""
+    return key[0] == Kind.WALL and key[2] < 0 and len(stage.wall_names) > 1
+
+
+def _disks(key: Key) -> tuple[int, ...]:
+    """The disks of a contact."""
+    return key[1:] if key[0] == Kind.PAIR else key[1:2]
 
 
 def _parts(charge: Charge, time: float, sentence: str) -> None:
@@ -145,8 +187,7 @@ def _plain(key: Key, named_walls: bool) -> Key:
 
 def _change(key: Key, impulse: float, stage: Stage) -> float:
     """By how much a contact changes the velocity of the lighter of its disks."""
-    disks = key[1:] if key[0] == Kind.PAIR else key[1:2]
-    lightest = min(stage.common_mass if stage.mass is None else float(stage.mass[disk]) for disk in disks)
+    lightest = min(stage.common_mass if stage.mass is None else float(stage.mass[disk]) for disk in _disks(key))
     return impulse / lightest if lightest > 0.0 else float("inf")
 
 

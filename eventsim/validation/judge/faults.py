@@ -35,8 +35,8 @@ DRIFT = 1e-3
 class Fault:
     """Something that cannot be: when, of which kind, and a sentence.
 
-    kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, drift.  disks: whose.  clear: whether it is
-    larger than what can happen between two samples.
+    kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, drift, energy, momentum.  disks: whose.
+    clear: whether it is larger than what can happen between two samples.
     """
 
     time: float
@@ -118,7 +118,7 @@ class Witness:
             near = [
                 self._around.to_wall(surface, place)[1]
                 for surface in self._around.surfaces
-                if self._around.wall_of(surface) == other
+                if other < 0 or self._around.wall_of(surface) == other
                 for place in places
             ]
             gap, scale = min(near, default=np.inf) - float(self._stage.radius[a]), float(self._stage.radius[a])

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
-from eventsim.scene.disks import typical_speed
 from eventsim.scene.stage import Stage
 
 Mask: TypeAlias = NDArray[np.bool_]
@@ -31,6 +30,9 @@ SHORTEST = 8
 
 BLURRED_BY = 6.0**0.5
 """Steps of noise of positions in the difference of two mean velocities: x2 - 2 x1 + x0."""
+
+WILD = 4.0
+"""Of the typical speed: from the first step on in which disks are faster (root mean square) nothing is told of noise."""
 
 UNLIKE = 0.02
 """Of the typical speed: told velocities that differ more from the motion of the positions (the median) are not used."""
@@ -118,7 +120,9 @@ class Flights:
         return Turn(disk, first, last, time, before + pull * (time - float(self.times[first])), change, ends)
 
 
-def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | None, start: Floats, step: float) -> Flights:
+def flights_of(
+    stage: Stage, times: Floats, place: Floats, velocity: Floats | None, start: Floats, step: float, speed: float
+) -> Flights:
     """The flights through samples; the first is the start of the scene.
 
     Args:
@@ -128,6 +132,7 @@ def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | No
         velocity: (T, n, 2), or None.
         start: (n, 2) velocities at the start.
         step: about the last digit of positions, length.
+        speed: of a typical disk of the event-driven run: what goes wrong late in the samples is no scale for what was before.
     """
     mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass
     pull = np.where(np.isfinite(mass)[:, None], np.array(stage.gravity or (0.0, 0.0)), 0.0)
@@ -135,8 +140,11 @@ def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | No
     way = stage.nearest(np.diff(place, axis=0))
     place = np.concatenate([place[:1], place[:1] + np.cumsum(way, axis=0)])
     mean = way / dt
-    speed = typical_speed(mean[..., 0], mean[..., 1]) or 1.0
-    told = velocity is not None and float(np.median(np.abs(mean - 0.5 * (velocity[1:] + velocity[:-1])))) < UNLIKE * speed
+    calm = _calm(mean[:, np.isfinite(mass)], speed)
+    told = False
+    if velocity is not None:
+        unlike = np.abs(mean - 0.5 * (velocity[1:] + velocity[:-1]))[:calm]
+        told = float(np.median(unlike)) < UNLIKE * speed
     if told:
         assert velocity is not None
         before = after = velocity
@@ -146,13 +154,21 @@ def flights_of(stage: Stage, times: Floats, place: Floats, velocity: Floats | No
         after = np.concatenate([mean - 0.5 * pull * dt, before[-1:]])
         changes = after - before
     size = np.hypot(changes[..., 0], changes[..., 1])
-    moving = size[:, np.isfinite(mass)]
+    moving = size[:calm, np.isfinite(mass)]
     usual = float(np.median(moving)) if moving.size else 0.0
     blurred = 0.0 if told else 4.0 * step / float(dt.min())
     least = max(LEAST_TURN * speed, ABOVE_NOISE * usual, blurred)
-    bends = np.diff(mean, axis=0) - 0.5 * pull * (dt[1:] + dt[:-1])
+    bends = (np.diff(mean, axis=0) - 0.5 * pull * (dt[1:] + dt[:-1]))[:calm]
     noise = float(np.median(np.hypot(bends[..., 0], bends[..., 1]))) if len(bends) else 0.0
     return Flights(times, place, before, after, size > least, least, noise, told, pull)
+
+
+def _calm(mean: Floats, speed: float) -> int:
+    """The number of steps, of mean velocities (T - 1, n, 2), before disks fly apart; at least two."""
+    if not mean.size:
+        return len(mean)
+    wild = np.flatnonzero(np.mean(np.sum(mean * mean, axis=-1), axis=1) > (WILD * speed) ** 2)
+    return max(int(wild[0]), 2) if len(wild) else len(mean)
 
 
 class Gained(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from eventsim.validation.judge.beginning import begins_late, demand_same_pace, p
 from eventsim.validation.judge.charge import Charge, Window, charged, in_our_form
 from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, energy_on_the_way, flights_of
+from eventsim.validation.judge.jumps import jumps
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import Read, contacts_from
 from eventsim.validation.truth import BELIEVED, Truth, truth_of
@@ -30,7 +31,10 @@ ASTRAY = 0.1
 """In diameters: a disk that is further from its place has lost its way, and later contacts of it are not charged."""
 
 STEPS_LATE, FLOWN = 2.0, 0.1
-"""The usual tolerance of contact times: so many steps, and the time in which a typical disk flies so many diameters."""
+"""The usual tolerance of contact times: so many steps, and the time in which a typical disk flies so many diameters.
+
+A step is that from sample to sample, or that of the contacts where they are told and are finer.
+"""
 
 SMALLEST = 1e-9
 """In radii: an overlap of paths below is rounding."""
@@ -132,7 +136,7 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
     mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass
     place = samples.position - np.array(stage.corner)
     start = np.column_stack([stage.vx, stage.vy])
-    flights = flights_of(stage, times, place, samples.velocity, start, samples.step)
+    flights = flights_of(stage, times, place, samples.velocity, start, samples.step, truth.speed)
     around = Surroundings(stage)
     if truth.run.stopped is not None:
         remarks.append(f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})")
@@ -144,7 +148,8 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
     met = read.met if contacts is None else in_our_form(contacts, stage)
     step = float(np.median(np.diff(times)))
     if tolerance is None:
-        tolerance = STEPS_LATE * step + 2.0 * FLOWN * truth.radius / truth.speed
+        late = step if contacts is None else min(step, contacts.step)
+        tolerance = STEPS_LATE * late + 2.0 * FLOWN * truth.radius / truth.speed
     seen = np.searchsorted(times, looks)
     apart = distances(stage, samples.position[seen], truth.run.position[: len(looks)]) / (2.0 * truth.radius)
     resolution = max(SMALLEST * truth.radius, 4.0 * samples.step, 4.0 * flights.blur)
@@ -153,10 +158,15 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
     charge = Charge()
     if contacts is not None or not blind:
         charge = charged(truth, met, window, witness, 0.0 if contacts is not None else flights.least)
+    if contacts is not None and not blind:
+        by_paths = charged(truth, read.met, replace(window, step=step), witness, flights.least)
+        remarks += _where_they_disagree(charge, by_paths)
     weight, velocity = np.where(np.isfinite(mass), mass, 0.0), flights.velocity()
     energy = _energy(flights, velocity, weight)
     drift = None if blind else witness.drift(energy_on_the_way(flights, weight), float(energy[0]))
     seen_here = [*map(witness.outcome, read.met), drift, *map(witness.turn, read.unexplained), *charge.faults]
+    faults = [fault for fault in seen_here if fault is not None]
+    faults += jumps(read.groups, flights, around, mass, faults)
     return Judgement(
         name=scene.name or "this scene",
         source=samples.source,
@@ -171,7 +181,7 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
         momentum=_momentum(velocity, stage, mass),
         deepest=_deepest(scene, samples, looks, seen),
         blind=BLIND if blind and contacts is None else None,
-        faults=sorted((fault for fault in seen_here if fault is not None), key=lambda fault: fault.time),
+        faults=sorted(faults, key=lambda fault: fault.time),
         remarks=remarks,
     )
 
@@ -180,6 +190,17 @@ def _what_is_told(samples: Samples, flights: Flights, contacts: ToldContacts | N
     """In words."""
     told = ["positions", *(["velocities"] if flights.told else []), *(["contacts"] if contacts is not None else [])]
     return f"{', '.join(told)} of {samples.n} disks at {len(samples.times)} times"
+
+
+def _where_they_disagree(told: Charge, by_paths: Charge) -> list[str]:
+    """A sentence where the contacts that are told show a wrong event first that the paths do not show, or the other way round."""
+    here, there = (min(one.faults, key=lambda fault: fault.time, default=None) for one in (told, by_paths))
+    if (here is None or any(here.disks == fault.disks for fault in by_paths.faults)) and (
+        there is None or any(there.disks == fault.disks for fault in told.faults)
+    ):
+        return []
+    first, other = ("no wrong event" if one is None else one.sentence for one in (here, there))
+    return [f"Contacts and paths disagree. The contacts that are told say: {first}. The paths alone say: {other}."]
 
 
 def _lost_from(truth: Truth, apart: Floats) -> Floats:

@@ -44,10 +44,11 @@ class Met:
 
 @dataclass(slots=True)
 class Read:
-    """What the paths tell: contacts in order of time, and turns with nothing near."""
+    """What the paths tell: contacts in order of time, turns with nothing near, and turns in groups that may share contacts."""
 
     met: list[Met] = field(default_factory=list)
     unexplained: list[Turn] = field(default_factory=list)
+    groups: list[list[Turn]] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,16 +64,22 @@ class Edge:
 def contacts_from(flights: Flights, around: Surroundings, mass: Floats) -> Read:
     """The contacts that turns tell of; mass: (n,), inf for immovable disks."""
     turns = sorted(flights.turns(), key=lambda turn: (turn.first, turn.disk))
-    edges = [*_pairs(flights, around, turns), *_walls(flights, around, turns)]
+    close = _close(flights, around, turns)
+    crowded = {place for edge in close for place in edge.turns if place is not None}
+    edges = [*(edge for edge in close if _is_apart(edge, turns)), *_walls(flights, around, turns)]
     explained = {place for edge in edges for place in edge.turns if place is not None}
     for place in range(len(turns)):
         if place not in explained:
             edges += _still(flights, around, turns, place)
     explained = {place for edge in edges for place in edge.turns if place is not None}
     found = Read(unexplained=[turns[place] for place in range(len(turns)) if place not in explained])
-    for group in _entangled(edges):
-        found.met += _shared(group, turns, mass)
+    for group in _entangled([edge.turns for edge in edges]):
+        found.met += _shared([edges[number] for number in group], turns, mass, crowded)
     found.met.sort(key=lambda met: met.time)
+    ties: list[tuple[int, int | None]] = [*(edge.turns for edge in close), *((place, None) for place in range(len(turns)))]
+    for group in _entangled(ties):
+        places = sorted({place for number in group for place in ties[number] if place is not None})
+        found.groups.append([turns[place] for place in places])
     return found
 
 
@@ -88,7 +95,7 @@ def _reach_of(flights: Flights, turn: Turn) -> float:
     return step * float(max(math.hypot(*turn.before), math.hypot(*(turn.before + turn.change))))
 
 
-def _pairs(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Edge]:
+def _close(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Edge]:
     """Two turns at one time, of disks that are close."""
     edges, count = [], len(flights.times)
     active: list[int] = []
@@ -110,10 +117,16 @@ def _pairs(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Ed
             d = around.apart(flights.place[middle, a], flights.place[middle, b])
             size = math.hypot(*d) or 1.0
             normal = (float(d[0]) / size, float(d[1]) / size)
-            if float(turns[i].change @ np.array(normal)) < 0.0 or float(turns[j].change @ np.array(normal)) > 0.0:
-                edges.append(Edge((i, j), (int(Kind.PAIR), a, b), normal))
+            edges.append(Edge((i, j), (int(Kind.PAIR), a, b), normal))
         active.append(place)
     return edges
+
+
+def _is_apart(edge: Edge, turns: list[Turn]) -> bool:
+    """Whether one of two turns leads away from the other disk."""
+    i, j = edge.turns
+    normal = np.array(edge.normal)
+    return float(turns[i].change @ normal) < 0.0 or (j is not None and float(turns[j].change @ normal) > 0.0)
 
 
 def _walls(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Edge]:
@@ -157,8 +170,8 @@ def _still(flights: Flights, around: Surroundings, turns: list[Turn], place: int
     return []
 
 
-def _entangled(edges: list[Edge]) -> list[list[Edge]]:
-    """The edges in groups that share turns."""
+def _entangled(ties: list[tuple[int, int | None]]) -> list[list[int]]:
+    """The numbers of ties of one or two turns, in groups that share turns."""
     leader: dict[int, int] = {}
 
     def lead(place: int) -> int:
@@ -166,22 +179,24 @@ def _entangled(edges: list[Edge]) -> list[list[Edge]]:
             place = leader[place]
         return place
 
-    for edge in edges:
-        i, j = edge.turns
+    for i, j in ties:
         if j is not None:
             leader[lead(j)] = lead(i)
         else:
             lead(i)
-    groups: dict[int, list[Edge]] = defaultdict(list)
-    for edge in edges:
-        groups[lead(edge.turns[0])].append(edge)
+    groups: dict[int, list[int]] = defaultdict(list)
+    for number, tie in enumerate(ties):
+        groups[lead(tie[0])].append(number)
     return list(groups.values())
 
 
-def _shared(group: list[Edge], turns: list[Turn], mass: Floats) -> list[Met]:
-    """The contacts of a group: the edge itself where it is alone; else those with impulses that explain the turns best."""
+def _shared(group: list[Edge], turns: list[Turn], mass: Floats, crowded: set[int]) -> list[Met]:
+    """The contacts of a group: the edge itself where it is alone; else those with impulses that explain the turns best.
+
+    crowded: turns with another one beside them, which a wall alone does not explain.
+    """
     if len(group) == 1:
-        return [_met(group[0], turns, True)]
+        return [_met(group[0], turns, group[0].turns[1] is not None or group[0].turns[0] not in crowded)]
     strength = _impulses(group, turns, mass)
     strongest = max(strength)
     ranked = sorted(zip(strength, group, strict=True), key=lambda one: -one[0])
@@ -192,7 +207,14 @@ def _shared(group: list[Edge], turns: list[Turn], mass: Floats) -> list[Met]:
         for place in edge.turns:
             if place is not None:
                 shared[place] += 1
-    return [_met(edge, turns, all(shared[place] == 1 for place in edge.turns if place is not None)) for edge in kept]
+    return [_met(edge, turns, _is_alone(edge, shared, crowded)) for edge in kept]
+
+
+def _is_alone(edge: Edge, shared: dict[int, int], crowded: set[int]) -> bool:
+    """Whether the turns of a contact are shared with no other."""
+    if edge.turns[1] is None and edge.turns[0] in crowded:
+        return False
+    return all(shared[place] == 1 for place in edge.turns if place is not None)
 
 
 def _impulses(group: list[Edge], turns: list[Turn], mass: Floats) -> list[float]:

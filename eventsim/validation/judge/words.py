@@ -9,6 +9,9 @@ import numpy as np
 from eventsim.validation.judge.judgement import ASTRAY, Judgement
 from eventsim.validation.truth import BELIEVED
 
+ENOUGH = 0.5
+"""Of all contacts: where fewer could be compared, that none was wrong says little of an engine."""
+
 
 def judged_in_words(judgement: Judgement) -> list[str]:
     """What a judgement comes to."""
@@ -22,14 +25,37 @@ def _first(judgement: Judgement) -> str:
     if fault is None and judgement.blind is not None:
         return f"Whether an event is wrong cannot be told: {judgement.blind}."
     if fault is not None:
-        further = _further(judgement)
-        return f"First wrong event: {fault.sentence}.{further}"
+        seen, unchecked = _seen(judgement, fault.time), _unchecked(judgement, fault.time)
+        return f"First wrong event{seen}: {fault.sentence}.{unchecked}{_further(judgement)}"
+    compared, every = judgement.charge.ahead, len(judgement.charge.all_at)
+    if compared < ENOUGH * every:
+        last = min(judgement.lost, max(judgement.charge.compared_at, default=judgement.truth.scene.start_time))
+        text = f"Cannot tell after t = {last:.4g} ({compared} of {every} contacts compared): no wrong event until then"
+        if parting is not None:
+            return f"{text}; it parts from the truth by the errors of its times: {parting[1]}."
+        return f"{text}; later, only what each contact does is looked at."
     if parting is not None:
         return f"No wrong event. It parts from the truth by the errors of its times: {parting[1]}."
     if math.isfinite(judgement.lost):
         how = f"contacts can be compared until its late ones have shifted its disks, about t = {judgement.lost:.4g}"
         return f"No wrong event: {how}; later, only what each contact does is looked at."
     return f"No wrong event until t = {judgement.times[-1]:g}."
+
+
+def _seen(judgement: Judgement, time: float) -> str:
+    """Whether the first one is only the first that can be seen."""
+    return " that can be seen" if judgement.charge.unchecked(time) else ""
+
+
+def _unchecked(judgement: Judgement, time: float) -> str:
+    """How many contacts before it could not be checked, and why."""
+    whole = judgement.charge.unchecked(time)
+    unseen = sum(at < time for at in judgement.charge.unseen_at)
+    why = [
+        *([f"{unseen} too weak, or too close to others"] if unseen else []),
+        *([f"{whole - unseen} of disks out of their places by then"] if whole > unseen else []),
+    ]
+    return f" {whole} earlier {'contact' if whole == 1 else 'contacts'} could not be checked ({', '.join(why)})." if whole else ""
 
 
 def _further(judgement: Judgement) -> str:

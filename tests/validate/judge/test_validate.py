@@ -53,7 +53,7 @@ def test_the_command_prints_the_verdict_and_draws_it(files, tmp_path):
     [
         (["--contacts", "c.csv"], "--contacts and --tolerance belong to --trajectory"),
         (["--trajectory", "no.csv"], "no.csv: no such file"),
-        (["--trajectory", "no.csv", "--until", "1"], "judges one motion as it is"),
+        (["--trajectory", "no.csv", "--against", "stepped"], "judges one motion as it is"),
         (["--trajectory", "no.txt"], "positions at times are read from"),
     ],
 )

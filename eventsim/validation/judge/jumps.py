@@ -1,0 +1,126 @@
+"""Jumps: energy or momentum that disks have after a turn and had not before, whatever contacts they may have had in it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from eventsim.record.events import Floats
+from eventsim.validation.judge.faults import Fault
+from eventsim.validation.judge.flights import Flights, Turn
+from eventsim.validation.judge.outcome import CLEAR
+from eventsim.validation.judge.surroundings import Surroundings
+from eventsim.validation.judge.told import NEAR
+
+
+def jumps(
+    groups: Sequence[Sequence[Turn]], flights: Flights, around: Surroundings, mass: Floats, known: Sequence[Fault]
+) -> Iterator[Fault]:
+    """Turns that together change the energy, or away from walls the momentum, as no contacts can.
+
+    Contacts that follow each other faster than samples cannot be told apart, but what they do together can: elastic ones keep
+    the energy, others lose some.
+
+    Args:
+        groups: turns at one time of disks that are close.
+        flights: the paths.
+        around: walls, and the law of contacts.
+        mass: (n,), inf for immovable disks.
+        known: faults that name the contact itself; turns of them are left out.
+    """
+    held = ~np.isfinite(mass)
+    if bool(np.any(np.hypot(*flights.before[0, held].T) > 0.0)):
+        return  # a moving obstacle gives energy
+    weight = np.where(held, 0.0, mass)
+    for group in groups:
+        if any(turn.ends for turn in group) or _is_known(group, flights, known):
+            continue
+        fault = _energy(group, flights, around, weight) or _momentum(group, flights, around, mass)
+        if fault is not None:
+            yield fault
+
+
+def _is_known(group: Sequence[Turn], flights: Flights, known: Sequence[Fault]) -> bool:
+    """Whether a fault of one of these disks was seen there."""
+    first, last = min(turn.first for turn in group), max(turn.last for turn in group)
+    begin, end = flights.times[max(first - 1, 0)], flights.times[min(last + 1, len(flights.times) - 1)]
+    disks = {turn.disk for turn in group}
+    return any(begin <= fault.time <= end and not disks.isdisjoint(fault.disks) for fault in known)
+
+
+def _energy(group: Sequence[Turn], flights: Flights, around: Surroundings, weight: Floats) -> Fault | None:
+    gain = whole = doubt = 0.0
+    heaviest = float(weight.max())
+    for turn in group:
+        before, after = math.hypot(*turn.before), math.hypot(*(turn.before + turn.change))
+        lag = float(flights.times[turn.last] - flights.times[turn.first])
+        m = float(weight[turn.disk])
+        gain += 0.5 * m * (after**2 - before**2)
+        whole += 0.5 * m * before**2
+        doubt += max(m, heaviest) * (before + after) * (flights.least + lag * math.hypot(*flights.pull[turn.disk]))
+    loses = around.stage.law.loses_energy()
+    if (gain if loses else abs(gain)) <= CLEAR * whole + doubt:
+        return None
+    first, last, disks = _where(group, flights, weight)
+    begin, end = float(flights.times[first]), float(flights.times[last])
+    said = (
+        f"energy: that of {_named(disks)} changes by {gain:+.3g}, of {whole:.3g}, between t = {begin:.6g} and {end:.6g}, "
+        "which no contact does"
+    )
+    return Fault(end, "energy", said, disks)
+
+
+def _where(group: Sequence[Turn], flights: Flights, weight: Floats) -> tuple[int, int, tuple[int, ...]]:
+    """The samples between which energy changes most, and the disks that turn there; all of a group where none is told."""
+    first, last = min(turn.first for turn in group), max(turn.last for turn in group)
+    disks = sorted({turn.disk for turn in group})
+    if flights.told:
+        speeds = flights.before[first : last + 1, disks]
+        energy = np.sum(weight[disks] * np.sum(speeds**2, axis=-1), axis=1)
+        first += int(np.argmax(np.abs(np.diff(energy))))
+        last = first + 1
+        disks = [disk for disk in disks if flights.turned[first, disk]] or disks
+    return first, last, tuple(disks)
+
+
+def _momentum(group: Sequence[Turn], flights: Flights, around: Surroundings, mass: Floats) -> Fault | None:
+    if len(group) < 2 or any(_is_beside_something(turn, flights, around, mass) for turn in group):
+        return None
+    given = [float(mass[turn.disk]) * turn.change for turn in group]
+    whole = sum(math.hypot(*one) for one in given)
+    lag = sum(
+        float(flights.times[turn.last] - flights.times[turn.first]) * math.hypot(*flights.pull[turn.disk]) for turn in group
+    )
+    doubt = float(mass[np.isfinite(mass)].max()) * (len(group) * flights.least + lag)
+    left = math.hypot(*sum(given, np.zeros(2)))
+    if left <= CLEAR * whole + doubt:
+        return None
+    disks = tuple(sorted({turn.disk for turn in group}))
+    begin, end = (float(flights.times[k]) for k in (min(t.first for t in group), max(t.last for t in group)))
+    said = (
+        f"momentum: {_named(disks)} get {left:.3g} of it together between t = {begin:.6g} and {end:.6g}, away from walls: "
+        "no contact gives any"
+    )
+    return Fault(end, "momentum", said, disks)
+
+
+def _is_beside_something(turn: Turn, flights: Flights, around: Surroundings, mass: Floats) -> bool:
+    """Whether a wall, or an immovable disk, may have given a disk momentum."""
+    span = slice(max(turn.first - 1, 0), turn.last + 2)
+    lag = float(np.diff(flights.times[span]).sum())
+    flown = lag * max(math.hypot(*turn.before), math.hypot(*(turn.before + turn.change)))
+    radius = around.stage.radius
+    margin = float(radius[turn.disk]) * (1.0 + NEAR) + flown
+    places = flights.place[span, turn.disk]
+    if any(around.to_wall(surface, place)[1] < margin for surface in around.surfaces for place in places):
+        return True
+    away = np.hypot(*around.apart(places[0], flights.place[span.start]).T) - radius * (1.0 + NEAR) - margin
+    return bool(np.any(away[~np.isfinite(mass)] < 0.0))
+
+
+def _named(disks: tuple[int, ...]) -> str:
+    if len(disks) == 1:
+        return f"disk {disks[0]}"
+    return f"disks {', '.join(map(str, disks[:-1]))} and {disks[-1]}"
