@@ -21,7 +21,7 @@ from eventsim.validation.judge.faults import Fault
 from eventsim.validation.judge.judgement import Judgement, judge
 from eventsim.validation.judge.stepping import Step, stepped
 from eventsim.validation.judge.table import judgement_data
-from eventsim.validation.judge.words import judged_in_words
+from eventsim.validation.judge.words import contacts_in_short, judged_in_words
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -61,7 +61,7 @@ class Judged:
         write_judgement(self.judgement, path)
 
     def __str__(self) -> str:
-        return "\n".join(self.verdict)
+        return "\n".join([*self.verdict, contacts_in_short(self.judgement)])
 
     def __repr__(self) -> str:
         return f"Judged({self.judgement.source} on {self.judgement.name}: {self.verdict[0]})"
@@ -129,6 +129,8 @@ def validate(
     if dt is not None and not isinstance(dt, float | int):
         raise EventsimError("dt: one engine has one step")
     if step is not None:
+        if contacts is not None:
+            raise EventsimError("contacts belong to a trajectory: those of a step are read from its paths")
         if dt is None:
             raise EventsimError("step: give its dt, too")
         done = stepped(scene, step, dt, until)
@@ -156,5 +158,8 @@ def _contacts(contacts: Source | ArrayLike, n: int) -> ToldContacts:
     """Contacts from a file or from rows."""
     if isinstance(contacts, str | PathLike):
         return read_contacts(Path(contacts), n)
-    rows = np.asarray(contacts, dtype=np.float64).reshape(-1, 3)
+    rows = np.asarray(contacts, dtype=np.float64)
+    rows = rows.reshape(0, 3) if not rows.size else rows
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise EventsimError(f"contacts: the shape {rows.shape}: must be rows (time, a, b), b = -1 at a wall")
     return told_from(rows[:, 0], rows[:, 1], rows[:, 2], [""] * len(rows), n, "the contacts")

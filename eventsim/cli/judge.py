@@ -38,5 +38,4 @@ def say_judged(
     if as_json:
         say(as_json_text(data))
     elif not quiet:
-        counts = ", ".join(f"{name} {count}" for name, count in data["contacts"].items())
-        say(f"{trajectory} on {data['scene']}: {data['told']}\n{counts}\n\n{judged}")
+        say(f"{trajectory} on {data['scene']}: {data['told']}\n\n{judged}")

@@ -23,7 +23,7 @@ VERBS = {
     "measure": "Pressure, temperature, collision rates, free paths, ... with error bars and theory.",
     "sweep": "Run a scene for many values and seeds; one table of measures.",
     "animate": "Draw a run as a movie, a strip of moments, or a page that plays it.",
-    "validate": "Compare the event-driven run of a scene with time-stepped engines.",
+    "validate": "Compare the event-driven run of a scene with time-stepped engines, or yours.",
     "chart": "Chart speed against accuracy, all engines.",
     "stress": "Run every engine on the scenes where methods fail; print the atlas of verdicts.",
     "certify": "Prove the order of events with ball arithmetic; tell where float64 first differs.",

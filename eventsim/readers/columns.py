@@ -29,7 +29,7 @@ def samples_of(named: Columns, source: str, dt: float | None = None) -> Samples:
         return _of_times(named, source, dt)
     raise EventsimError(
         f"{source}: has the columns {', '.join(named)}; positions are time, disk, x, y (a row for each disk and time) "
-        "or time, x0, y0, x1, y1, ... (a row for each time)"
+        "or time, x0, y0, x1, y1, ... (a row for each time); in .npz arrays time (T,), position (T, n, 2) [, velocity (T, n, 2)]"
     )
 
 

@@ -79,6 +79,8 @@ def _draw_late(axes: Axes, judgement: Judgement) -> None:
     """By how much each found contact is late."""
     times, late = judgement.charge.errors.T if len(judgement.charge.errors) else (np.empty(0), np.empty(0))
     axes.plot(times, late, ".", ms=5, color=KINDS[0])
+    missed = [fault.time for fault in judgement.faults if fault.kind == "missed"]
+    axes.plot(missed, np.zeros(len(missed)), "x", ms=8, mew=2.0, color=WRONG, gid="missed")
     axes.axhline(0.0, color=LIGHT.ink, lw=0.9)
     bound = 1.15 * float(np.abs(late).max(initial=0.0)) or judgement.tolerance
     axes.set_ylim(-bound, bound)
@@ -93,10 +95,10 @@ def _draw_energy(axes: Axes, judgement: Judgement) -> None:
         axes.set_axis_off()
         return
     known = np.isfinite(judgement.energy)
-    axes.plot(judgement.times[known], 100.0 * judgement.energy[known], color=KINDS[2], lw=1.2)
+    axes.plot(judgement.times[known], judgement.energy[known], color=KINDS[2], lw=1.2)
     if float(np.abs(judgement.energy[known]).max()) < 1e-4:
-        axes.set_ylim(-0.01, 0.01)
-    label(axes, "time", "change of the energy [%]", "Energy")
+        axes.set_ylim(-1e-4, 1e-4)
+    label(axes, "time", "change of the energy [of that at the start]", "Energy")
 
 
 def _draw_words(axes: Axes, sentences: list[str]) -> None:

@@ -72,8 +72,9 @@ def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
         if away[disk] > SAME_START * diameter:
             here, there = samples.position[0, disk].tolist(), own[disk].tolist()
             raise EventsimError(
-                f"{samples.source}: disk {disk} begins at ({here[0]:.6g}, {here[1]:.6g}), in the scene at ({there[0]:.6g}, "
-                f"{there[1]:.6g}): another scene, another order of disks, or other axes?"
+                f"{samples.source}: disk {disk} begins at ({here[0]:.6g}, {here[1]:.6g}), in the scene, at t = {first:g}, at "
+                f"({there[0]:.6g}, {there[1]:.6g}): another scene, "
+                "another order of disks, other axes, or a motion that begins later than it says?"
             )
         return samples
     velocity = None

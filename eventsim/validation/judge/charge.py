@@ -103,7 +103,7 @@ def charged(truth: Truth, met: Sequence[Met], window: Window, witness: Witness, 
         if (
             weak
             or (least and (fault is None or not fault.clear) and witness.is_blurred(key, time))
-            or (fault is not None and _is_answered(exact[i], met, named_walls, window.tolerance))
+            or (fault is not None and fault.kind != "leak" and _is_answered(exact[i], met, named_walls, window.tolerance))
         ):
             charge.unseen_at.append(time)
         elif fault is not None:

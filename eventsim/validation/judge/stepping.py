@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventsim.errors import EventsimError
-from eventsim.readers.samples import Samples, checked
+from eventsim.readers.samples import Floats, Samples, checked
 from eventsim.scene import Scene
 
 MOST_SAMPLES = 20_000
@@ -50,21 +50,27 @@ def stepped(scene: Scene, step: Step, dt: float, until: float | None = None) -> 
         given = step(position, velocity, dt)
         spent += thread_time() - begun
         first = first or spent
-        position, velocity = (position, velocity) if given is None else _state(given, k)
+        position, velocity = (position, velocity) if given is None else _state(given, k, position.shape)
         if k % every == 0 or k == count:
             places.append(np.array(position, dtype=np.float64))
             speeds.append(np.array(velocity, dtype=np.float64))
             times.append(scene.start_time + k * dt)
-    if {place.shape for place in places + speeds} != {scene.disks.position.shape}:
-        raise EventsimError(f"the step returns another shape than {scene.disks.position.shape}")
     source = getattr(step, "__name__", "the function")
     samples = checked(Samples(source, np.array(times), np.array(places), np.array(speeds)))
     return Stepped(samples, (spent - first) / ((count - 1) * dt))
 
 
-def _state(given: Any, number: int) -> tuple[Any, Any]:
+def _state(given: Any, number: int, shape: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """What a step returns, as arrays; EventsimError where it is no state of the disks."""
     try:
         position, velocity = given
     except (TypeError, ValueError):
         raise EventsimError(f"step {number} returns {type(given).__name__}: must be (position, velocity), or None") from None
-    return position, velocity
+    try:
+        state = np.asarray(position, dtype=np.float64), np.asarray(velocity, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise EventsimError(f"step {number} returns what are no numbers: must be (position, velocity), arrays {shape}") from None
+    for name, values in zip(("position", "velocity"), state, strict=True):
+        if values.shape != shape:
+            raise EventsimError(f"step {number} returns a {name} of the shape {values.shape}: must be {shape}")
+    return state

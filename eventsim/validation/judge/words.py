@@ -19,6 +19,12 @@ def judged_in_words(judgement: Judgement) -> list[str]:
     return [line for line in [*lines, *judgement.remarks] if line]
 
 
+def contacts_in_short(judgement: Judgement) -> str:
+    """The counts of contacts in one line."""
+    names = ("found", "missed", "doubled", "false", "elsewhere", "unseen")
+    return ", ".join(f"{name} {getattr(judgement.charge, name)}" for name in names)
+
+
 def _first(judgement: Judgement) -> str:
     """The first wrong event, or that there is none."""
     fault, parting = judgement.first_fault, judgement.charge.parting

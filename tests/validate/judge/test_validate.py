@@ -85,6 +85,13 @@ def test_a_function_is_stepped_and_judged():
     assert judged.judgement.source == "step"
     assert judged.judgement.elapsed > 0.0
     assert str(judged).startswith("First wrong event: missed")
+    assert f"found {judged.judgement.charge.found}, missed 1" in str(judged)
+    with pytest.raises(es.EventsimError, match=r"step 1 returns a position of the shape \(3, 2\): must be \(2, 2\)"):
+        es.validate(scene, step=lambda x, v, dt: (np.zeros((3, 2)), v), dt=0.01, until=6.0)
+    with pytest.raises(es.EventsimError, match="contacts belong to a trajectory"):
+        es.validate(scene, step=step, dt=0.01, until=6.0, contacts=[])
+    as_lists = es.validate(scene, step=lambda x, v, dt: [each.tolist() for each in step(x, v, dt)], dt=0.01, until=6.0)
+    assert as_lists.first_fault == judged.first_fault
     with pytest.raises(es.EventsimError, match="step 1 returns int"):
         es.validate(scene, step=lambda x, v, dt: 1, dt=0.01, until=6.0)
 
@@ -156,3 +163,27 @@ def test_a_disk_that_turns_round_in_the_first_step_is_in_its_own_unit_of_time():
     times = np.array([0.0, 0.25, 0.3])
     judged = es.validate(scene, trajectory=(times, np.array([run.state_at(float(time)).position for time in times])))
     assert judged.first_fault is None
+
+
+def test_headers_that_are_comments_are_read_and_missing_ones_told(missed, tmp_path):
+    times, places, _, _ = missed
+    table, names = (
+        np.column_stack([times, places.reshape(len(times), -1)]),
+        "time," + ",".join(f"{axis}{disk}" for disk in range(places.shape[1]) for axis in "xy"),
+    )
+    np.savetxt(tmp_path / "named.csv", table, delimiter=",", header=names)
+    assert es.validate(SCENE, trajectory=tmp_path / "named.csv").first_fault.disks == (3, 4)
+    np.savetxt(tmp_path / "bare.csv", table, delimiter=",")
+    with pytest.raises(es.EventsimError, match="has no header line: its first line must name the columns, as time,x0,y0"):
+        es.validate(SCENE, trajectory=tmp_path / "bare.csv")
+    np.savez(tmp_path / "pos.npz", t=times, pos=places)
+    with pytest.raises(es.EventsimError, match=r"in .npz arrays time \(T,\), position \(T, n, 2\)"):
+        es.validate(SCENE, trajectory=tmp_path / "pos.npz")
+
+
+def test_an_engine_that_tells_no_contact_has_missed_what_it_flies_through(missed):
+    times, places, _, _ = missed
+    judged = es.validate(SCENE, trajectory=(times, places), contacts=[])
+    assert judged.judgement.charge.found == 0
+    with pytest.raises(es.EventsimError, match=r"contacts: the shape \(3, 4\): must be rows"):
+        es.validate(SCENE, trajectory=(times, places), contacts=np.zeros((3, 4)))
