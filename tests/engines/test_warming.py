@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -113,11 +114,29 @@ def test_the_process_does_its_job_or_fails(monkeypatch, is_damaged):
     session = ReferenceSession(GAS, False)
     session.advance(Stop(events=20), 10**6)
     if is_damaged:
-        monkeypatch.setattr(warming.pickle, "dump", lambda job, file: file.write(b"nonsense"))
+        monkeypatch.setattr("pickle.dump", lambda job, file: file.write(b"nonsense"))
     process = Warming(GAS, False, session.snapshot())
     assert not process.has_failed
     wait_for(lambda: not process.is_at_work)
     assert process.has_failed == is_damaged
+
+
+def test_two_processes_compile_one_after_the_other(tmp_path, monkeypatch):
+    compiler = pytest.importorskip("eventsim.engines.fast.numba_compiler")
+    monkeypatch.setattr(compiler, "_FOLDER", tmp_path)
+    order: list[str] = []
+
+    def second() -> None:
+        with compiler.compiling_alone():
+            order.append("second")
+
+    with compiler.compiling_alone():
+        waiting = threading.Thread(target=second)
+        waiting.start()
+        waiting.join(0.5)
+        order.append("first")
+    waiting.join(60.0)
+    assert order == ["first", "second"]
 
 
 def test_the_process_ends_with_its_parent():

@@ -84,14 +84,15 @@ def mark_warm(kind: str) -> None:
 @contextmanager
 def compiling_alone() -> Iterator[None]:
     """Wait until no other process that asks for this is compiling: what it has compiled need not be compiled once more."""
-    claim = Claim(_FOLDER / "compiling.lock")
     with suppress(OSError):
         _FOLDER.mkdir(parents=True, exist_ok=True)
-    while True:
+    claim = None
+    while claim is None:
         try:
+            claim = Claim(_FOLDER / "compiling.lock")  # refused where another process has it
             claim.take(make=True)
-            break
         except LogError:
+            claim = None
             sleep(0.2)
     try:
         yield
