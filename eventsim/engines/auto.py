@@ -66,7 +66,7 @@ class AutoSession(Session):
         self._opened: Session | None = None
         self._is_cold = False
         self._warming: Warming | None = None
-        self._may_warm = may_warm()
+        self._warmed = False  # or in vain: another process is asked once
         self._loading = 0.0
         self._changing = False
         self.at_work = "reference"
@@ -169,17 +169,17 @@ class AutoSession(Session):
             return False
         if self._warming.is_at_work:
             return True
-        self._is_cold, self._may_warm, self._warming = self._warming.has_failed, False, None
+        self._is_cold, self._warmed, self._warming = self._warming.has_failed, True, None
         return False
 
     def _begin_warming(self) -> bool:
         """Have the kernels compiled by another process; whether that is possible."""
-        if not self._may_warm:
+        if self._warmed or not may_warm():
             return False
         try:
             self._warming = Warming(self.stage, self._keep_rows, self._session.snapshot())
         except (OSError, pickle.PicklingError, TypeError, AttributeError):
-            self._may_warm = False
+            self._warmed = True
         return self._warming is not None
 
     def _share_left(self, stop: Stop) -> float:

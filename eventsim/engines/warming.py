@@ -10,16 +10,13 @@ import atexit
 import math
 import os
 import pickle
-import subprocess
 import sys
-import tempfile
-import threading
-import time
 from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
 from eventsim.engines.base import Snapshot, Stop
+from eventsim.processes import end_with
 from eventsim.scene.stage import Stage
 
 SWITCH = "EVENTSIM_WARM"
@@ -43,6 +40,9 @@ class Warming:
 
         Raises OSError where no process can be started.
         """
+        import subprocess  # a run that needs none of it does not load it
+        import tempfile
+
         with tempfile.TemporaryFile() as job:
             pickle.dump((stage, keep_rows, saved), job)
             job.seek(0)
@@ -83,9 +83,8 @@ def cores() -> float:
 
 def work(job: IO[bytes]) -> None:
     """Do what a Warming asks for, in its process: the job is pickled."""
-    parent = int(os.environ.get(PARENT, "0"))
-    if parent:
-        threading.Thread(target=_end_after, args=(parent,), daemon=True).start()
+    if PARENT in os.environ:
+        end_with(int(os.environ[PARENT]))
     warm(*pickle.load(job))
 
 
@@ -104,9 +103,3 @@ def warm(stage: Stage, keep_rows: bool, saved: Snapshot | None = None) -> float:
         session = FastSession(stage, keep_rows, saved=saved)
         session.advance(Stop(events=1), 1)
     return session.compile_s
-
-
-def _end_after(parent: int) -> None:
-    while os.getppid() == parent:
-        time.sleep(0.5)
-    os._exit(1)
