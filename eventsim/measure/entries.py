@@ -6,9 +6,13 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
+from eventsim.measure.blocking import ErrorBar
+from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.measures import Measure
 from eventsim.measure.records import Records
 from eventsim.record.events import Floats
+
+UNSURE = "the run is too short to be sure of the bar"
 
 
 class Expected(NamedTuple):
@@ -49,6 +53,18 @@ def average(
         )
     records.found[name] = entry.value
     return beside(entry, theory)
+
+
+def averaged(name: str, bar: ErrorBar, unit: str, note: str | None = None) -> Measure:
+    """Return a mean with its bar; NaN where it has none."""
+    error = bar.error if bar.error > 0.0 else math.nan
+    return Measure(bar.mean, error, unit=unit, doubt=note, name=name, blocks=bar.blocks)
+
+
+def unsteady_note(ensemble: Ensemble) -> str | None:
+    """Return what averages over a run do not say, where it has no steady state."""
+    why = ensemble.unsteady
+    return None if why is None else f"an average over this run, which has no steady state: {why}"
 
 
 def beside(entry: Measure, theory: Expected | None) -> Measure:

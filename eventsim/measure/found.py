@@ -6,10 +6,19 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from eventsim.measure.measures import Measure
+from eventsim.record.events import Floats
 
 Columns: TypeAlias = dict[str, list[float]]
 """Name -> numbers; NaN where there is none."""
+
+
+def lasting(times: Floats, told: Floats, name: str) -> Columns:
+    """The share of `times` (n,) that are longer than each of `told`, a column of this name, with its error."""
+    share = 1.0 - np.searchsorted(np.sort(times), told, side="right") / len(times)
+    return {"time": told.tolist(), name: share.tolist(), "error": np.sqrt(share * (1.0 - share) / len(times)).tolist()}
 
 
 @dataclass(frozen=True, slots=True)

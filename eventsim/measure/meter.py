@@ -6,7 +6,7 @@ The sums do not depend on how the rows were cut into blocks: they are taken up i
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from os import PathLike
 
@@ -313,10 +313,15 @@ def measure_file(
 
 def _measured(provenance: Provenance, blocks: Iterable[Rows], discard: float | None, profile: str | None) -> Measures:
     meter = Meter(provenance.scene, discard, provenance.kicks, profile, provenance.engine, provenance.corner)
+    return meter.finish(handed_on(provenance, blocks, meter.write))
+
+
+def handed_on(provenance: Provenance, blocks: Iterable[Rows], write: Callable[[Rows], None]) -> float:
+    """Hand the blocks of a log on to who measures; how long its run lasted, as far as it tells (time since the start)."""
     length, latest = provenance.epoch_length, 0.0
     for rows in blocks:
         if len(rows):
-            meter.write(rows)
+            write(rows)
             latest = max(latest, float((rows["epoch"] * length + rows["remainder"]).max()))
     ending = provenance.ending
-    return meter.finish(latest if ending is None else ending.epoch * length + ending.remainder)
+    return latest if ending is None else ending.epoch * length + ending.remainder

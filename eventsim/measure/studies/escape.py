@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from eventsim.errors import EventsimError
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.entries import Expected, beside, dash
-from eventsim.measure.found import Columns, Found
+from eventsim.measure.found import Found, lasting
 from eventsim.measure.measures import Measure
 from eventsim.record.events import Floats
 from eventsim.replay.flight_table import FlightTable, flights
@@ -70,7 +70,7 @@ def found(log: AnyLog, discard: float | None, x0: float, y0: float, x1: float, y
         rate = beside(rate, _expected(log, math.dist(*ends)))
     escaped = int(np.isfinite(times).sum())
     quantities = (Measure(float(escaped), unit="1", name="escaped"), rate)
-    return Found(quantities, {"escape": _survival(times, end - start)})
+    return Found(quantities, {"escape": lasting(times, np.linspace(0.0, end - start, TOLD), "inside")})
 
 
 def _crossings(
@@ -171,10 +171,3 @@ def _expected(log: AnyLog, length: float) -> Expected | None:
         return None
     rate = length * float(speed.mean()) / (math.pi * ensemble.table.area)
     return Expected(rate, LEADING * rate, "l v / (pi A) of a chaotic table, to leading order")
-
-
-def _survival(times: Floats, duration: float) -> Columns:
-    """The share of disks still inside at times since the start, with its error."""
-    told = np.linspace(0.0, duration, TOLD)
-    share = 1.0 - np.searchsorted(np.sort(times), told, side="right") / len(times)
-    return {"time": told.tolist(), "inside": share.tolist(), "error": np.sqrt(share * (1.0 - share) / len(times)).tolist()}

@@ -19,7 +19,7 @@ import numpy as np
 from eventsim.errors import EventsimError
 from eventsim.measure.blocking import ratio_average
 from eventsim.measure.ensemble import ensemble_of
-from eventsim.measure.entries import dash
+from eventsim.measure.entries import dash, unsteady_note
 from eventsim.measure.found import Columns, Found
 from eventsim.measure.measures import Measure
 from eventsim.measure.tangent import Passed, Tangent
@@ -271,8 +271,7 @@ def _ratio(above: Floats, below: Floats) -> tuple[float, float]:
 
 def _entries(name: str, rates: _Rates, scene: Scene, whole: bool) -> list[Measure]:
     """The largest exponent, and the sum of all where these are all."""
-    unsteady = ensemble_of(scene).unsteady
-    note = None if unsteady is None else f"an average over this run, which has no steady state: {unsteady}"
+    note = unsteady_note(ensemble_of(scene))
     entries = []
     for key, (value, error), unit in (
         (f"{name}_1", rates.time[0], PER_TIME),
@@ -285,6 +284,6 @@ def _entries(name: str, rates: _Rates, scene: Scene, whole: bool) -> list[Measur
         short = None if error > 0.0 or key.endswith("_sum") else "the run is too short for an error bar"
         doubts = [text for text in (short, note) if text]
         entries.append(
-            Measure(value, error if unsteady is None else math.nan, unit=unit, doubt="; ".join(doubts) or None, name=key)
+            Measure(value, error if note is None else math.nan, unit=unit, doubt="; ".join(doubts) or None, name=key)
         )
     return entries

@@ -8,14 +8,12 @@ visited by its share, contacts come back after as many contacts as there are cel
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from eventsim.measure.blocking import block_average
 from eventsim.measure.boundary_map import Contacts, boundary_map
-from eventsim.measure.entries import Expected, beside, dash
-from eventsim.measure.found import Columns, Found
+from eventsim.measure.entries import UNSURE, Expected, averaged, beside, dash
+from eventsim.measure.found import Found, lasting
 from eventsim.measure.measures import Measure
 from eventsim.record.events import Floats
 from eventsim.replay.log import AnyLog
@@ -49,7 +47,8 @@ def found(log: AnyLog, discard: float | None) -> Found:
         _mean("recurrence_contacts", contacts, "1", float(cells)),
         _mean("recurrence_time", times, "time", cells * mapped.table.mean_free_path / speed),
     )
-    return Found(quantities, {"recurrence": _survival(times)})
+    told = np.linspace(0.0, float(times.max()), TOLD)
+    return Found(quantities, {"recurrence": lasting(times, told, "longer")})
 
 
 def _returns(every: Contacts, length: float) -> tuple[Floats, Floats]:
@@ -72,15 +71,5 @@ def _returns(every: Contacts, length: float) -> tuple[Floats, Floats]:
 
 def _mean(name: str, times: Floats, unit: str, kac: float) -> Measure:
     bar = block_average(times)
-    note = None if bar.independent else "the run is too short to be sure of the bar"
-    error = bar.error if bar.error > 0.0 else math.nan
-    entry = Measure(bar.mean, error, unit=unit, doubt=note, name=name, blocks=bar.blocks)
+    entry = averaged(name, bar, unit, None if bar.independent else UNSURE)
     return beside(entry, Expected(kac, 0.0, "Kac: cells x mean free time, if every cell is visited by its share"))
-
-
-def _survival(times: Floats) -> Columns:
-    """The share of recurrence times that are longer than a time, with its error."""
-    ordered = np.sort(times)
-    told = np.linspace(0.0, float(ordered[-1]), TOLD)
-    share = 1.0 - np.searchsorted(ordered, told, side="right") / len(ordered)
-    return {"time": told.tolist(), "longer": share.tolist(), "error": np.sqrt(share * (1.0 - share) / len(ordered)).tolist()}

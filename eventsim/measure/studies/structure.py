@@ -11,6 +11,7 @@ I. R. McDonald, Theory of Simple Liquids (2013), sections 2.5 and 4.1.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -20,12 +21,13 @@ from eventsim.errors import EventsimError
 from eventsim.measure import theory
 from eventsim.measure.blocking import block_average
 from eventsim.measure.ensemble import Ensemble, ensemble_of
-from eventsim.measure.entries import Expected, beside, dash
+from eventsim.measure.entries import Expected, averaged, beside, dash, unsteady_note
 from eventsim.measure.found import Columns, Found
 from eventsim.measure.measures import Measure
 from eventsim.record.events import Floats
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
+from eventsim.scene.stage import stage_of
 
 Indices: TypeAlias = NDArray[np.int64]
 
@@ -92,8 +94,7 @@ def found(log: AnyLog, discard: float | None) -> Found:
     times = begun + (np.arange(count) + 0.5) * ((end - begun) / count)
     with freud.parallel.NumThreads(1 if len(kept) < FEW else None):
         samples = [looker.look(state.position[kept]) for state in passage.states(times.tolist())]
-    unsteady = ensemble.unsteady
-    note = None if unsteady is None else f"an average over this run, which has no steady state: {unsteady}"
+    note = unsteady_note(ensemble)
     contacts, g = looker.distribution(np.array([sample.pairs for sample in samples]), note)
     waves, s = looker.structure_factor(np.array([sample.waves for sample in samples]), note)
     order = np.array([sample.order for sample in samples])
@@ -131,8 +132,8 @@ def _no_meaning(ensemble: Ensemble) -> str | None:
 def _entry(name: str, series: Floats, note: str | None, expected: Expected | None = None) -> Measure:
     """A mean over states with its bar."""
     bar = block_average(series)
-    error = bar.error if bar.error > 0.0 and note is None else math.nan
-    return beside(Measure(bar.mean, error, unit="1", doubt=note, name=name, blocks=bar.blocks), expected)
+    entry = averaged(name, bar, "1", note)
+    return beside(entry if note is None else replace(entry, error=math.nan), expected)
 
 
 class _Looker:
@@ -140,13 +141,12 @@ class _Looker:
 
     def __init__(self, freud: Any, ensemble: Ensemble, kept: Indices) -> None:
         """freud: the library.  kept: the disks that are looked at."""
-        self._freud, self._ensemble = freud, ensemble
+        self._freud, self._ensemble, self._stage = freud, ensemble, stage_of(ensemble.scene)
         domain = ensemble.scene.domain
         assert domain.size is not None
         self._size, self._origin = np.array(domain.size), np.array(domain.origin)
         self._box = freud.box.Box(Lx=self._size[0], Ly=self._size[1], is2D=True)
         self._kind = ensemble.species_of[kept]
-        self._radius = ensemble.scene.disks.radius[kept]
         kinds = range(ensemble.kinds)
         self._pairs = [(i, j) for i in kinds for j in kinds if i <= j]
         self._place = np.zeros((ensemble.kinds, ensemble.kinds), np.int64)
@@ -201,8 +201,7 @@ class _Looker:
         one, other = np.asarray(close.query_point_indices), np.asarray(close.point_indices)
         once = one < other
         one, other = one[once], other[once]
-        apart = place[one] - place[other]
-        apart -= self._size * np.rint(apart / self._size)
+        apart = self._stage.nearest(place[one] - place[other])
         distance = np.hypot(apart[:, 0], apart[:, 1])
         which = self._place[self._kind[one], self._kind[other]]
         away = distance / self._reach[which]

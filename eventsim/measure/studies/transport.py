@@ -21,10 +21,10 @@ import numpy as np
 from eventsim.measure import theory
 from eventsim.measure.blocking import ErrorBar, block_average
 from eventsim.measure.ensemble import Ensemble, ensemble_of
-from eventsim.measure.entries import Expected, beside, dash
+from eventsim.measure.entries import UNSURE, Expected, averaged, beside, dash
 from eventsim.measure.found import Columns, Found
 from eventsim.measure.measures import Measure
-from eventsim.measure.meter import Meter
+from eventsim.measure.meter import Meter, handed_on
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.replay.log import AnyLog
 from eventsim.scene.numbers import Point
@@ -70,8 +70,7 @@ class Transport:
         if self.why is not None:
             return
         self._meter = Meter(scene, discard, corner=corner)
-        stage, disks = stage_of(scene, corner), scene.disks
-        self._epoch_length, self._periods = stage.epoch_length, tuple(length or math.inf for length in stage.period)
+        self._stage, disks = stage_of(scene, corner), scene.disks
         self._mass, self._drift = disks.mass, ensemble.drift
         self._current = _currents(disks.velocity - ensemble.drift, disks.mass).sum(axis=0)
         self._begun, self._time = (scene.equilibration if discard is None else discard) or 0.0, 0.0
@@ -110,7 +109,8 @@ class Transport:
             why = f"{self._rows:,} contacts: too few for a lag of {TO // SAMPLES} mean free times"
             return Found(tuple(dash(name, unit, why) for name, unit in names))
         kt = self._ensemble.temperature(self._ensemble.start_energy)
-        volume = float(np.prod(self._periods))
+        assert self._stage.size is not None
+        volume = float(np.prod(self._stage.size))
         expected = _expected(self._ensemble, kt)
         columns: Columns = {"lag": [lag * self._step for lag in LAGS[1:] if lag < len(walks)]}
         entries = []
@@ -131,7 +131,7 @@ class Transport:
 
     def _clock(self, rows: Rows) -> Floats:
         """Times since the start (n,), ascending: logged ones may step back by an ulp."""
-        time: Floats = np.maximum.accumulate(np.maximum(rows["epoch"] * self._epoch_length + rows["remainder"], self._time))
+        time: Floats = np.maximum.accumulate(np.maximum(rows["epoch"] * self._stage.epoch_length + rows["remainder"], self._time))
         return time
 
     def _take(self, rows: Rows) -> None:
@@ -161,8 +161,7 @@ class Transport:
     def _of_contacts(self, rows: Rows) -> tuple[Floats, Floats]:
         """What contacts add to the moments (n, 4), and to the currents."""
         pair = rows["kind"] == Kind.PAIR
-        apart = (rows["xa"] - rows["xb"], rows["ya"] - rows["yb"])
-        dx, dy = (d - period * np.rint(d / period) for d, period in zip(apart, self._periods, strict=True))
+        dx, dy = self._stage.nearest(np.column_stack([rows["xa"] - rows["xb"], rows["ya"] - rows["yb"]])).T
         reach = np.hypot(dx, dy)
         push = np.where(pair, rows["impulse"] / np.where(reach > 0.0, reach, 1.0), 0.0)
         px, py = push * dx, push * dy
@@ -198,12 +197,7 @@ def found(log: AnyLog, discard: float | None) -> Found:
     """Return the transport coefficients of the run that a log tells; `Transport` makes them of rows as they come."""
     provenance = log.provenance
     transport = Transport(log.scene, discard, bool(provenance.kicks), provenance.corner)
-    latest = 0.0
-    for rows in log.blocks():
-        transport.write(rows)
-        latest = max(latest, float((rows["epoch"] * provenance.epoch_length + rows["remainder"]).max(initial=0.0)))
-    ending = provenance.ending
-    return transport.found(latest if ending is None else ending.epoch * provenance.epoch_length + ending.remainder)
+    return transport.found(handed_on(provenance, log.blocks(), transport.write))
 
 
 def _no_meaning(ensemble: Ensemble) -> str | None:
@@ -233,9 +227,7 @@ def _slope(walks: Floats, low: int, high: int, scale: float) -> ErrorBar:
 
 
 def _entry(name: str, unit: str, bar: ErrorBar, note: str) -> Measure:
-    error = bar.error if bar.error > 0.0 else math.nan
-    short = "" if bar.independent else "; the run is too short to be sure of the bar"
-    return Measure(bar.mean, error, unit=unit, doubt=note + short, name=name, blocks=bar.blocks)
+    return averaged(name, bar, unit, note if bar.independent else f"{note}; {UNSURE}")
 
 
 def _expected(ensemble: Ensemble, kt: float) -> tuple[Expected | None, Expected | None]:
