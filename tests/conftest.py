@@ -39,6 +39,15 @@ def no_process_is_left(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
             process.wait()
 
 
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """A browser for the tests of a module."""
+    from tests.show.browser import browser
+
+    with browser(tmp_path_factory.mktemp("profile")) as opened:
+        yield opened
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Let tests of the fast engine run its kernels as plain Python, in a run of their own: compiling takes longer than they do.

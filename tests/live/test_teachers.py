@@ -3,22 +3,8 @@
 import pytest
 
 from tests.live.driven import Page
-from tests.live.running import live_server
-from tests.show.browser import browser
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
-
-
-@pytest.fixture(scope="module")
-def address():
-    with live_server() as (found, _):
-        yield found
-
-
-@pytest.fixture(scope="module")
-def chromium(tmp_path_factory):
-    with browser(tmp_path_factory.mktemp("profile")) as opened:
-        yield opened
 
 
 @pytest.fixture

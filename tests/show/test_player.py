@@ -14,16 +14,9 @@ from eventsim.replay.replay import Replay
 from eventsim.scene.files import scene_from_dict
 from eventsim.show.frames import frames_at
 from eventsim.show.player.page import notebook_frame, page
-from tests.show.browser import browser
 
 CLOSE = 1e-9
 """Of the scene's size: the bound that positions keep; what is reached is nearer to 1e-14."""
-
-
-@pytest.fixture(scope="module")
-def chromium(tmp_path_factory):
-    with browser(tmp_path_factory.mktemp("profile")) as opened:
-        yield opened
 
 
 @pytest.fixture
