@@ -55,6 +55,12 @@ def reading(path: Path, error: type[EventsimError], what: str, most: int | None 
         yield file
 
 
+def lines_of(path: Path, error: type[EventsimError], what: str) -> list[str]:
+    """Read the lines of a text file in UTF-8; error, what: as of `reading`."""
+    with reading(path, error, what) as file:
+        return file.read().decode("utf-8").splitlines()
+
+
 def _opened(name: str, flags: int) -> int:
     return os.open(name, flags | WITHOUT_WAITING)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.readers.samples import Floats, Samples, checked, times_of_frames
-from eventsim.reading import reading
+from eventsim.reading import lines_of
 
 STYLES = {
     "atomic": ("id", "type", "x", "y", "z"),
@@ -43,8 +43,7 @@ def read_dump(path: Path, dt: float | None = None, least: int = 2) -> Samples:
     Raises:
         EventsimError: naming the file and the line.
     """
-    with reading(path, EventsimError, "is not a LAMMPS dump") as file:
-        lines = file.read().decode("utf-8").splitlines()
+    lines = lines_of(path, EventsimError, "is not a LAMMPS dump")
     frames = list(_frames(path, lines))
     if not frames:
         raise EventsimError(f"{path}: holds no frame (ITEM: TIMESTEP)")
@@ -144,8 +143,7 @@ def read_data(path: Path) -> Samples:
     Raises:
         EventsimError: naming the file and the line.
     """
-    with reading(path, EventsimError, "is not a LAMMPS data file") as file:
-        lines = file.read().decode("utf-8").splitlines()
+    lines = lines_of(path, EventsimError, "is not a LAMMPS data file")
     count, style, tables = _sections(path, lines)
     if "Atoms" not in tables:
         raise EventsimError(f"{path}: has no section Atoms")

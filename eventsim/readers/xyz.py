@@ -14,7 +14,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.readers.samples import Floats, Samples, checked, times_of_frames
-from eventsim.reading import reading
+from eventsim.reading import lines_of
 
 PLAIN = "species:S:1:pos:R:3"
 TIME = re.compile(r"(?:^|[\s,;])(?:time|t)\s*=\s*\"?([^\s\",;]+)", re.IGNORECASE)
@@ -36,8 +36,7 @@ def read_xyz(path: Path, dt: float | None = None, least: int = 2) -> Samples:
     Raises:
         EventsimError: naming the file and the line.
     """
-    with reading(path, EventsimError, "is not an xyz file") as file:
-        lines = file.read().decode("utf-8").splitlines()
+    lines = lines_of(path, EventsimError, "is not an xyz file")
     frames = list(_frames(path, lines))
     if not frames:
         raise EventsimError(f"{path}: holds no frame")
