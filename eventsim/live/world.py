@@ -174,16 +174,7 @@ class World:
         """Return the scene with another start; its disks keep radius and mass."""
         scene = self.tracks[0].scene
         disks = Disks(state.position, state.velocity, scene.disks.radius, scene.disks.mass)
-        return Scene(
-            disks=disks,
-            domain=domain or scene.domain,
-            walls=scene.walls,
-            gravity=scene.gravity,
-            restitution=scene.restitution,
-            contact_duration=scene.contact_duration,
-            start_time=state.time,
-            name=scene.name,
-        )
+        return scene.begun_at(state.time, disks, domain)
 
     async def _state_at(self, time: float, disk: int = 0) -> State:
         """Take the event-driven engine back to a time; raise where there is no such disk."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -99,6 +99,21 @@ class Scene:
         if problems:
             raise SceneError(problems)
 
+
+    def begun_at(self, time: float, disks: Disks, domain: Domain | None = None) -> Scene:
+        """Return the scene with another start; it does not say when to stop.
+
+        Args:
+            time: on the scene's clock.
+            disks: those that it begins with.
+            domain: where; None: its own.
+
+        Raises:
+            SceneError: where these disks break a rule.
+        """
+        return replace(
+            self, disks=disks, domain=domain or self.domain, start_time=time, until=None, events=None, equilibration=None
+        )
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the scene to `path`, .toml or .json, every disk listed; `load_scene` gives back every bit.

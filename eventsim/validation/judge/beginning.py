@@ -38,16 +38,7 @@ def scene_at(scene: Scene, first: float) -> Scene:
     if run.stopped is not None:
         raise EventsimError(f"the motion begins at t = {first:g}, and the event-driven run stopped before ({run.stopped})")
     disks = Disks(run.position[0], run.velocity[0], scene.disks.radius, scene.disks.mass)
-    return Scene(
-        disks=disks,
-        domain=scene.domain,
-        walls=scene.walls,
-        gravity=scene.gravity,
-        restitution=scene.restitution,
-        contact_duration=scene.contact_duration,
-        start_time=first,
-        name=scene.name,
-    )
+    return scene.begun_at(first, disks)
 
 
 def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:

@@ -44,10 +44,15 @@ def jumps(
 
 def _is_known(group: Sequence[Turn], flights: Flights, known: Sequence[Fault]) -> bool:
     """Whether a fault of one of these disks was seen there."""
-    first, last = min(turn.first for turn in group), max(turn.last for turn in group)
+    first, last = _span(group)
     begin, end = flights.times[max(first - 1, 0)], flights.times[min(last + 1, len(flights.times) - 1)]
     disks = {turn.disk for turn in group}
     return any(begin <= fault.time <= end and not disks.isdisjoint(fault.disks) for fault in known)
+
+
+def _span(group: Sequence[Turn]) -> tuple[int, int]:
+    """The first and the last sample of turns."""
+    return min(turn.first for turn in group), max(turn.last for turn in group)
 
 
 def _energy(group: Sequence[Turn], flights: Flights, around: Surroundings, weight: Floats) -> Fault | None:
@@ -74,7 +79,7 @@ def _energy(group: Sequence[Turn], flights: Flights, around: Surroundings, weigh
 
 def _where(group: Sequence[Turn], flights: Flights, weight: Floats) -> tuple[int, int, tuple[int, ...]]:
     """The samples between which energy changes most, and the disks that turn there; all of a group where none is told."""
-    first, last = min(turn.first for turn in group), max(turn.last for turn in group)
+    first, last = _span(group)
     disks = sorted({turn.disk for turn in group})
     if flights.told:
         speeds = flights.before[first : last + 1, disks]
@@ -98,7 +103,7 @@ def _momentum(group: Sequence[Turn], flights: Flights, around: Surroundings, mas
     if left <= CLEAR * whole + doubt:
         return None
     disks = tuple(sorted({turn.disk for turn in group}))
-    begin, end = (float(flights.times[k]) for k in (min(t.first for t in group), max(t.last for t in group)))
+    begin, end = (float(flights.times[sample]) for sample in _span(group))
     said = (
         f"momentum: {_named(disks)} get {left:.3g} of it together between t = {begin:.6g} and {end:.6g}, away from walls: "
         "no contact gives any"
