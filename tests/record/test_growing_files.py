@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from eventsim.errors import LogError
+from eventsim.errors import LogError, LogWarning
 from eventsim.record import Ending
 from eventsim.record.files import Mark, continued_sink, open_log, open_sink
 from eventsim.record.files.journal import ROOM
@@ -18,6 +18,17 @@ from eventsim.suffixes import LOGS
 from tests.record.logs import provenance, random_log, random_rows, scene
 
 TEXT = (".csv", ".jsonl")
+
+NOT_CLOSED = ".* was not closed, so nothing tells whether its rows were changed"
+
+
+@pytest.mark.parametrize("suffix", LOGS)
+def test_whoever_reads_a_log_that_grows_is_told_that_nothing_vouches_for_its_rows(tmp_path: Path, suffix: str) -> None:
+    sink = open_sink(tmp_path / f"log{suffix}", provenance())
+    sink.write(random_rows(10))
+    sink.leave()
+    with pytest.warns(LogWarning, match=NOT_CLOSED):
+        load_log(sink.part)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there the second run fails by itself")

@@ -98,7 +98,7 @@ def checked(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Gene
 def verified(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Generator[Rows]:
     """Yield rows block by block; warn (LogWarning) after the last one where they are not as the run stored them.
 
-    Also where nothing vouches for their scene, as in format 1.
+    Also where nothing vouches for their scene, as in format 1, or for rows of a log that was not closed.
     """
     if provenance.bits == 1:
         warnings.warn(f"{path}: {UNCHECKED}", LogWarning, stacklevel=2)
@@ -109,6 +109,8 @@ def verified(provenance: Provenance, blocks: Generator[Rows], path: Path) -> Gen
             if stored is not None:
                 digester.update(rows)
             yield rows
+    if provenance.ending is None:
+        warnings.warn(f"{path}: was not closed, so nothing tells whether its rows were changed", LogWarning, stacklevel=2)
     if stored not in (None, digester.hexdigest()):
         words = f"{path} is not what its run wrote: its rows have another digest than the one it was closed with"
         warnings.warn(words, LogWarning, stacklevel=2)
