@@ -400,7 +400,7 @@ class Simulation:
                     f"no event in {MOST_WRAPS} wraps around the domain, up to t = {self.time:g}, and none may be ahead; "
                     "advance_to(time) lets time pass"
                 )
-        if stopped in ("collapse", "digits"):
+        if stopped in ("collapse", "digits", "law"):
             stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
             raise CollapseError(f"stopped by {stopped}: {reason}")
         self._time = None

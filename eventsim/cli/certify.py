@@ -110,7 +110,7 @@ def command(
         say(_text(scene, proof, path))
     if proof.run.stopped == "interrupted":
         click.get_current_context().exit(INTERRUPTED)
-    if proof.run.stopped in ("undecided tie", "collapse", "digits"):
+    if proof.run.stopped in ("undecided tie", "collapse", "digits", "law"):
         if as_json or quiet:
             say(f"stopped early: {proof.run.reason or proof.run.stopped}", err=True)
         click.get_current_context().exit(STOPPED_EARLY)

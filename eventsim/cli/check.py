@@ -49,6 +49,7 @@ def command(
       walls, shapes               name -> kind; primitive shape -> number
       gravity, restitution, contact_duration
                                   null without; restitution [pair, wall]
+      law                         the numbers of the law of contacts
       low_parts                   whether velocities carry what their rounding leaves (very uneven masses)
       points                      whether disks are so small that they remember on which side of a wall they are
       gap_bits                    bits that coordinates leave of the 53 of a gap between disks; null of points

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from eventsim.cli.words import paragraphs, point, short, title
 from eventsim.engines.reference.cells import ENOUGH_DISKS
-from eventsim.formulas.laws import law_of
 from eventsim.scene.names import plural
 from eventsim.scene.walls import SHAPES
 
@@ -134,8 +133,8 @@ def _lost(needs: Needs) -> str:
 
 
 def _contacts(needs: Needs) -> str:
-    law = law_of(needs.restitution, needs.contact_duration)
-    if law.loses_energy():
+    law = needs.law
+    if not law.keeps_energy():
         return law.words(short)
     kept = "but a moving disk of mass inf does work, so energy is not conserved"
     if not needs.obstacles:

@@ -12,6 +12,7 @@ import numpy as np
 from eventsim.engines.auto import first_engine
 from eventsim.engines.base import Stop
 from eventsim.engines.reference.cells import images_of, plan
+from eventsim.formulas.laws import Law
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.scene.disks import Disks, species_among
 from eventsim.scene.overlaps import pair_overlaps
@@ -72,6 +73,7 @@ class Needs:
         walls: name -> kind of the walls inside the domain.
         shapes: name -> number of the primitive shapes that the walls are made of, periodic images included.
         gravity, restitution, contact_duration: None without; restitution (pair, wall).
+        law: of contacts.
         low_parts: whether masses are so uneven that velocities carry what their rounding leaves.
         gap_bits: bits that coordinates leave of the 53 of a gap, relative to the smallest diameter; None of points.
         points: whether disks are so small that they have to remember on which side of a wall they are.
@@ -106,6 +108,7 @@ class Needs:
     gravity: tuple[float, float] | None
     restitution: tuple[float, float] | None
     contact_duration: float | None
+    law: Law
     low_parts: bool
     gap_bits: int | None
     points: bool
@@ -152,6 +155,7 @@ def needs_of(scene: Scene) -> Needs:
         gravity=scene.gravity,
         restitution=None if scene.restitution is None else (scene.restitution.pair, scene.restitution.wall),
         contact_duration=stage.law.duration,
+        law=stage.law,
         low_parts=stage.low_parts,
         gap_bits=_gap_bits(stage),
         points=stage.points,

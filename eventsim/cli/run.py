@@ -24,7 +24,7 @@ from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say
 from eventsim.engines import STEPPED
 
 FIRST_SCENE = "break"
-EARLY = ("collapse", "digits", "undecided tie")
+EARLY = ("collapse", "digits", "law", "undecided tie")
 EXITS = {**dict.fromkeys(EARLY, STOPPED_EARLY), "interrupted": INTERRUPTED}
 
 
@@ -118,7 +118,7 @@ def command(
                                undecided tie | interrupted; and why, in words
       log, state, checkpoint   the files written (null without)
 
-    Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse or digits; 130 interrupted.
+    Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse, digits, or what no law tells; 130 interrupted.
     1 is kept for comparisons that fail, in stress and validate.
     """
     files = Files(

@@ -1,6 +1,7 @@
 """What a contact does: velocities after the normal/tangent update, with restitution, for any masses."""
 
 import math
+from typing import Any
 
 from eventsim.formulas.real import Real, is_float, sqrt
 
@@ -76,14 +77,34 @@ def flat_update(v: Real, side: float, restitution: Real) -> tuple[Real, Real]:
     return after, after - v
 
 
-def contact_restitution(restitution: Real, duration: float | None, since_a: Real, since_b: Real) -> Real:
-    """The restitution of a contact, given the times since the previous contacts of its disks (the TC model).
+def contact_restitution(usual: Real, law: Any, since_a: Real, since_b: Real, approach: Real) -> Real:
+    """The restitution of a contact: what the numbers of a law make of the usual one.
+
+    Args:
+        usual: that of these two disks, or of this wall.
+        law: `Numbers` of a law; None where every contact has its usual one.
+        since_a, since_b: the times since the previous contacts of its disks; at a wall twice the same.
+        approach: the speed along the normal; 0 where no law of the scene looks at it.
+    """
+    if law is None:
+        return usual
+    return _kept_if_soon(usual, since_a, since_b, law.duration)
+
+
+def _kept_if_soon(restitution: Real, since_a: Real, since_b: Real, duration: float | None) -> Real:
+    """The TC model: 1 within a duration of the previous contact.
 
     Source: S. Luding, S. McNamara, Granular Matter 1, 113 (1998), doi:10.1007/s100350050017.
     """
     if duration is None:
         return restitution
     return 1.0 if since_a < duration or since_b < duration else restitution
+
+
+def approach_speed(dx: Real, dy: Real, u: Real, w: Real) -> Real:
+    """The speed, along a direction (dx, dy) of any length, of a velocity (u, w) against it; 0 where there is no direction."""
+    length = sqrt(dx * dx + dy * dy)
+    return -(dx * u + dy * w) / length if length > 0.0 else 0.0
 
 
 def wall_impulse(mass: float, du: Real, dw: Real) -> Real:

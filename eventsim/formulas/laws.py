@@ -1,15 +1,39 @@
 """The laws of contacts: how much of the approach velocity comes back, and what follows from that for a run.
 
-Kernels know a law by its restitutions and its duration (`impulse.contact_restitution`).  To add a law: see `EXTENDING.md`.
+A law is asked, and nobody guesses: what it looks at (`by_speed`), what it does (`restitution`), what it keeps (`keeps_energy`),
+what follows for contacts that pile up, for rest, for neighbouring runs.  Kernels know it by its `numbers`, which are handed to
+`impulse.contact_restitution` as they are here.  To add a law: see `EXTENDING.md`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Protocol
 
 from eventsim.formulas.impulse import contact_restitution
 from eventsim.formulas.real import Real
+
+
+class Numbers(NamedTuple):
+    """What `impulse.contact_restitution` looks at besides the contact; None: the scene's law has no such number.
+
+    duration: how long a contact matters to the next one of its disks.
+    """
+
+    duration: float | None = None
+
+
+class Shares(Protocol):
+    """The restitution of a scene: its shares, and further numbers of laws."""
+
+    @property
+    def pair(self) -> float:
+        """Between disks."""
+
+    @property
+    def wall(self) -> float:
+        """At walls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,24 +41,40 @@ class Law:
     """What every law knows.
 
     Attributes:
-        pair, wall: the restitution between disks, and at walls.
+        pair, wall: the usual restitution between disks, and at walls.
         duration: how long a contact matters to the next one of its disks; None where it does not.
+        by_speed: whether it looks at the speed of approach.  Then contacts of one instant that share disks are resolved only
+            where each is what it would be alone, and stepped engines do not know it.
     """
 
     pair: float
     wall: float
     duration: float | None
+    by_speed: ClassVar[bool] = False
 
-    def restitution(self, usual: Real, since_a: Real, since_b: Real) -> Real:
-        """The restitution of a contact whose usual one is given, from the times since the previous ones of its disks."""
-        return usual
+    def numbers(self) -> Numbers | None:
+        """What makes its contacts other than usual ones; None where nothing does."""
+        return None if self.duration is None else Numbers(self.duration)
+
+    def restitution(self, usual: Real, since_a: Real, since_b: Real, approach: Real) -> Real:
+        """The restitution of a contact whose usual one is given; see `impulse.contact_restitution`."""
+        return contact_restitution(usual, self.numbers(), since_a, since_b, approach)
+
+    def possible(self, usual: float, approach: float) -> tuple[float, ...]:
+        """The restitutions that a contact with a speed of approach may have, whatever went before."""
+        long, soon = (self.restitution(usual, since, since, approach) for since in (float("inf"), 0.0))
+        return (long,) if long == soon else (long, soon)
+
+    def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
+        """Whether contacts conserve energy: those between disks, those at walls."""
+        return not ((pairs and self.pair != 1.0) or (walls and self.wall != 1.0))
 
     def loses_energy(self) -> bool:
         """Whether contacts take energy, so that they can pile up."""
         return self.pair < 1.0 or self.wall < 1.0
 
     def loss(self) -> float:
-        """1 - e of the least inelastic contacts that take energy; 0 where none does."""
+        """1 - e of the least inelastic contacts that take energy, at the lowest speeds; 0 where none does."""
         return min((1.0 - e for e in (self.pair, self.wall) if e < 1.0), default=0.0)
 
     def comes_to_rest(self) -> bool:
@@ -44,6 +84,15 @@ class Law:
     def series(self) -> float:
         """The restitution at walls of bounces that follow each other ever faster."""
         return self.wall
+
+    @property
+    def no_tangent(self) -> str | None:
+        """Why it is not known how neighbouring runs part at its contacts, a clause; None where it is."""
+        return f"{self.name()} hangs on how fast disks meet: no tangent map of it is known here" if self.by_speed else None
+
+    def name(self) -> str:
+        """What a sentence calls it."""
+        return "restitution"
 
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts; number: how it writes one."""
@@ -83,10 +132,6 @@ class TimeOfContact(Law):
 
     __slots__ = ()
 
-    def restitution(self, usual: Real, since_a: Real, since_b: Real) -> Real:
-        """1 soon after a contact of one of the two."""
-        return contact_restitution(usual, self.duration, since_a, since_b)
-
     def comes_to_rest(self) -> bool:
         """Bounces that are short enough keep their height."""
         return False
@@ -111,8 +156,8 @@ LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact)
 """The table of laws."""
 
 
-def law_of(restitution: tuple[float, float] | None, duration: float | None) -> Law:
-    """The law of a scene with these keys: restitutions (pair, wall), and a contact duration."""
+def law_of(restitution: Shares | None, duration: float | None) -> Law:
+    """The law of a scene with these keys: its restitution, None where it is elastic, and a contact duration."""
     if restitution is None:
         return Elastic(1.0, 1.0, None)
-    return (Inelastic if duration is None else TimeOfContact)(*restitution, duration)
+    return (Inelastic if duration is None else TimeOfContact)(restitution.pair, restitution.wall, duration)

@@ -11,8 +11,10 @@ R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem (1992)
 import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from itertools import combinations
 from typing import NamedTuple, TypeAlias
 
+from eventsim.formulas.real import is_float
 from eventsim.formulas.relaxation import StrainedError, relaxed, snapped
 
 
@@ -96,6 +98,17 @@ def resolve_exactly(
     for body in sorted(tracers):
         _resolve_alone(body, [k for k, c in enumerate(contacts) if body in (c.a, c.b)], contacts, exact, impulses, solver)
     return exact, magnitudes, [value > 0 for value in impulses]
+
+
+def are_apart(contacts: Sequence[JointContact]) -> bool:
+    """Whether each contact of a cluster is what it would be alone: all are at walls, at exact right angles to each other."""
+    numbers = [number for contact in contacts for number in (contact.dx, contact.dy)]
+    if any(contact.b is not None for contact in contacts) or not all(map(is_float, numbers)):
+        return False
+    return all(
+        Fraction(one.dx) * Fraction(other.dx) + Fraction(one.dy) * Fraction(other.dy) == 0
+        for one, other in combinations(contacts, 2)
+    )
 
 
 def _resolve_alone(

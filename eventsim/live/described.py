@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from eventsim.formulas.laws import law_of
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.records import FEW
 from eventsim.scene import Scene
@@ -13,10 +14,7 @@ def settings_of(scene: Scene) -> str | None:
     """What a scene has besides its disks and walls that changes its contacts, in words; None where it has nothing."""
     if scene.restitution is None:
         return None
-    words = f"restitution {scene.restitution.pair:g} between disks, {scene.restitution.wall:g} at walls"
-    if scene.contact_duration is not None:
-        words += f"; contact_duration {scene.contact_duration:g}: contacts of a disk that follow each other faster are elastic"
-    return words
+    return law_of(scene.restitution, scene.contact_duration).words("{:g}".format)
 
 
 def gas_of(scene: Scene) -> dict[str, Any]:

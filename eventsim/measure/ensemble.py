@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.formulas.laws import Law, law_of
 from eventsim.measure.billiard_table import Table, sides_of_table, table_of
 from eventsim.measure.sides import Side
 from eventsim.record.events import Floats
@@ -96,14 +97,16 @@ class Ensemble:
         return self.posts is None and (not self.scene.walls or self.circle is not None)
 
     @property
+    def law(self) -> Law:
+        """The law of its contacts."""
+        return law_of(self.scene.restitution, self.scene.contact_duration)
+
+    @property
     def elastic(self) -> bool:
         """Whether contacts keep the energy: those that there can be."""
         scene, domain = self.scene, self.scene.domain
-        if scene.restitution is None:
-            return True
-        walls = scene.walls or not (isinstance(domain, Open) or all(domain.periodic))
-        pairs = len(scene.disks) > 1
-        return not (pairs and scene.restitution.pair != 1.0) and not (walls and scene.restitution.wall != 1.0)
+        walls = bool(scene.walls) or not (isinstance(domain, Open) or all(domain.periodic))
+        return self.law.keeps_energy(len(scene.disks) > 1, walls)
 
     @property
     def pushed(self) -> bool:

@@ -47,7 +47,7 @@ def _energy_change(session: Session, start: Motion, end: Motion) -> float | None
     """The relative change of the energy; None where contacts, kicks or moving obstacles change it."""
     stage = session.stage
     moved = stage.mass is not None and np.any(np.isinf(stage.mass) & ((stage.vx != 0.0) | (stage.vy != 0.0)))
-    if stage.law.loses_energy() or session.counters.kicks or moved:
+    if not stage.law.keeps_energy() or session.counters.kicks or moved:
         return None
     mass = _masses(stage)
     before, scale = _energy(stage, mass, start)

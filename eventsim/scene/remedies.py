@@ -7,6 +7,8 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from eventsim.scene import restitution
+
 EXAMPLES = {
     "name": 'name = "ramp"',
     "until": "until = 2.0",
@@ -16,8 +18,7 @@ EXAMPLES = {
     "restitution": "restitution = 0.9",
     "contact_duration": "contact_duration = 1e-6",
     "equilibration": "equilibration = 1.0",
-    "pair": "pair = 0.9",
-    "wall": "wall = 1.0",
+    **restitution.EXAMPLES,
     "kind": 'kind = "box"',
     "size": "size = [2.0, 1.0]",
     "origin": "origin = [0.0, 0.0]",

@@ -2,27 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
 
 from eventsim.errors import SceneError
 from eventsim.scene.numbers import number
+
+
+def line(example: str) -> dict[str, str]:
+    """What messages show of a key."""
+    return {"line": example}
 
 
 @dataclass(frozen=True, slots=True)
 class Restitution:
     """The share (0 to 1) of the normal approach velocity that comes back: between disks, and at walls."""
 
-    pair: float = 1.0
-    wall: float = 1.0
+    pair: float = field(default=1.0, metadata=line("0.9"))
+    wall: float = field(default=1.0, metadata=line("1.0"))
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "pair", number(self.pair, "restitution.pair"))
-        object.__setattr__(self, "wall", number(self.wall, "restitution.wall"))
+        for key in KEYS:
+            value = getattr(self, key)
+            object.__setattr__(self, key, None if value is None else number(value, f"restitution.{key}"))
+
+    def problems(self) -> Iterator[str]:
+        """Rules that its numbers break, one sentence each."""
+        pair, wall = self.pair, self.wall
+        both = {"restitution": pair} if pair == wall else {"restitution.pair": pair, "restitution.wall": wall}
+        for key, value in both.items():
+            if not 0.0 <= value <= 1.0:
+                yield f"{key} = {value}: must be from 0 to 1"
+
+
+KEYS = tuple(item.name for item in fields(Restitution))
+"""The keys of a `restitution = {...}` table."""
+
+EXAMPLES = {item.name: f"{item.name} = {item.metadata['line']}" for item in fields(Restitution)}
+"""A line for each of them."""
 
 
 def as_restitution(value: Restitution | Mapping[str, float] | float | None) -> Restitution | None:
-    """The restitution meant by a number (both alike), a mapping with pair and wall, or None; None if elastic.
+    """The restitution meant by a number (both alike), a mapping with its keys, or None; None if elastic.
 
     Raises:
         SceneError: if the value is none of these.
@@ -30,9 +51,9 @@ def as_restitution(value: Restitution | Mapping[str, float] | float | None) -> R
     if value is None:
         return None
     if isinstance(value, Mapping):
-        unknown = [key for key in value if key not in ("pair", "wall")]
+        unknown = [key for key in value if key not in KEYS]
         if unknown:
-            raise SceneError([f"restitution.{key}: unknown key (known: pair, wall)" for key in unknown])
+            raise SceneError([f"restitution.{key}: unknown key (known: {', '.join(KEYS)})" for key in unknown])
         value = Restitution(**value)
     elif not isinstance(value, Restitution):
         value = Restitution(number(value, "restitution"), number(value, "restitution"))

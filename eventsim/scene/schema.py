@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from typing import Any, NamedTuple
 
+from eventsim.scene import restitution
 from eventsim.scene.domain import DOMAINS
 from eventsim.scene.keys import Invalid, Optional, Required, Schema
 from eventsim.scene.numbers import as_number, as_whole
@@ -123,7 +124,7 @@ SCENE = Schema(
         Optional("equilibration"): number,
     }
 )
-RESTITUTION = Schema({Optional("pair"): number, Optional("wall"): number})
+RESTITUTION = Schema({Optional(key): number for key in restitution.KEYS})
 DOMAIN = {"box": SIZED, "periodic": SIZED, "channel": SIZED, "open": Schema(KIND)}
 DISK = Schema(
     {

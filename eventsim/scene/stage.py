@@ -186,8 +186,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
     size = domain.size
     boundaries, names = boundaries_of(domain)
     features = features_of(scene.walls, float(disks.radius.max()), corner, domain.period, boundaries)
-    restitution = scene.restitution
-    law = law_of(None if restitution is None else (restitution.pair, restitution.wall), scene.contact_duration)
+    law = law_of(scene.restitution, scene.contact_duration)
     lightest, heaviest = _extreme_masses(disks.mass)
     clock = clock_of(scene)
     return Stage(

@@ -114,11 +114,7 @@ def scalar_problems(given: Mapping[str, Any]) -> Iterator[str]:
     elif gravity is not None and 0.0 < max(map(abs, gravity)) < SHORTEST:
         yield f"gravity = {list(gravity)}: must be 0, or at least {SHORTEST} along an axis"
     if restitution is not None:
-        pair, wall = restitution.pair, restitution.wall
-        both = {"restitution": pair} if pair == wall else {"restitution.pair": pair, "restitution.wall": wall}
-        for key, value in both.items():
-            if not 0.0 <= value <= 1.0:
-                yield f"{key} = {value}: must be from 0 to 1"
+        yield from restitution.problems()
     for key in ("contact_duration", "equilibration"):
         if given[key] is not None and not 0.0 <= given[key] < math.inf:
             yield f"{key} = {given[key]}: must be a finite time, at least 0"

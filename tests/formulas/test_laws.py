@@ -3,6 +3,7 @@
 import pytest
 
 from eventsim.formulas.laws import LAWS, Elastic, Inelastic, TimeOfContact, law_of
+from eventsim.scene.restitution import Restitution
 
 EXAMPLES = {
     Elastic: Elastic(1.0, 1.0, None),
@@ -20,13 +21,13 @@ def test_a_law_has_an_example_here_and_words(law):
 def test_the_keys_of_a_scene_choose_the_law():
     assert law_of(None, None) == EXAMPLES[Elastic]
     assert law_of(None, 0.125) == EXAMPLES[Elastic]  # nothing is lost that a duration could keep
-    assert law_of((0.5, 0.75), None) == EXAMPLES[Inelastic]
-    assert law_of((0.5, 0.75), 0.125) == EXAMPLES[TimeOfContact]
+    assert law_of(Restitution(0.5, 0.75), None) == EXAMPLES[Inelastic]
+    assert law_of(Restitution(0.5, 0.75), 0.125) == EXAMPLES[TimeOfContact]
 
 
 @pytest.mark.parametrize("law", EXAMPLES.values(), ids=lambda law: type(law).__name__)
 def test_only_a_duration_makes_a_contact_depend_on_the_one_before(law):
-    soon, late = law.restitution(0.5, 0.0625, 4.0), law.restitution(0.5, 4.0, 0.25)
+    soon, late = law.restitution(0.5, 0.0625, 4.0, 1.0), law.restitution(0.5, 4.0, 0.25, 1.0)
     assert (soon, late) == ((0.5, 0.5) if law.duration is None else (1.0, 0.5))
 
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 
 from eventsim.formulas import clock, crossing, impulse, motion
+from eventsim.formulas.laws import Numbers
 from eventsim.formulas.real import NEVER, is_float, sqrt
 from eventsim.formulas.walls import face as faces
 
@@ -190,7 +191,7 @@ def test_walls_reflect():
     [(None, 0.0, 0.0, 0.5), (1.0, 2.0, 3.0, 0.5), (1.0, 0.5, 3.0, 1.0), (1.0, 3.0, 0.5, 1.0), (1.0, 1.0, 1.0, 0.5)],
 )
 def test_contacts_in_quick_succession_are_elastic(duration, since_a, since_b, expected):
-    assert impulse.contact_restitution(0.5, duration, since_a, since_b) == expected
+    assert impulse.contact_restitution(0.5, Numbers(duration), since_a, since_b, 1.0) == expected
 
 
 class Ball:

@@ -71,8 +71,9 @@ class CertifiedResolver(Resolver):
         total = number(mass_a) + mass_b
         return mass_a / total, mass_b / total
 
-    def _restitution(self, restitution: float, t: Ball, a: int, b: int) -> Any:
-        return self._state.number(super()._restitution(restitution, t, a, b))
+    def _restitution(self, event: Event, t: Ball, dx: Any, dy: Any, speeds: tuple[tuple[Any, Any], ...]) -> Any:
+        found = super()._restitution(event, t, dx, dy, speeds)
+        return found if isinstance(found, Ball) else self._state.number(found)
 
     def _together(self, contacts: list[JointContact], before: list[tuple[Any, Any]], masses: list[float]) -> Outcome:
         exact = [

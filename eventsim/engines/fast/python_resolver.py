@@ -16,7 +16,7 @@ from eventsim.engines.reference.generation import Ties, components, disks_of, ro
 from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.sunk import Sunk
-from eventsim.engines.reference.unresolvable import endless, refused
+from eventsim.engines.reference.unresolvable import UnlawfulError, endless, refused
 from eventsim.formulas.doubt import latest_tie
 from eventsim.formulas.simultaneous import SqueezedError
 
@@ -55,7 +55,7 @@ class PythonResolver:
         for component in components(generation):
             try:
                 changed += resolver.resolve(component)
-            except (SqueezedError, TwoSupportsError) as refusal:
+            except (SqueezedError, TwoSupportsError, UnlawfulError) as refusal:
                 self._keep(resolver)
                 self.refused = True
                 stopped, self.reason = refused(refusal, component)

@@ -27,12 +27,13 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rest import is_support, launched, support_face
 from eventsim.engines.fast.rows import write_pair, write_wall
-from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal
+from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal, wall_normal
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
 from eventsim.formulas.doubt import AT_ONCE as SERIES_AT_ONCE
 from eventsim.formulas.doubt import is_still
 from eventsim.formulas.impulse import (
+    approach_speed,
     contact_restitution,
     flat_update,
     mass_fractions,
@@ -68,11 +69,42 @@ def _reduced(a, b, mass, common):
 
 
 @inline
-def _restitution(m, a, b, t, restitution, duration):
-    if duration is None:
-        return restitution
+def _restitution(m, a, b, t, usual, law, approach):
+    if law is None:
+        return usual
     since_a, since_b = t - real(m.disks, a * REALS + CONTACT_TIME), t - real(m.disks, b * REALS + CONTACT_TIME)
-    return contact_restitution(restitution, duration, since_a, since_b)
+    return contact_restitution(usual, law, since_a, since_b, approach)
+
+
+@inline
+def _approach_of_pair(m, rules, a, b, t, dx, dy, by_speed):
+    """The speed at which two disks (dx, dy) apart meet; 0 where the law does not ask."""
+    if by_speed is None:
+        return 0.0
+    ua, wa = speed(m, rules, a, t)
+    ub, wb = speed(m, rules, b, t)
+    return approach_speed(dx, dy, ua - ub, wa - wb)
+
+
+@inline
+def _approach_to_wall(m, rules, i, place_, side, x, y, u, w, by_speed, features):
+    """The same of a disk and a wall."""
+    if by_speed is None:
+        return 0.0
+    if _hits_a_post(m, rules, i, place_, features):
+        return approach_speed(-u, -w, u, w)
+    nx, ny = wall_normal(m, rules, place_, side, x, y, rules.wall_x, rules.wall_y, features)
+    return approach_speed(nx, ny, u, w)
+
+
+@inline
+def _hits_a_post(m, rules, i, place_, features):
+    """Whether disk i is a point, and that wall a post."""
+    if features is None:
+        return False
+    if place_ < rules.first_feature:
+        return False
+    return is_exact_hit(m, place_ - rules.first_feature, real(m.disks, i * REALS + RADIUS), m.sides)
 
 
 @inline
@@ -207,7 +239,8 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
 @inline
 def _parted(m, rules, a, b, t, dx, dy, mass, low):
     """The velocities of a pair after contact, and q; low parts are set."""
-    e = _restitution(m, a, b, t, rules.pair_restitution, rules.duration)
+    approach = _approach_of_pair(m, rules, a, b, t, dx, dy, rules.by_speed)
+    e = _restitution(m, a, b, t, rules.pair_restitution, rules.law, approach)
     if low is not None:
         return _carefully_parted(m, a, b, dx, dy, e)
     ua, wa = speed(m, rules, a, t)
@@ -241,7 +274,8 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     series = _is_series(m, i, place_, m.supports, rules.still)
     still = _is_still(m, rules, i, t, rules.still) and not series
     ends = series and _ends(m, place_, m.supports)
-    e = _restitution(m, i, i, t, rules.wall_restitution, rules.duration)
+    approach = _approach_to_wall(m, rules, i, place_, side, x, y, u, w, rules.by_speed, m.features)
+    e = _restitution(m, i, i, t, rules.wall_restitution, rules.law, approach)
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r

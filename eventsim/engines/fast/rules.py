@@ -39,7 +39,8 @@ def rules_of(stage: Stage) -> Rules:
         stage.law.pair,
         stage.law.wall,
         stage.law.series(),
-        stage.law.duration,
+        stage.law.numbers(),
+        1 if stage.law.by_speed else None,
         1 if classes else None,
         stage.common_mass,
         len(stage.features) or None,
@@ -57,7 +58,7 @@ def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
-    needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted]
+    needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted, *(stage.law.numbers() or ())]
     return "".join("0" if need is None else "1" for need in needs)
 
 

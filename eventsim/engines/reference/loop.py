@@ -20,7 +20,7 @@ from eventsim.engines.reference.resolve import Resolver
 from eventsim.engines.reference.rests import TwoSupportsError
 from eventsim.engines.reference.state import EngineState
 from eventsim.engines.reference.sunk import Sunk
-from eventsim.engines.reference.unresolvable import endless, refused
+from eventsim.engines.reference.unresolvable import UnlawfulError, endless, refused
 from eventsim.formulas.clock import window_length
 from eventsim.formulas.doubt import latest_tie, screen_in
 from eventsim.formulas.real import NEVER, Real
@@ -137,7 +137,7 @@ class ReferenceSession(ExactSession):
         for component in components(generation):
             try:
                 changed += self._resolver.resolve(component)
-            except (SqueezedError, TwoSupportsError) as refusal:
+            except (SqueezedError, TwoSupportsError, UnlawfulError) as refusal:
                 self.refused = True
                 stopped, self.reason = refused(refusal, component)
                 return stopped

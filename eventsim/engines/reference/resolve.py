@@ -12,11 +12,12 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
+from eventsim.engines.reference.unresolvable import joint_under
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
-from eventsim.formulas.impulse import flat_update, pair_update, wall_update
+from eventsim.formulas.impulse import approach_speed, flat_update, pair_update, wall_update
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
-from eventsim.formulas.simultaneous import JointContact, Outcome, resolve_together
+from eventsim.formulas.simultaneous import JointContact, Outcome, are_apart, resolve_together
 from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
@@ -95,7 +96,7 @@ class Resolver:
         dx, dy = self._apart(event, xa, ya, xb, yb)
         again = self._met(event, a) in state.met[a] and self._met(event, b) in state.met[b]
         still = not again and self._instants.is_still(a, t) and self._instants.is_still(b, t)
-        restitution = self._restitution(self._stage.law.pair, t, a, b)
+        restitution = self._restitution(event, t, dx, dy, (state.speed(a, t), state.speed(b, t)))
         if state.low_parts:
             ua, wa, ub, wb, q = self._careful_pair(a, b, dx, dy, restitution)
         else:
@@ -147,7 +148,8 @@ class Resolver:
         # A series on one wall is over when it is, and may well be lower than the last bits before.
         series = self._instants.is_series(i, place)
         still = not series and self._instants.is_still(i, t)
-        restitution = self._restitution(stage.law.wall, t, i, i)
+        nx, ny = self._towards(event, x, y, u, w) if stage.law.by_speed else (0.0, 0.0)
+        restitution = self._restitution(event, t, nx, ny, ((u, w),))
         again = self._launched(i, place, side)
         if stage.is_exact_hit(place, self._radius[i]):
             x, y = self._place_on(place, side, i, x, y)
@@ -220,14 +222,14 @@ class Resolver:
             a, b = number[event.a], number[event.b] if event.b >= 0 else None
             if b is not None:
                 dx, dy = self._apart(event, *at[a], *at[b])
-                e = self._restitution(stage.law.pair, t, event.a, event.b)
+                e = self._restitution(event, t, dx, dy, (before[a], before[b]))
                 contacts.append(JointContact(a, b, dx, dy, e))
             else:
-                nx, ny = stage.normal(-1 - event.b, event.image[0], *at[a])
-                if stage.is_exact_hit(-1 - event.b, self._radius[event.a]):
-                    nx, ny = (-before[a][0], -before[a][1]) if any(before[a]) else (0.0, 1.0)
-                e = self._restitution(stage.law.wall, t, event.a, event.a)
+                nx, ny = self._towards(event, *at[a], *before[a])
+                e = self._restitution(event, t, nx, ny, (before[a],))
                 contacts.append(JointContact(a, None, nx, ny, e))
+        if stage.law.by_speed and not are_apart(contacts):
+            raise joint_under(stage.law.name(), disks)
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
         if not active and stage.gravity is not None:
@@ -296,8 +298,20 @@ class Resolver:
         """The place of disk i on the wall that it meets."""
         return self._stage.touching(place, side, x, y, self._radius[i])
 
-    def _restitution(self, restitution: float, t: Real, a: int, b: int) -> Real:
-        law, state = self._stage.law, self._state
-        if law.duration is None:
-            return restitution
-        return law.restitution(restitution, t - state.contact_time[a], t - state.contact_time[b])
+    def _towards(self, event: Event, x: Real, y: Real, u: Real, w: Real) -> tuple[Real, Real]:
+        """The normal of the wall that disk a meets; where a point hits a post, against its velocity."""
+        if self._stage.is_exact_hit(-1 - event.b, self._radius[event.a]):
+            return (-u, -w) if u or w else (0.0, 1.0)
+        return self._stage.normal(-1 - event.b, event.image[0], x, y)
+
+    def _restitution(self, event: Event, t: Real, dx: Real, dy: Real, speeds: tuple[tuple[Real, Real], ...]) -> Real:
+        """The restitution of a contact along (dx, dy), whose disks have these velocities."""
+        law, state, b = self._stage.law, self._state, event.a if event.b < 0 else event.b
+        usual = law.pair if event.b >= 0 else law.wall
+        if law.numbers() is None:
+            return usual
+        approach = 0.0
+        if law.by_speed:
+            (u, w), (ub, wb) = speeds[0], speeds[-1] if event.b >= 0 else (0.0, 0.0)
+            approach = approach_speed(dx, dy, u - ub, w - wb)
+        return law.restitution(usual, t - state.contact_time[event.a], t - state.contact_time[b], approach)

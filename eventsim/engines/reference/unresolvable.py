@@ -41,8 +41,23 @@ def _pile(state: ExactState, i: int) -> list[int]:
     return sorted(pile)
 
 
-def refused(error: SqueezedError | TwoSupportsError, component: list[Event]) -> tuple[str, str]:
-    """A cluster that no impulses part, or a disk on two walls: why a run stops there, and a sentence on the disks."""
+class UnlawfulError(Exception):
+    """The law of the scene does not say what becomes of contacts."""
+
+
+def joint_under(law: str, disks: list[int]) -> UnlawfulError:
+    """Contacts of one instant that share disks, under a law that says nothing of such."""
+    have = "has" if len(disks) == 1 else "have"
+    return UnlawfulError(
+        f"{named(disks)} {have} contacts at one instant: {law} says what single ones do, and those at right angles on walls; a "
+        "start that differs by a last bit parts them"
+    )
+
+
+def refused(error: SqueezedError | TwoSupportsError | UnlawfulError, component: list[Event]) -> tuple[str, str]:
+    """A cluster that no impulses part, a disk on two walls, or what no law tells: why a run stops, and a sentence on it."""
+    if isinstance(error, UnlawfulError):
+        return "law", str(error)
     if isinstance(error, TwoSupportsError):
         return "collapse", str(error)
     disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})

@@ -50,11 +50,10 @@ def measures(records: Records) -> Iterator[Measure]:
     spread = math.sqrt((first.var(ddof=1) + second.var(ddof=1)) / (PARTS // 2))
     note = None
     restitution = ensemble.scene.restitution
-    assert restitution is not None
     expected = None
     if abs(first.mean() - second.mean()) > CHANGED * spread:
         note = f"it is {first.mean():.3g} in the first half of the run and {second.mean():.3g} in the second: see the series"
-    elif ensemble.torus and ensemble.alone and ensemble.equal and ensemble.n >= FEW:
+    elif restitution is not None and _is_told(ensemble):
         share = flowing(ensemble, 2.0 * whole * stride / ensemble.n)
         if share < MOST_FLOWING:
             accuracy = max(share, MOST_FLOWING) * theory.cooling_exponent(restitution.pair)
@@ -63,6 +62,11 @@ def measures(records: Records) -> Iterator[Measure]:
             note = "Haff's law does not hold any more: disks that cool flow together"
     error = bar.error if bar.error > 0.0 else math.nan
     yield beside(Measure(bar.mean, error, unit=UNIT, doubt=note, name="cooling_exponent", blocks=bar.blocks), expected)
+
+
+def _is_told(ensemble: Ensemble) -> bool:
+    """Whether theory speaks of such a gas."""
+    return not ensemble.law.by_speed and ensemble.torus and ensemble.alone and ensemble.equal and ensemble.n >= FEW
 
 
 def flowing(ensemble: Ensemble, contacts: float) -> float:

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventsim.errors import EventsimError
+from eventsim.formulas.laws import law_of
 from eventsim.measure.blocking import ratio_average
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.entries import dash, unsteady_note
@@ -236,7 +237,9 @@ def _no_meaning(log: AnyLog) -> str | None:
         return "no disk can be deflected"
     if log.provenance.kicks:
         return "kicks set velocities, whatever these were before"
-    return None if len(log) else "nothing meets anything in this run"
+    if not len(log):
+        return "nothing meets anything in this run"
+    return law_of(scene.restitution, scene.contact_duration).no_tangent
 
 
 def _too_few(log: AnyLog, discard: float | None) -> str:
