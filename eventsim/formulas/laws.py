@@ -18,10 +18,11 @@ from eventsim.formulas.real import Real
 class Numbers(NamedTuple):
     """What `impulse.contact_restitution` looks at besides the contact; None: the scene's law has no such number.
 
-    duration: how long a contact matters to the next one of its disks.
+    duration: how long a contact matters to the next one of its disks.  yield_speed: from which on contacts take more.
     """
 
     duration: float | None = None
+    yield_speed: float | None = None
 
 
 class Shares(Protocol):
@@ -34,6 +35,10 @@ class Shares(Protocol):
     @property
     def wall(self) -> float:
         """At walls."""
+
+    @property
+    def yield_speed(self) -> float | None:
+        """From which on contacts take more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +157,48 @@ class TimeOfContact(Law):
         return f"contact_duration = {self.duration:g}, as in this scene, did not prevent it; a longer one may"
 
 
-LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact)
+@dataclass(frozen=True, slots=True)
+class Yielding(Law):
+    """Fast contacts take more: above a speed v_y the usual restitution falls as (v_y / v)^(1/4).
+
+    Attributes:
+        yield_speed: v_y, length / time.
+    """
+
+    yield_speed: float
+    by_speed: ClassVar[bool] = True
+
+    def numbers(self) -> Numbers:
+        """Its speed, and the duration if it has one."""
+        return Numbers(self.duration, self.yield_speed)
+
+    def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
+        """Fast contacts take some."""
+        return not (pairs or walls)
+
+    def loses_energy(self) -> bool:
+        """Yes, where they are fast."""
+        return True
+
+    def comes_to_rest(self) -> bool:
+        """If slow contacts take energy, however fast they follow each other."""
+        return self.duration is None and (self.pair < 1.0 or self.wall < 1.0)
+
+    def series(self) -> float:
+        """That of slow contacts, which follow each other ever faster."""
+        return self.wall if self.duration is None else 1.0
+
+    def name(self) -> str:
+        """What a sentence calls it."""
+        return "restitution that falls with the speed"
+
+    def words(self, number: Callable[[float], str]) -> str:
+        """What a page on a scene says of its contacts."""
+        speed = number(self.yield_speed)
+        return f"{Law.words(self, number)}; of an approach v above {speed}, ({speed} / v)^(1/4) of that comes back"
+
+
+LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact, Yielding)
 """The table of laws."""
 
 
@@ -160,4 +206,6 @@ def law_of(restitution: Shares | None, duration: float | None) -> Law:
     """The law of a scene with these keys: its restitution, None where it is elastic, and a contact duration."""
     if restitution is None:
         return Elastic(1.0, 1.0, None)
+    if restitution.yield_speed is not None:
+        return Yielding(restitution.pair, restitution.wall, duration, restitution.yield_speed)
     return (Inelastic if duration is None else TimeOfContact)(restitution.pair, restitution.wall, duration)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 
@@ -16,10 +17,15 @@ def line(example: str) -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class Restitution:
-    """The share (0 to 1) of the normal approach velocity that comes back: between disks, and at walls."""
+    """The share (0 to 1) of the normal approach velocity that comes back: between disks, and at walls.
+
+    yield_speed: length / time; above it less comes back, as the inverse fourth root of the approach.  None: not so.
+    """
 
     pair: float = field(default=1.0, metadata=line("0.9"))
     wall: float = field(default=1.0, metadata=line("1.0"))
+
+    yield_speed: float | None = field(default=None, metadata=line("0.5"))
 
     def __post_init__(self) -> None:
         for key in KEYS:
@@ -33,6 +39,8 @@ class Restitution:
         for key, value in both.items():
             if not 0.0 <= value <= 1.0:
                 yield f"{key} = {value}: must be from 0 to 1"
+        if self.yield_speed is not None and not 0.0 < self.yield_speed < math.inf:
+            yield f"restitution.yield_speed = {self.yield_speed}: must be a finite speed above 0"
 
 
 KEYS = tuple(item.name for item in fields(Restitution))

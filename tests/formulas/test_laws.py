@@ -2,13 +2,15 @@
 
 import pytest
 
-from eventsim.formulas.laws import LAWS, Elastic, Inelastic, TimeOfContact, law_of
-from eventsim.scene.restitution import Restitution
+import eventsim as es
+from eventsim.formulas.laws import LAWS, Elastic, Inelastic, TimeOfContact, Yielding, law_of
+from eventsim.scene.restitution import Restitution, as_restitution
 
 EXAMPLES = {
     Elastic: Elastic(1.0, 1.0, None),
     Inelastic: Inelastic(0.5, 0.75, None),
     TimeOfContact: TimeOfContact(0.5, 0.75, 0.125),
+    Yielding: Yielding(0.5, 0.75, None, 0.25),
 }
 
 
@@ -23,16 +25,17 @@ def test_the_keys_of_a_scene_choose_the_law():
     assert law_of(None, 0.125) == EXAMPLES[Elastic]  # nothing is lost that a duration could keep
     assert law_of(Restitution(0.5, 0.75), None) == EXAMPLES[Inelastic]
     assert law_of(Restitution(0.5, 0.75), 0.125) == EXAMPLES[TimeOfContact]
+    assert law_of(Restitution(0.5, 0.75, 0.25), None) == EXAMPLES[Yielding]
 
 
 @pytest.mark.parametrize("law", EXAMPLES.values(), ids=lambda law: type(law).__name__)
 def test_only_a_duration_makes_a_contact_depend_on_the_one_before(law):
-    soon, late = law.restitution(0.5, 0.0625, 4.0, 1.0), law.restitution(0.5, 4.0, 0.25, 1.0)
+    soon, late = law.restitution(0.5, 0.0625, 4.0, 0.125), law.restitution(0.5, 4.0, 0.25, 0.125)
     assert (soon, late) == ((0.5, 0.5) if law.duration is None else (1.0, 0.5))
 
 
 def test_the_loss_is_that_of_the_least_inelastic_contacts():
-    assert [law.loss() for law in EXAMPLES.values()] == [0.0, 0.25, 0.25]
+    assert [law.loss() for law in EXAMPLES.values()] == [0.0, 0.25, 0.25, 0.25]
     assert [Inelastic(*shares, None).loss() for shares in ((1.0, 0.75), (0.75, 1.0), (1.0, 1.0))] == [0.25, 0.25, 0.0]
 
 
@@ -41,4 +44,49 @@ def test_disks_come_to_rest_where_energy_is_lost_at_every_bounce():
         (False, False, 1.0),
         (True, True, 0.75),
         (True, False, 1.0),
+        (True, True, 0.75),
     ]
+
+
+def test_above_the_speed_at_which_they_yield_less_comes_back():
+    law = EXAMPLES[Yielding]
+    assert [law.restitution(0.5, 1.0, 1.0, speed) for speed in (0.0, 0.25, 4.0, 64.0)] == [0.5, 0.5, 0.25, 0.125]
+    assert law.possible(0.5, 4.0) == (0.25,)
+    assert Yielding(1.0, 1.0, None, 0.25).comes_to_rest() is False  # slow bounces keep their height
+    assert Yielding(1.0, 1.0, None, 0.25).keeps_energy() is False
+
+
+def test_a_speed_that_is_none_is_refused():
+    with pytest.raises(es.SceneError, match=r"restitution.yield_speed = 0.0: must be a finite speed above 0"):
+        es.Scene(es.Disks([[0, 0]], radius=1), es.Open(), restitution={"yield_speed": 0.0})
+    assert as_restitution({"yield_speed": 2.0}) == Restitution(1.0, 1.0, 2.0)
+
+
+def test_a_pair_that_is_faster_than_it_yields_parts_as_fast_as_johnson_says():
+    disks = es.Disks([[0.0, 0.0], [2.0, 0.0]], [[4.0, 0.0], [0.0, 0.0]], 0.5)
+    run = es.simulate(es.Scene(disks, es.Open(), restitution={"yield_speed": 0.25}), events=1, engine="reference")
+    assert run.state.velocity.tolist() == [[1.0, 0.0], [3.0, 0.0]]  # e = (1/16)^(1/4) = 1/2
+    assert run.residuals.energy is None
+    assert run.residuals.momentum == 0.0
+
+
+def test_a_cluster_under_a_law_of_speeds_stops_the_run_with_its_disks_and_the_law():
+    disks = es.Disks([[-2.0, 0.0], [0.0, 0.0], [2.0, 0.0]], [[1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]], 0.5)
+    run = es.simulate(es.Scene(disks, es.Open(), restitution={"yield_speed": 0.25}), events=9, engine="reference")
+    assert (run.stopped, run.counters.events) == ("law", 0)
+    assert run.reason.startswith("disks 0, 1, 2 have contacts at one instant: restitution that falls with the speed says")
+
+
+def test_a_corner_of_right_angles_is_two_contacts_under_any_law():
+    disk = es.Disks([[3.0, 3.0]], [[-4.0, -4.0]], 0.5)
+    run = es.simulate(es.Scene(disk, es.Box((6.0, 6.0)), restitution={"yield_speed": 0.25}), events=2, engine="reference")
+    assert run.state.velocity.tolist() == [[2.0, 2.0]]
+
+
+def test_stepped_engines_and_tangent_maps_refuse_a_law_that_they_do_not_know():
+    disks = es.Disks([[0.0, 0.0], [2.0, 0.0]], [[4.0, 0.0], [0.0, 0.0]], 0.5)
+    scene = es.Scene(disks, es.Open(), restitution={"yield_speed": 0.25})
+    with pytest.raises(es.EventsimError, match="stepped cannot simulate this scene: it knows no restitution that falls"):
+        es.simulate(scene, until=1.0, engine="stepped")
+    trust = es.simulate(scene, until=1.0, engine="reference", trust=True).trust
+    assert "no tangent map" in trust.reason

@@ -1,0 +1,72 @@
+"""Under every law of contacts both engines write one log: begun anew, kicked, resumed, and from its compact form."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import eventsim as es
+from eventsim.compiler import is_interpreted
+from eventsim.engines.base import Stop
+from eventsim.engines.fast.session import FastSession
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.record.events import ROW
+from eventsim.scene.stage import stage_of
+from tests.engines.law_scenes import LAWS, random_scene
+
+pytest.importorskip("numba")
+
+EVENTS = 20 if is_interpreted() else 60
+
+
+def followed(session, seed, other=None):
+    """The rows of a run that is kicked on its way; then it goes on in another session, if one is given."""
+    rng = np.random.default_rng(seed)
+    blocks, stopped = [], None
+    for part in (1, 2, 3):
+        stop = Stop(events=session.counters.events + EVENTS)
+        while stopped is None:
+            stopped = session.advance(stop, 1000)
+        blocks.append(session.take_rows())
+        if stopped != "events":
+            break
+        stopped = None
+        if part == 1:
+            session.kick(int(rng.integers(session.stage.n)), *rng.normal(size=2).tolist())
+            blocks.append(session.take_rows())
+        elif part == 2 and other is not None:
+            other.restore(session.snapshot())
+            session = other
+    return np.concatenate(blocks), stopped, session.reason
+
+
+def assert_one_log(seed, law):
+    stage = stage_of(random_scene(seed, law))
+    rows, *why = followed(ReferenceSession(stage), seed)
+    for other in (None, ReferenceSession(stage)) if seed % 2 else (None, FastSession(stage)):
+        found, *stopped = followed(FastSession(stage), seed, other)
+        assert stopped == why
+        assert len(found) == len(rows)
+        for name in ROW.names[1:] if other is not None else ROW.names:  # a session that takes over counts anew
+            assert np.array_equal(found[name], rows[name], equal_nan=ROW[name].kind == "f"), name
+    return len(rows)
+
+
+@pytest.mark.kernels
+@pytest.mark.parametrize("law", LAWS)
+def test_a_law_has_one_log(law):
+    found = [assert_one_log(seed, law) for seed in range(8 if is_interpreted() else 200)]
+    assert sum(found) > 2 * EVENTS * len(found)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_compact_log_gives_the_rows_of_its_law(law, tmp_path):
+    for seed in range(4):
+        simulation = es.Simulation(random_scene(seed, law), engine="reference", log=tmp_path / f"{seed}.npz")
+        simulation.advance_to(1.0)
+        simulation.set_velocity(0, (1.0, -0.5))
+        simulation.advance_to(2.0)
+        full = simulation.log
+        full.save(tmp_path / f"compact{seed}.npz", compact=True)
+        again = es.load_log(tmp_path / f"compact{seed}.npz")
+        assert again.digest() == full.digest()

@@ -1,0 +1,43 @@
+"""Random scenes for each law of contacts: what keys ask for it, and disks among walls that meet under it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import eventsim as es
+from eventsim.scene.restitution import Restitution
+from tests.engines.scenes import lattice_gas
+
+Keys = Callable[[np.random.Generator], dict[str, Any]]
+
+
+def _shares(rng: np.random.Generator) -> dict[str, float]:
+    return {"pair": float(rng.choice([1.0, 0.9, 0.5])), "wall": float(rng.choice([1.0, 0.8]))}
+
+
+LAWS: dict[str, Keys] = {
+    "restitution": lambda rng: {"restitution": Restitution(**_shares(rng))},
+    "time of contact": lambda rng: {"restitution": Restitution(**_shares(rng)), "contact_duration": 1e-2},
+    "yielding": lambda rng: {"restitution": Restitution(**_shares(rng), yield_speed=float(rng.choice([0.25, 1.0])))},
+    "yielding, kept if soon": lambda rng: {
+        "restitution": Restitution(0.9, 0.8, yield_speed=0.5),
+        "contact_duration": float(rng.choice([1e-3, 1e-1])),
+    },
+}
+"""The keys of a scene that ask for a law, from a generator."""
+
+
+def random_scene(seed: int, law: str) -> es.Scene:
+    """Return twelve disks on a lattice, with masses, walls, gravity and a domain that the seed chooses."""
+    rng = np.random.default_rng(seed)
+    domain = (es.Box, es.Channel, es.Periodic)[seed % 3]
+    masses = ((1.0,), (1.0, 3.0), (1.0, 2.0, np.inf, 0.0))[int(rng.integers(3))]
+    gravity = (0.0, -0.5) if rng.random() < 0.3 else None
+    gas = lattice_gas(12, 0.1, domain, seed=seed, radii=(0.5, 0.25), masses=masses)
+    pitch = gas.domain.size[0] / 4.0
+    corners = [(pitch, pitch), (1.2 * pitch, 1.1 * pitch), (1.0 * pitch, 1.25 * pitch)]
+    walls = [es.Arc(*corners)] if rng.random() < 0.3 else [es.Segment(*corners[:2])] if rng.random() < 0.5 else []
+    return es.Scene(gas.disks, gas.domain, walls, gravity=gravity, **LAWS[law](rng))
