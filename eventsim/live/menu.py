@@ -49,7 +49,7 @@ class Menu:
         """Return the scene; raise SceneError where the disks do not fit."""
         tables = [table for table in self._gas_tables() if table["count"]]
         data: dict[str, object] = {
-            "name": f"{self.count} disks",
+            "name": "disks in a box",
             "domain": {"kind": "box", "size": [self.width, self.height]},
             # The larger species first: the smaller ones find a place between them.
             "gas": tables[::-1],

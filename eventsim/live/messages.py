@@ -73,6 +73,24 @@ class Move:
 
 
 @dataclass(frozen=True, slots=True)
+class AddDisk:
+    """Put one more disk of mass 1, at rest, into the scene: a new start from the state at a time."""
+
+    time: float
+    position: tuple[float, float]
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class AddWall:
+    """Put a straight wall into the scene: a new start from the state at a time."""
+
+    time: float
+    start: tuple[float, float]
+    end: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
 class Resize:
     """Give the box another size: a new start from the state at a time."""
 
@@ -90,7 +108,7 @@ class Control:
     playing: bool
 
 
-Message: TypeAlias = Open | Join | Shown | Throw | Move | Resize | Control
+Message: TypeAlias = Open | Join | Shown | Throw | Move | AddDisk | AddWall | Resize | Control
 
 
 def read_message(text: str) -> Message:
@@ -228,6 +246,14 @@ def _move(fields: Fields) -> Move:
     return Move(fields.number("time", 0.0), fields.whole("disk", 0, MOST_DISKS), fields.pair("position"))
 
 
+def _disk(fields: Fields) -> AddDisk:
+    return AddDisk(fields.number("time", 0.0), fields.pair("position"), fields.number("radius", 0.0))
+
+
+def _wall(fields: Fields) -> AddWall:
+    return AddWall(fields.number("time", 0.0), fields.pair("start"), fields.pair("end"))
+
+
 def _resize(fields: Fields) -> Resize:
     return Resize(fields.number("time", 0.0), fields.pair("size", 1.0, 10_000.0))
 
@@ -247,6 +273,8 @@ READERS: dict[str, Callable[[Fields], Message]] = {
     "shown": _shown,
     "throw": _throw,
     "move": _move,
+    "disk": _disk,
+    "wall": _wall,
     "resize": _resize,
     "control": _control,
 }

@@ -9,7 +9,19 @@ from collections.abc import Mapping
 from aiohttp import WSMsgType, web
 
 from eventsim.errors import EventsimError, SceneError
-from eventsim.live.messages import Control, Join, Message, Move, Open, Resize, Shown, Throw, read_message
+from eventsim.live.messages import (
+    AddDisk,
+    AddWall,
+    Control,
+    Join,
+    Message,
+    Move,
+    Open,
+    Resize,
+    Shown,
+    Throw,
+    read_message,
+)
 from eventsim.live.packets import packet, rows_packet
 from eventsim.live.world import World
 
@@ -117,6 +129,10 @@ class Viewer:
             await self.world.throw(message)
         elif isinstance(message, Move):
             await self.world.move(message)
+        elif isinstance(message, AddDisk):
+            await self.world.add_disk(message)
+        elif isinstance(message, AddWall):
+            await self.world.add_wall(message)
         elif isinstance(message, Resize):
             await self.world.resize(message)
         else:

@@ -7,6 +7,7 @@ import logging
 import secrets
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,14 +15,14 @@ import numpy as np
 from eventsim.compiler import has_compiler
 from eventsim.errors import EventsimError
 from eventsim.live.described import gas_of, settings_of
-from eventsim.live.messages import OPPONENTS, Move, Open, Resize, Throw
+from eventsim.live.messages import OPPONENTS, AddDisk, AddWall, Move, Open, Resize, Throw
 from eventsim.live.packets import packet
 from eventsim.live.source import demand_small
 from eventsim.live.track import Track
 from eventsim.patience import patience
 from eventsim.record.events import State
 from eventsim.replay.replay import Replay
-from eventsim.scene import Box, Disks, Scene
+from eventsim.scene import Box, Disks, Scene, Segment
 from eventsim.show.player.pack import PackedColumn, scene_description, stage_description, start_columns
 
 if TYPE_CHECKING:
@@ -128,6 +129,25 @@ class World:
             state = await self._state_at(message.time, message.disk)
             state.position[message.disk] = message.position
             await self._begin(self._scene_from(state), self._rate, "move", self.speed)
+
+    async def add_disk(self, message: AddDisk) -> None:
+        """Begin anew from the state at the time that is shown, with one more disk, at rest and of mass 1."""
+        async with self._changing():
+            state, scene = await self._state_at(message.time), self.tracks[0].scene
+            disks = Disks(
+                np.vstack([state.position, message.position]),
+                np.vstack([state.velocity, (0.0, 0.0)]),
+                np.append(scene.disks.radius, message.radius),
+                np.append(scene.disks.mass, 1.0),
+            )
+            await self._begin(scene.begun_at(state.time, disks), self._rate, "disk", self.speed)
+
+    async def add_wall(self, message: AddWall) -> None:
+        """Begin anew from the state at the time that is shown, with one more wall."""
+        async with self._changing():
+            scene = self._scene_from(await self._state_at(message.time))
+            walled = replace(scene, walls=(*scene.walls, Segment(message.start, message.end)))
+            await self._begin(walled, self._rate, "wall", self.speed)
 
     async def resize(self, message: Resize) -> None:
         """Begin anew in a box of another size; its walls wait outside of disks that would no longer fit."""

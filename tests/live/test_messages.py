@@ -6,7 +6,7 @@ import pytest
 
 from eventsim.errors import EventsimError, SceneError
 from eventsim.live.menu import Menu
-from eventsim.live.messages import MessageError, Open, Shown, Throw, read_message
+from eventsim.live.messages import AddDisk, AddWall, MessageError, Open, Shown, Throw, read_message
 from eventsim.live.source import BuiltIn, Text
 from tests.live.running import menu
 
@@ -93,3 +93,10 @@ def test_a_dense_menu_uses_a_lattice_and_what_does_not_fit_is_refused():
 def test_a_scene_file_that_does_not_fit_a_live_view_is_refused(text, rule):
     with pytest.raises(EventsimError, match=rule):
         Text(text).scene()
+
+
+def test_drawn_disks_and_walls_are_read_as_meant():
+    assert read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": 0.5}') == AddDisk(1.0, (3.0, 4.0), 0.5)
+    assert read_message('{"type": "wall", "time": 0, "start": [1, 2], "end": [3, 4]}') == AddWall(0.0, (1.0, 2.0), (3.0, 4.0))
+    with pytest.raises(MessageError, match="radius = -1: must be a number from 0"):
+        read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": -1}')

@@ -253,3 +253,26 @@ def test_it_says_from_which_event_on_places_are_beyond_the_digits(opened):
 
     assert re.fullmatch(r"positions hold until event \d+", said(0.1))
     assert re.fullmatch(r"beyond the digits since event \d+: statistics hold", said(1.0))
+
+
+def test_the_last_contact_is_told_with_velocities_on_both_sides_of_it(opened, fluid):
+    driver = opened(fluid)
+    replay, row = Replay(fluid), 17
+    found = driver.execute_script(
+        """
+        player.part("impulse").click();
+        player.seek(player.world.event.time.values[arguments[0]]);
+        return [player.world.contact(player.view.time), player.part("told").textContent];
+        """,
+        row,
+    )
+    contact, told = found
+    before = replay.state_at(0.5 * (fluid.time[row - 1] + fluid.time[row])).velocity
+    after = replay.state_at(fluid.time[row]).velocity
+    assert contact["events"] == [row, row]
+    assert [side["disk"] for side in contact["sides"]] == [fluid.rows["a"][row], fluid.rows["b"][row]]
+    for side in contact["sides"]:
+        assert side["before"] == pytest.approx(before[side["disk"]].tolist(), abs=1e-12)
+        assert side["after"] == pytest.approx(after[side["disk"]].tolist(), abs=1e-12)
+    (told_impulse,) = re.findall(r"momentum exchanged  ([\d.e-]+)", told)
+    assert float(told_impulse) == pytest.approx(fluid.rows["impulse"][row], rel=1e-3)

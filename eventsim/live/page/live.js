@@ -143,7 +143,7 @@ class LivePlayer extends Player {
     super._show();
     this.part("clock").textContent = `t = ${digits(this.start + this.view.time, 10 * this.usualSpeed)}`;
     if (this.comparison) this.comparison.draw(this.view);
-    if (this.hand) this.hand.draw(this.drawing, this.world.now, this.part("drag").value === "throw");
+    if (this.hand) this.hand.draw(this.drawing, this.world.now);
     const now = performance.now();
     if (this.playing && now - (this.read || 0) < READOUT_MS) return;
     this.read = now;
@@ -165,7 +165,7 @@ class LivePlayer extends Player {
   }
 
   _connect() {
-    this.hand = new Hand(this, (disk, dx, dy) => this.app.dragged(disk, dx, dy));
+    this.hand = new Hand(this, () => this.part("drag").value, (held) => this.app.dragged(held));
     super._connect();
     this.part("reset").addEventListener("click", () => this.app.reset());
     for (const name of ["play", "back", "forward", "reverse", "canvas", "reset"]) this.part(name).addEventListener("click", () => this.app.controlled());

@@ -95,15 +95,16 @@ class LiveView {
     this.link.send({ type: "control", time: view.time, speed: view.speed, direction, playing });
   }
 
-  /* A disk was dragged: thrown so that it would come as far in a second of playing, or put there. */
-  dragged(disk, dx, dy) {
-    const { world, stage, view, usualSpeed } = this.player, now = world.state(view.time);
-    if (this.part("drag").value === "throw") {
-      this._act({ type: "throw", time: view.time, disk, velocity: [dx / usualSpeed, dy / usualSpeed] });
-    } else {
-      const position = [now.x[disk] + stage.corner[0] + dx, now.y[disk] + stage.corner[1] + dy];
-      this._act({ type: "move", time: view.time, disk, position });
-    }
+  /* A disk was dragged: thrown so that it would come as far in a second of playing, or put there; or a disk or a wall was drawn. */
+  dragged({ tool, disk, dx, dy, from, to, radius }) {
+    const { world, stage, view, usualSpeed } = this.player, now = world.state(view.time), time = view.time;
+    const acts = {
+      throw: () => ({ disk, velocity: [dx / usualSpeed, dy / usualSpeed] }),
+      move: () => ({ disk, position: [now.x[disk] + stage.corner[0] + dx, now.y[disk] + stage.corner[1] + dy] }),
+      disk: () => ({ position: from, radius }),
+      wall: () => ({ start: from, end: to }),
+    };
+    this._act({ type: tool, time, ...acts[tool]() });
   }
 
   /* The window has another size: the box takes it on once the window keeps still. */
@@ -150,7 +151,7 @@ class LiveView {
       control: () => this._follow(header),
       error: () => {
         this._notice(header.text);
-        if (!this.joining) return;
+        if (!this.joining) { this._refused(); return; }
         this.joining = false;
         this.gone = `The world of this link is gone (${header.text}); this is a new one.`;
         this.init();
@@ -185,9 +186,9 @@ class LiveView {
     const { x, y, vx, vy, radius, mass, species } = columns;
     const begin = () => new World({ ...header.scene, disks: { x, y, vx, vy, radius, mass } });
     const stage = { ...header.stage, species }, playing = this.player && this.player.playing && header.why === "resize";
-    if (this.current && this.current.scene === "menu" && header.resizable) stage.shown = [-MARGIN, -MARGIN, stage.size[0] + MARGIN, stage.size[1] + MARGIN];
+    if (this.current && this.current.scene === "menu") stage.shown = [-MARGIN, -MARGIN, stage.size[0] + MARGIN, stage.size[1] + MARGIN];
     const alike = header.stage.masses[0] === header.stage.masses[1];
-    const description = { ...header, stage, begin, app: this, colour: alike ? "index" : "mass", dark: false, trails: false, flash: false, arrows: false };
+    const description = { ...header, stage, begin, app: this, colour: alike ? "index" : "mass", dark: false, trails: false, flash: false, arrows: false, impulse: false };
     clearTimeout(this.waiting);
     this.joining = false;
     this.done = false;
@@ -235,6 +236,13 @@ class LiveView {
   _address(message) {
     this.address = Menu.address(message) || "";
     history.replaceState(null, "", this.address ? `#${this.address}` : location.pathname);
+  }
+
+  /* The oldest act that waits for its answer was refused: there is nothing of it to take back. */
+  _refused() {
+    const place = this.acts.length - this.link.pending;
+    if (place >= 0) this.acts.splice(place, 1);
+    this._undoable();
   }
 
   _undoable() { this.part("undo").disabled = this.joined || !this.acts.length; }

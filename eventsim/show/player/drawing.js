@@ -28,7 +28,7 @@ class Drawing {
     this.ratio = ratio;
   }
 
-  /* Draw the world at a time. view: {time, speed, colour, dark, trails, flash, arrows, marked: disk | -1}. */
+  /* Draw the world at a time. view: {time, speed, colour, dark, trails, flash, arrows, impulse, marked: disk | -1}. */
   draw(view) {
     const context = this.context, palette = view.dark ? this.stage.palettes.dark : this.stage.palettes.light;
     this.palette = palette;
@@ -41,6 +41,7 @@ class Drawing {
     if (view.trails) this._drawTrails(view);
     this._drawDisks(state, view);
     if (view.arrows) this._drawArrows(state);
+    if (view.impulse) this._drawContact(this.world.contact(view.time));
     if (view.marked >= 0) this._mark(state, view.marked);
     this._drawLines(this.stage.walls, 2, []);
     context.restore();
@@ -59,6 +60,12 @@ class Drawing {
       }
     }
     return -1;
+  }
+
+  /* The place on the scene's axes under a point of the canvas in CSS pixels. */
+  placeAt(clientX, clientY) {
+    const box = this.canvas.getBoundingClientRect();
+    return [((clientX - box.left) * this.ratio - this.left) / this.scale, (this.bottom - (clientY - box.top) * this.ratio) / this.scale];
   }
 
   _x(x) { return this.left + this.scale * (x + this.stage.corner[0]); }
@@ -218,16 +225,41 @@ class Drawing {
     context.strokeStyle = this.palette.arrow;
     context.lineWidth = 1.2 * this.ratio;
     context.beginPath();
-    for (let i = 0; i < this.world.count; i++) {
-      const px = this._x(state.x[i]), py = this._y(state.y[i]);
-      const ax = state.vx[i] * time * this.scale, ay = -state.vy[i] * time * this.scale;
-      context.moveTo(px, py);
-      context.lineTo(px + ax, py + ay);
-      context.moveTo(px + ax - 0.3 * (ax - 0.5 * ay), py + ay - 0.3 * (ay + 0.5 * ax));
-      context.lineTo(px + ax, py + ay);
-      context.lineTo(px + ax - 0.3 * (ax + 0.5 * ay), py + ay - 0.3 * (ay - 0.5 * ax));
-    }
+    for (let i = 0; i < this.world.count; i++) this._arrow(state.x[i], state.y[i], state.vx[i] * time, state.vy[i] * time);
     context.stroke();
+  }
+
+  _arrow(x, y, dx, dy) {
+    const context = this.context, px = this._x(x), py = this._y(y), ax = dx * this.scale, ay = -dy * this.scale;
+    context.moveTo(px, py);
+    context.lineTo(px + ax, py + ay);
+    context.moveTo(px + ax - 0.3 * (ax - 0.5 * ay), py + ay - 0.3 * (ay + 0.5 * ax));
+    context.lineTo(px + ax, py + ay);
+    context.lineTo(px + ax - 0.3 * (ax + 0.5 * ay), py + ay - 0.3 * (ay - 0.5 * ax));
+  }
+
+  /* The last contact, where it was: outlines of its disks, the velocities with which they came (dashed) and left; the longest has a
+     fixed length. */
+  _drawContact(found) {
+    if (found === null) return;
+    const context = this.context, [x0, y0, x1, y1] = this.stage.shown;
+    const fastest = Math.max(...found.sides.flatMap(({ before, after }) => [Math.hypot(...before), Math.hypot(...after)]));
+    const longest = Math.max(0.16 * Math.min(x1 - x0, y1 - y0), 2 * this.stage.usualRadius), time = fastest ? longest / fastest : 0, dashes = [5 * this.ratio, 4 * this.ratio];
+    const stroke = (colour, width, dashed, lines) => {
+      context.beginPath();
+      for (const side of found.sides) lines(side);
+      context.strokeStyle = this.palette.paper; // a halo, so that it is seen on every disk
+      context.lineWidth = (width + 2.5) * this.ratio;
+      context.stroke();
+      context.strokeStyle = colour;
+      context.lineWidth = width * this.ratio;
+      context.setLineDash(dashed ? dashes : []);
+      context.stroke();
+      context.setLineDash([]);
+    };
+    stroke(this.palette.faint, 1.2, true, ({ disk, x, y }) => this._circle(x, y, this.world.disks.radius[disk]));
+    stroke(this.palette.ink, 2, true, ({ x, y, before }) => before.some(Boolean) && this._arrow(x - before[0] * time, y - before[1] * time, before[0] * time, before[1] * time));
+    stroke(this.palette.arrow, 2.4, false, ({ x, y, after }) => after.some(Boolean) && this._arrow(x, y, after[0] * time, after[1] * time));
   }
 
   _mark(state, i) {

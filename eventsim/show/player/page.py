@@ -34,7 +34,7 @@ def page(
 
     Raises EventsimError where the log has no time to play or the colouring does not exist.
     """
-    view = {"dark": dark, "trails": trails, "arrows": velocities, "flash": flash}
+    view = {"dark": dark, "trails": trails, "arrows": velocities, "flash": flash, "impulse": False}
     description, numbers = packed(log, color, seconds)
     parts = files(__package__)
     return Template(parts.joinpath("player.html").read_text(encoding="utf-8")).substitute(

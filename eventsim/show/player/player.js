@@ -2,7 +2,7 @@
 /* The player: time that passes, forwards or backwards, and what the user does to it. */
 
 const COLOURS = ["speed", "species", "mass", "contacts", "index"];
-const FASTEST_CHANGE = 64;
+const FASTEST_CHANGE = 64, MOST_TOLD = 4;
 
 class Player {
   /* root: the element with the player's markup. description: see page.py. */
@@ -10,7 +10,7 @@ class Player {
     this.root = root;
     this.part = (name) => root.querySelector(`[data-part="${name}"]`);
     this.canvas = this.part("canvas");
-    this.view = { dark: description.dark, trails: description.trails, flash: description.flash, arrows: description.arrows,
+    this.view = { dark: description.dark, trails: description.trails, flash: description.flash, arrows: description.arrows, impulse: description.impulse,
                   colour: description.colour };
     this.open(world, description);
     this._connect();
@@ -109,6 +109,7 @@ class Player {
     this.part("clock").textContent = `t = ${digits(this.start + this.view.time, this.duration)}`;
     this.part("events").textContent = `${events.toLocaleString("en")} of ${all.toLocaleString("en")} event${all === 1 ? "" : "s"}`;
     if (this.trusted) this._trust();
+    this._tell_contact();
     if (this.view.marked >= 0) this._tell();
   }
 
@@ -141,7 +142,7 @@ class Player {
     for (const name of COLOURS) colour.append(new Option(name, name, false, name === this.view.colour));
     on("colour", "change", () => { this.view.colour = colour.value; this._key_of_colours(); this._show(); });
     this._key_of_colours();
-    for (const name of ["trails", "flash", "arrows", "dark"]) {
+    for (const name of ["trails", "flash", "arrows", "impulse", "dark"]) {
       this.part(name).checked = this.view[name];
       on(name, "change", () => this._switch(name, this.part(name).checked));
     }
@@ -184,6 +185,7 @@ class Player {
       End: () => this.seek(this.duration),
       1: () => this.setSpeed(1 / this.usualSpeed),
       r: () => this.reverse(),
+      c: () => { this.part("impulse").checked = !this.view.impulse; this._switch("impulse", !this.view.impulse); },
     };
     if (!(event.key in actions) || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
     event.preventDefault();
@@ -200,6 +202,30 @@ class Player {
     if (disk < 0 && this.view.marked < 0) return;
     this.view.marked = disk;
     this._show();
+  }
+
+  /* Write what the last contact did, in the corner of the picture: the numbers beside the arrows. */
+  _tell_contact() {
+    const told = this.part("told"), found = this.view.impulse ? this.world.contact(this.view.time) : null;
+    told.hidden = found === null;
+    if (found === null) return;
+    const number = (value) => (Math.abs(value) < 1e-12 * this.stage.fastest ? "0" : String(Number(value.toPrecision(4))));
+    const pair = (v) => `(${v.map(number).join(", ")})`;
+    const { mass } = this.world.disks, [first, last] = found.events;
+    const change = ({ before, after }) => Math.hypot(after[0] - before[0], after[1] - before[1]), [one] = found.sides;
+    const changed = found.sides.filter((side) => change(side) > 1e-12 * this.stage.fastest), sides = changed.length ? changed : found.sides;
+    const names = sides.slice(0, MOST_TOLD).map((side) => side.disk).join(", ");
+    const what = sides.length > 1 ? `disks ${names}${sides.length > MOST_TOLD ? ", ..." : ""}` : `disk ${one.disk} at a wall`;
+    const event = first === last ? `event ${first}` : `events ${first} to ${last}`;
+    const lines = sides.slice(0, MOST_TOLD).map(({ disk, before, after }) => `disk ${disk}  v ${pair(before)} \u2192 ${pair(after)}`);
+    const light = sides.find((side) => mass[side.disk] < Infinity);
+    if (first === last && light) lines.push(`momentum exchanged  ${number(mass[light.disk] * change(light))}`);
+    told.textContent = [`${event}, t = ${digits(this.start + found.time, this.duration || this.usualSpeed)}: ${what}`, ...lines].join("\n");
+    const box = this.root.getBoundingClientRect(), canvas = this.canvas.getBoundingClientRect();
+    // In the corner that is farthest from the contact.
+    const [x0, y0, x1, y1] = this.stage.shown, [cx, cy] = this.stage.corner, left = 2 * (one.x + cx) > x0 + x1, low = 2 * (one.y + cy) > y0 + y1;
+    told.style.left = `${left ? canvas.left - box.left + 8 : canvas.right - box.left - told.offsetWidth - 8}px`;
+    told.style.top = `${low ? canvas.bottom - box.top - told.offsetHeight - 8 : canvas.top - box.top + 8}px`;
   }
 
   /* Write what is known of the marked disk beside the pointer. */

@@ -37,7 +37,7 @@ class World {
     this.anchor = {};
     for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy", "gx", "gy", "contacts"]) this.anchor[name] = new Column();
     this.event = {};
-    for (const name of ["time", "a", "b", "kind", "wall"]) this.event[name] = new Column();
+    for (const name of ["time", "a", "b", "kind", "wall", "anchor"]) this.event[name] = new Column();
     this.anchorsOf = [];
     for (let i = 0; i < this.count; i++) {
       this.anchorsOf.push([]);
@@ -54,6 +54,7 @@ class World {
       const epoch = rows.epoch[k], remainder = rows.remainder[k];
       const rests = rows.kind[k] === REST, pull = rests ? this.slopes[rows.wall[k]] : this._pull(rows.a[k]);
       const met = rows.kind[k] <= WALL ? 1 : 0;
+      this.event.anchor.push(this.anchor.time.length);
       this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull, met, rows.xa && [rows.xa[k], rows.ya[k]]);
       if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]), met, rows.xa && [rows.xb[k], rows.yb[k]]);
       const last = this.event.time.length ? this.event.time.values[this.event.time.length - 1] : 0;
@@ -120,6 +121,32 @@ class World {
   /* How many events have happened at a time, its own included. */
   eventsUntil(time) {
     return bisect(this.event.time, (other) => other <= time);
+  }
+
+  /* The last contact at or before a time, with all that happened at its time: {events: [first, last], time, sides: [{disk, x, y, before,
+     after}, ...]}, velocities on both sides of it; null before the first. */
+  contact(time) {
+    const { kind, a, b, anchor, time: times } = this.event;
+    let last = this.eventsUntil(time) - 1;
+    while (last >= 0 && kind.values[last] > WALL) last--;
+    if (last < 0) return null;
+    let first = last;
+    while (first > 0 && times.values[first - 1] === times.values[last] && kind.values[first - 1] <= WALL) first--;
+    const sides = new Map();
+    for (let event = first; event <= last; event++) {
+      [a.values[event], b.values[event]].filter((disk) => disk >= 0).forEach((disk, k) => {
+        const after = anchor.values[event] + k, at = this.anchor, before = sides.has(disk) ? sides.get(disk).before : this._before(disk, after);
+        sides.set(disk, { disk, x: at.x.values[after], y: at.y.values[after], before, after: [at.vx.values[after], at.vy.values[after]] });
+      });
+    }
+    return { events: [first, last], time: times.values[last], sides: [...sides.values()] };
+  }
+
+  /* The velocity with which a disk came to an anchor. */
+  _before(disk, k) {
+    const list = this.anchorsOf[disk], { epoch, remainder } = this.anchor, from = list[firstOf(list.length, (place) => list[place] >= k) - 1];
+    const lag = (epoch.values[k] - epoch.values[from]) * this.epochLength + (remainder.values[k] - remainder.values[from]);
+    return [this._velocity("x", from, lag), this._velocity("y", from, lag)];
   }
 
   /* The time of the next event after a time, of the last one before it; null where there is none. */
@@ -198,10 +225,15 @@ function wrapped(x, period) {
 
 /* How many leading values of an ascending column satisfy a condition. */
 function bisect(column, holds) {
-  let low = 0, high = column.length;
+  return firstOf(column.length, (place) => !holds(column.values[place]));
+}
+
+/* The first of so many places from which on something is so. */
+function firstOf(count, so) {
+  let low = 0, high = count;
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (holds(column.values[middle])) low = middle + 1; else high = middle;
+    if (so(middle)) high = middle; else low = middle + 1;
   }
   return low;
 }
