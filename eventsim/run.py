@@ -46,7 +46,7 @@ class Run(PastRun):
     trust: Trust | None = None
 
     def __repr__(self) -> str:
-        name = self.scene.name or "a scene without a name"
+        name = self.scene.called
         return f"Run({name}: {self.counters.events:,} events to t = {self.time!r}, stopped: {self.stopped})"
 
     def animate(self, path: str | PathLike[str], **options: Any) -> None:

@@ -251,7 +251,7 @@ class Simulation:
             self._keeping = Keeping(self._provenance, log, checkpoint, interval(every))
 
     def __repr__(self) -> str:
-        return f"Simulation({self.scene.name or 'a scene without a name'}: {self.counters.events:,} events to t = {self.time!r})"
+        return f"Simulation({self.scene.called}: {self.counters.events:,} events to t = {self.time!r})"
 
     def __enter__(self) -> Self:
         return self

@@ -33,7 +33,7 @@ def point(x: float, y: float) -> str:
 
 def title(asked: str, name: str | None) -> str:
     """Return what was asked for, and the scene's own name where that says more."""
-    plain = asked.replace("-", " ").lower()
+    plain = Path(asked).stem.replace("-", " ").lower()
     return asked if name is None or name.replace("-", " ").lower() == plain else f"{asked} ({name})"
 
 

@@ -156,7 +156,7 @@ class House:
         """Return the first packet: what a page can choose from."""
         entries = [describe(name) for name in names()]
         gallery = [{"name": e.name, "title": e.title, "about": e.about, "parameters": e.parameters} for e in entries]
-        given = None if self.given is None else self.given.name or "your scene"
+        given = None if self.given is None else self.given.called
         return packet("hello", version=__version__, gallery=gallery, given=given)
 
 

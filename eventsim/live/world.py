@@ -274,7 +274,7 @@ def _scouted(scene: Scene, pace: float | None) -> tuple[Track, float, dict[str, 
     x0, y0, x1, y1 = stage["shown"]
     speed = pace or _usual_speed(scene) or max(x1 - x0, y1 - y0) / (stage["fastest"] * CROSSING_SECONDS)
     header = {
-        "title": scene.name or "hard disks",
+        "title": scene.called,
         "startTime": scene.start_time,
         "usualSpeed": speed,
         "resizable": _resizable(scene),

@@ -37,7 +37,7 @@ __all__ = [
 ]
 
 def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
-    """The scene of a .toml or .json file.
+    """The scene of a .toml or .json file; where it has no name, it is called after the file.
 
     Args:
         path: the file; a disks_file in it is looked for beside it.
@@ -50,6 +50,8 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     path, settings = Path(path), list(overrides or ())
     data, text = tables_of_file(path)
     changed = apply_overrides(data, settings)
+    if path.stem.isprintable():
+        changed = {"name": path.stem, **changed}
     try:
         return scene_from_dict(changed, path.parent, None, seed)
     except SceneError as error:

@@ -18,6 +18,8 @@ from eventsim.scene.restitution import Restitution, as_restitution
 from eventsim.scene.validate import find_problems, scalar_problems, touching_notes
 from eventsim.scene.walls import WALLS, Wall
 
+UNNAMED = "a scene without a name"
+
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class Scene:
@@ -34,7 +36,7 @@ class Scene:
         until: stop time on the scene's clock, or None.
         events: number of events to stop after, or None.
         start_time: what the clock shows at the start.
-        name: what the scene is called, or None.
+        name: what the scene is called, or None. A file without this key gives its own name.
 
     >>> import eventsim as es
     >>> disks = es.Disks(position=[(0.5, 0.5), (1.5, 0.5)], velocity=[(1, 0), (0, 0)], radius=0.1, mass=[1, 2])
@@ -125,11 +127,16 @@ class Scene:
 
         save_scene(self, Path(path))
 
+    @property
+    def called(self) -> str:
+        """How all that is written or drawn calls the scene."""
+        return self.name or UNNAMED
+
     def __repr__(self) -> str:
         return f"Scene({', '.join(f'{key}: {value}' if key else value for key, value in self._facts())})"
 
     def _repr_html_(self) -> str:
-        return html_table(self.name or "a scene without a name", (), [(key or "disks", value) for key, value in self._facts()])
+        return html_table(self.called, (), [(key or "disks", value) for key, value in self._facts()])
 
     def _facts(self) -> Iterator[tuple[str, str]]:
         """What there is to say in short, by key."""

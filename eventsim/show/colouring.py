@@ -25,12 +25,16 @@ Paint = Callable[[Frame], Floats]
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """The key of a colour map: what it shows, from `low` to `high`; beyond: whether there is more, in the last colour."""
+    """The key of a colour map: what it shows, from `low` to `high`; beyond: whether there is more, in the last colour.
+
+    apart: (label, colour) of what has no place on it.
+    """
 
     title: str
     low: float
     high: float
     beyond: bool = False
+    apart: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +122,8 @@ def _by_mass(disks: Disks) -> Colouring:
     low, high = float(masses.min()), float(masses.max())
     colours = amounts()((np.where(finite, disks.mass, high) - low) / (high - low))
     colours[~finite] = to_rgba(KINDS[6])
-    return _fixed(colours, Scale("mass", low, high))
+    apart = () if finite.all() else (("mass inf", KINDS[6]),)
+    return _fixed(colours, Scale("mass", low, high, apart=apart))
 
 
 def _by_species(disks: Disks) -> Colouring:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,7 +89,7 @@ class Bars:
         if isinstance(key, Scale):
             self._draw_scale(key)
         elif key is not None:
-            self._draw_kinds(key)
+            self._draw_dots(key.labels, float(PAD))
 
     def _draw_scale(self, key: Scale) -> None:
         right, length, faint = float(PAD), 90.0, self._palette.faint
@@ -105,11 +106,13 @@ class Bars:
         )
         strip.imshow(amounts()(np.linspace(0, 1, 256))[None], aspect="auto", interpolation="bilinear")
         strip.axis("off")
-        self._text(-(right + length + 6), BAR / 2, f"{key.title}  {key.low:.3g}", "right", faint)
+        low = self._text(-(right + length + 6), BAR / 2, f"{key.title}  {key.low:.3g}", "right", faint)
+        self._draw_dots(key.apart, right + length + 6 + self._width(low) + 10)
 
-    def _draw_kinds(self, key: Kinds) -> None:
-        right, room = float(PAD), 0.55 * self._place.size[0] / self._place.unit
-        for label, colour in reversed(key.labels):
+    def _draw_dots(self, labels: Sequence[tuple[str, str]], right: float) -> None:
+        """Draw dots with their labels from the right to the left, as many as there is room for."""
+        room = 0.55 * self._place.size[0] / self._place.unit
+        for label, colour in reversed(labels):
             text = self._text(-right, BAR / 2, label, "right", self._palette.faint)
             right += self._width(text) + 5
             dot = self._text(-right, BAR / 2, "\N{BLACK CIRCLE}", "right", colour)

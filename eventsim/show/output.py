@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eventsim.errors import EventsimError
+from eventsim.replay.log import AnyLog
 
 
 def suffix_of(path: Path, suffixes: Sequence[str], what: str) -> str:
@@ -16,6 +17,16 @@ def suffix_of(path: Path, suffixes: Sequence[str], what: str) -> str:
             f"{path}: {what} is written as {', '.join(suffixes)}; the file's name must end in one of them"
         )
     return suffix
+
+
+def title_of(log: AnyLog) -> str:
+    """Return how a picture calls the run that a log tells: by its scene, or else by its file."""
+    return log.scene.called if log.scene.name or log.path is None else log.path.stem
+
+
+def name_of(log: AnyLog) -> str:
+    """Return the same as matplotlib draws it."""
+    return as_written(title_of(log))
 
 
 def as_written(text: str) -> str:

@@ -23,7 +23,7 @@ from eventsim.show.colouring import colouring_of
 from eventsim.show.frames import Frame
 from eventsim.show.images import disks_with_images, lines_with_images
 from eventsim.show.layout import DPI, Bars, layout
-from eventsim.show.output import as_written
+from eventsim.show.output import name_of
 from eventsim.show.overview import overview_of
 from eventsim.show.palette import DARK, LIGHT
 from eventsim.show.strokes import Trails, arrows
@@ -88,7 +88,7 @@ class Picture:
         self._trails = Trails(passage, trail_frames) if look.trails else None
         self._trail = self._path_artist(self._palette.trail)
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
-        self._bars = Bars(self._figure, self.layout, self._palette, as_written(log.scene.name or ""))
+        self._bars = Bars(self._figure, self.layout, self._palette, name_of(log))
         self._bars.draw_key(self._colouring.key)
         self._clock_format = _clock_format(times)
         self._canvas.draw()

@@ -151,7 +151,7 @@ def compare(
         for competitor in ready
     }
     settings = {competitor.label: competitor.settings for competitor in ready}
-    name = scene.name or "this scene"
+    name = scene.called
     return Comparison(name, truth, engine, checks, exact, lines, left_out, settings, orders, engines_agree(truth))
 
 

@@ -263,3 +263,11 @@ def test_one_event_is_counted_as_one_event():
         picture.draw(frame)
         told.append(picture._bars.counter.get_text().split("   ")[0])
     assert told == ["0 events", "1 event"]
+
+
+def test_a_bar_of_masses_tells_disks_that_have_no_place_on_it():
+    disks = es.Disks([(1, 1), (2, 1), (3, 1)], radius=0.2, mass=[1, 3, np.inf])
+    run = es.simulate(es.Scene(disks, es.Box((4, 2)), until=1.0), log=True)
+    key = colouring_of("mass", disks, overview_of(run.log, (0.0, 0.0))).key
+    assert (key.low, key.high) == (1.0, 3.0)
+    assert [label for label, _ in key.apart] == ["mass inf"]

@@ -17,9 +17,10 @@ from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
 from eventsim.show.figures import TITLES, equation_of_state, msd, trajectories
 from eventsim.show.figures.residuals import gaps_at_contact
-from eventsim.show.figures.style import name_of, new_figure
+from eventsim.show.figures.style import new_figure
 from eventsim.show.figures.write import write_figure
 from eventsim.show.images import wrapped_pieces
+from eventsim.show.output import name_of
 from tests.measure.ways import displacements
 
 
@@ -142,12 +143,12 @@ def swept_row(count, eta, disks):
 
 
 def test_a_title_names_the_scene_or_else_the_file(still, tmp_path):
-    assert name_of(still) == (still.scene.name or "this scene")
+    assert name_of(still) == still.scene.called
     run = es.simulate(es.Scene(es.Disks([(1.0, 1.0)], [(1.0, 0.5)], 0.5), es.Box((4.0, 3.0))), until=20.0, log=True)
-    assert name_of(run.log) == "this scene"
+    assert name_of(run.log) == "a scene without a name"
     run.log.save(tmp_path / "mine.csv")
     read = es.load_log(tmp_path / "mine.csv")
-    assert name_of(read) == "mine.csv"
+    assert name_of(read) == "mine"
     figure = new_figure()
     trajectories.draw(figure, read)
     assert f"{len(read)} events (a dot for each disk)" in figure.axes[0].get_title(loc="left")

@@ -10,7 +10,8 @@ from eventsim.measure.boundary_map import boundary_map
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show.figures.demands import with_events
-from eventsim.show.figures.style import LENGTH, label, name_of, shades_of
+from eventsim.show.figures.style import LENGTH, label, shades_of
+from eventsim.show.output import name_of
 from eventsim.show.palette import LIGHT
 
 MOST_DOTS = 200_000

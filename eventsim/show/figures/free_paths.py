@@ -17,7 +17,8 @@ from eventsim.replay.flight_table import flights
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
 from eventsim.show.figures.demands import passage_with_time, with_events
-from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of
+from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label
+from eventsim.show.output import name_of
 
 BINS, LONGEST = 40, 6.0
 """Bins, up to this many mean free paths."""

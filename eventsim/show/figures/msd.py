@@ -18,7 +18,8 @@ from eventsim.measure.theory import enskog_diffusion
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label, name_of
+from eventsim.show.figures.style import BLUE, GREEN, LENGTH, ORANGE, TIME, label
+from eventsim.show.output import name_of
 
 SURE = 2.0
 """Standard errors above zero from which on a point says something on a logarithmic scale."""

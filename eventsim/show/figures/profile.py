@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from eventsim.measure import measure
 from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import LENGTH, ORANGE, label, name_of
+from eventsim.show.figures.style import LENGTH, ORANGE, label
+from eventsim.show.output import name_of
 from eventsim.show.palette import KINDS
 
 

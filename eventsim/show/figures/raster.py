@@ -10,7 +10,8 @@ from eventsim.record.events import Kind
 from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time, with_events
 from eventsim.show.figures.marks import Marks
-from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, name_of
+from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label
+from eventsim.show.output import name_of
 
 MARKS = {
     Kind.PAIR: (BLUE, "|"),

@@ -13,8 +13,9 @@ from eventsim.replay.log import AnyLog
 from eventsim.replay.motion import Motion
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.marks import Marks
-from eventsim.show.figures.style import BLUE, ORANGE, TIME, label, name_of
+from eventsim.show.figures.style import BLUE, ORANGE, TIME, label
 from eventsim.show.frames import energy_of
+from eventsim.show.output import name_of
 
 SAMPLES = 400
 MOST_VECTORS = 20_000

@@ -18,7 +18,8 @@ from eventsim.record.events import Floats
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import BLUE, ORANGE, TIME, label, name_of
+from eventsim.show.figures.style import BLUE, ORANGE, TIME, label
+from eventsim.show.output import name_of
 
 WIDE = 34
 """Letters in a line of a panel."""

@@ -11,8 +11,9 @@ from eventsim.replay.flight_table import flights, together
 from eventsim.replay.log import AnyLog
 from eventsim.show import outlines
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import LENGTH, TIME, label, name_of, shades_of
+from eventsim.show.figures.style import LENGTH, TIME, label, shades_of
 from eventsim.show.images import wrapped_pieces
+from eventsim.show.output import name_of
 
 MOST_VECTORS = 20_000
 MOST_CONTACTS = 800

@@ -12,7 +12,8 @@ from eventsim.errors import LogError
 from eventsim.measure import measure
 from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import SPEED, label, name_of
+from eventsim.show.figures.style import SPEED, label
+from eventsim.show.output import name_of
 from eventsim.show.palette import KINDS
 
 SEEN = 1e-3

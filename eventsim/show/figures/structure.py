@@ -13,7 +13,8 @@ from eventsim.measure.measures import Measure
 from eventsim.measure.studies import study
 from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, name_of, shades_of
+from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, shades_of
+from eventsim.show.output import name_of
 
 
 def draw(figure: Figure, log: AnyLog) -> None:

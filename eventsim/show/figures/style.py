@@ -8,9 +8,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Floats
-from eventsim.replay.log import AnyLog
 from eventsim.show.colouring import amounts
-from eventsim.show.output import as_written
 from eventsim.show.palette import KINDS, LIGHT
 
 SIZE, DPI = (7.2, 4.4), 150
@@ -48,7 +46,3 @@ def shades_of(n: int) -> Floats:
     return shades
 
 
-def name_of(log: AnyLog) -> str:
-    """Return how a title calls the run that a log tells, as it is drawn: by its scene, or else by its file."""
-    file = None if log.path is None else log.path.name
-    return as_written(log.scene.name or file or "this scene")

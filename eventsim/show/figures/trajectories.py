@@ -16,8 +16,9 @@ from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show import outlines
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import LENGTH, SIZE, label, name_of, shades_of
+from eventsim.show.figures.style import LENGTH, SIZE, label, shades_of
 from eventsim.show.images import lines_with_images, wrapped_pieces
+from eventsim.show.output import name_of
 from eventsim.show.overview import overview_of
 from eventsim.show.palette import LIGHT
 

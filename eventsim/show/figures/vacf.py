@@ -12,7 +12,8 @@ from eventsim.errors import LogError
 from eventsim.measure import measure
 from eventsim.replay.log import AnyLog
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, name_of
+from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label
+from eventsim.show.output import name_of
 
 TAIL_FROM = 10.0
 """Mean free times after which sound and shear, not single contacts, carry what is left."""

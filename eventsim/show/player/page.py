@@ -10,6 +10,7 @@ from string import Template
 
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
+from eventsim.show.output import title_of
 from eventsim.show.player.pack import packed
 
 SCRIPTS = ("world.js", "drawing.js", "player.js", "load.js")
@@ -38,7 +39,7 @@ def page(
     description, numbers = packed(log, color, seconds)
     parts = files(__package__)
     return Template(parts.joinpath("player.html").read_text(encoding="utf-8")).substitute(
-        title=html.escape(log.scene.name or "hard disks"),
+        title=html.escape(title_of(log)),
         style=parts.joinpath("player.css").read_text(encoding="utf-8"),
         script="\n".join(parts.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS),
         description=json.dumps(description | view, allow_nan=False).replace("<", "\\u003c"),

@@ -160,7 +160,7 @@ class Player {
     const scale = (low, high) => [low, dot(`linear-gradient(90deg, ${amounts.join(", ")})`, "scale"), high];
     const keys = {
       speed: () => scale("0", `≥ ${number(fastest)}`),
-      mass: () => (masses[0] < masses[1] ? scale(number(masses[0]), number(masses[1])) : []),
+      mass: () => (masses[0] < masses[1] ? scale(number(masses[0]), `${this.world.disks.mass.some((mass) => mass === Infinity) ? "≥ " : ""}${number(masses[1])}`) : []),
       contacts: () => scale("few", "many"),
       index: () => scale("0", String(this.world.count - 1)),
       species: () => speciesNames.slice(0, 4).flatMap((name, k) => [dot(kinds[k % kinds.length], ""), name]),

@@ -168,7 +168,7 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
     faults = [fault for fault in seen_here if fault is not None]
     faults += jumps(read.groups, flights, around, mass, faults)
     return Judgement(
-        name=scene.name or "this scene",
+        name=scene.called,
         source=samples.source,
         truth=truth,
         times=times,
