@@ -8,7 +8,7 @@ what follows for contacts that pile up, for rest, for neighbouring runs.  Kernel
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple, Protocol
 
 from eventsim.formulas.impulse import contact_restitution
@@ -48,6 +48,7 @@ class Law:
     Attributes:
         pair, wall: the usual restitution between disks, and at walls.
         duration: how long a contact matters to the next one of its disks; None where it does not.
+        walls: the usual restitution of each wall, by its number in the log; None where `wall` is that of all.
         by_speed: whether it looks at the speed of approach.  Then contacts of one instant that share disks are resolved only
             where each is what it would be alone, and stepped engines do not know it.
     """
@@ -55,7 +56,16 @@ class Law:
     pair: float
     wall: float
     duration: float | None
+    walls: tuple[float, ...] | None = field(default=None, kw_only=True)
     by_speed: ClassVar[bool] = False
+
+    def of_wall(self, wall: int) -> float:
+        """The usual restitution at a wall, by its number in the log."""
+        return self.wall if self.walls is None else self.walls[wall]
+
+    def shares(self, pairs: bool = True, walls: bool = True) -> tuple[float, ...]:
+        """All usual restitutions: those between disks, those at walls."""
+        return (*((self.pair,) if pairs else ()), *((self.walls or (self.wall,)) if walls else ()))
 
     def numbers(self) -> Numbers | None:
         """What makes its contacts other than usual ones; None where nothing does."""
@@ -72,23 +82,28 @@ class Law:
 
     def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
         """Whether contacts conserve energy: those between disks, those at walls."""
-        return not ((pairs and self.pair != 1.0) or (walls and self.wall != 1.0))
+        return all(share == 1.0 for share in self.shares(pairs, walls))
 
     def loses_energy(self) -> bool:
         """Whether contacts take energy, so that they can pile up."""
-        return self.pair < 1.0 or self.wall < 1.0
+        return any(share < 1.0 for share in self.shares())
 
     def loss(self) -> float:
         """1 - e of the least inelastic contacts that take energy, at the lowest speeds; 0 where none does."""
-        return min((1.0 - e for e in (self.pair, self.wall) if e < 1.0), default=0.0)
+        return min((1.0 - e for e in self.shares() if e < 1.0), default=0.0)
 
     def comes_to_rest(self) -> bool:
         """Whether bounces become ever lower, so that under gravity disks end up lying on something."""
         return self.loses_energy()
 
-    def series(self) -> float:
-        """The restitution at walls of bounces that follow each other ever faster."""
-        return self.wall
+    def series(self, usual: float) -> float:
+        """The restitution of bounces that follow each other ever faster, at a wall with this usual one."""
+        return usual
+
+    @property
+    def beyond_steps(self) -> str | None:
+        """What of it stepped engines do not know; None where they do: `pair` and `wall` are all."""
+        return self.name() if self.by_speed else "restitution of single walls" if self.walls is not None else None
 
     @property
     def no_tangent(self) -> str | None:
@@ -101,7 +116,8 @@ class Law:
 
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts; number: how it writes one."""
-        return f"restitution {number(self.pair)} between disks, {number(self.wall)} at walls: energy is lost"
+        walls = [number(share) for share in dict.fromkeys(self.walls or (self.wall,))]
+        return f"restitution {number(self.pair)} between disks, {' or '.join(walls)} at walls: energy is lost"
 
     def remedy(self) -> str:
         """What is left to do about contacts that pile up."""
@@ -141,7 +157,7 @@ class TimeOfContact(Law):
         """Bounces that are short enough keep their height."""
         return False
 
-    def series(self) -> float:
+    def series(self, usual: float) -> float:
         """1: in the end they are elastic."""
         return 1.0
 
@@ -182,11 +198,11 @@ class Yielding(Law):
 
     def comes_to_rest(self) -> bool:
         """If slow contacts take energy, however fast they follow each other."""
-        return self.duration is None and (self.pair < 1.0 or self.wall < 1.0)
+        return self.duration is None and any(share < 1.0 for share in self.shares())
 
-    def series(self) -> float:
+    def series(self, usual: float) -> float:
         """That of slow contacts, which follow each other ever faster."""
-        return self.wall if self.duration is None else 1.0
+        return usual if self.duration is None else 1.0
 
     def name(self) -> str:
         """What a sentence calls it."""
@@ -202,10 +218,10 @@ LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact, Yielding)
 """The table of laws."""
 
 
-def law_of(restitution: Shares | None, duration: float | None) -> Law:
-    """The law of a scene with these keys: its restitution, None where it is elastic, and a contact duration."""
+def law_of(restitution: Shares | None, duration: float | None, walls: tuple[float, ...] | None = None) -> Law:
+    """The law of a scene with these keys: its restitution, None where it is elastic, a contact duration, those of walls."""
     if restitution is None:
         return Elastic(1.0, 1.0, None)
     if restitution.yield_speed is not None:
-        return Yielding(restitution.pair, restitution.wall, duration, restitution.yield_speed)
-    return (Inelastic if duration is None else TimeOfContact)(restitution.pair, restitution.wall, duration)
+        return Yielding(restitution.pair, restitution.wall, duration, restitution.yield_speed, walls=walls)
+    return (Inelastic if duration is None else TimeOfContact)(restitution.pair, restitution.wall, duration, walls=walls)

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from eventsim.formulas.laws import law_of
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.records import FEW
 from eventsim.scene import Scene
+from eventsim.scene.contact_law import law_of_scene
 
 
 def settings_of(scene: Scene) -> str | None:
     """What a scene has besides its disks and walls that changes its contacts, in words; None where it has nothing."""
-    if scene.restitution is None:
-        return None
-    return law_of(scene.restitution, scene.contact_duration).words("{:g}".format)
+    law = law_of_scene(scene)
+    return None if law.keeps_energy() else law.words("{:g}".format)
 
 
 def gas_of(scene: Scene) -> dict[str, Any]:

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eventsim.formulas.laws import Law, law_of
+from eventsim.formulas.laws import Law
 from eventsim.measure.billiard_table import Table, sides_of_table, table_of
 from eventsim.measure.sides import Side
 from eventsim.record.events import Floats
+from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.disks import species_among
 from eventsim.scene.domain import Box, Channel, Open, Periodic
 from eventsim.scene.scene import Scene
@@ -99,7 +100,7 @@ class Ensemble:
     @property
     def law(self) -> Law:
         """The law of its contacts."""
-        return law_of(self.scene.restitution, self.scene.contact_duration)
+        return law_of_scene(self.scene)
 
     @property
     def elastic(self) -> bool:

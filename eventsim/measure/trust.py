@@ -12,9 +12,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from eventsim.formulas.laws import law_of
 from eventsim.measure.tangent import Deviation, Passed, Tangent
 from eventsim.record.events import Rows
+from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.domain import Open, Periodic
 from eventsim.scene.scene import Scene
 from eventsim.scene.walls import parts_of
@@ -81,7 +81,7 @@ class TrustLine:
         self._event: int | None = None
         self._time: float | None = None
         self._reason = None if self._length < math.inf else "nothing in this scene has a size"
-        self._reason = law_of(scene.restitution, scene.contact_duration).no_tangent or self._reason
+        self._reason = law_of_scene(scene).no_tangent or self._reason
 
     def write(self, rows: Rows) -> None:
         """Follow a block of rows, as far as it is needed."""

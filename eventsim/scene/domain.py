@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
+from eventsim.errors import SceneError
+from eventsim.scene.manner import KEYS, Side
 from eventsim.scene.numbers import Point, point
+
+Sides: TypeAlias = tuple[tuple[str, Side], ...]
+"""What sides of a domain have of their own, by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Rectangle:
-    """A rectangle of `size` (width, height), length, with its lower-left corner at `origin`."""
+    """A rectangle of `size` (width, height), length, with its lower-left corner at `origin`.
+
+    walls: what hard sides have of their own, by name, as in {"bottom": {"restitution": 0.5}}; kept as pairs (name, Side).
+    """
 
     size: Point
     origin: Point = (0.0, 0.0)
+    walls: Sides = ()
     periodic: ClassVar[tuple[bool, bool]]
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "walls", _sides(self.walls, hard_sides(self)))  # type: ignore[arg-type]  # a kind of rectangle
         object.__setattr__(self, "size", point(self.size, "domain.size"))
         object.__setattr__(self, "origin", point(self.origin, "domain.origin"))
 
@@ -60,6 +71,7 @@ class Open:
     period: ClassVar[tuple[None, None]] = (None, None)
     size: ClassVar[None] = None
     origin: ClassVar[Point] = (0.0, 0.0)
+    walls: ClassVar[Sides] = ()
 
 
 Domain: TypeAlias = Box | Periodic | Channel | Open
@@ -73,3 +85,26 @@ def hard_sides(domain: Domain) -> tuple[str, ...]:
         return ()
     along_x, along_y = domain.periodic
     return (() if along_x else BOUNDARY_NAMES[:2]) + (() if along_y else BOUNDARY_NAMES[2:])
+
+
+def _sides(given: Mapping[str, Any] | Sides, names: tuple[str, ...]) -> Sides:
+    """What sides have of their own, in the order of the sides.
+
+    Raises:
+        SceneError: for what no side has.
+    """
+    table = dict(given)
+    problems = [f"domain.walls.{name}: this domain has {_listed(names)}" for name in table if name not in names]
+    for name, own in table.items():
+        if isinstance(own, Mapping):
+            problems += [f"domain.walls.{name}.{key}: unknown key (known: {', '.join(KEYS)})" for key in own if key not in KEYS]
+        elif not isinstance(own, Side):
+            problems.append(f"domain.walls.{name} = {own!r}: must be a table with {', '.join(KEYS)}")
+    if problems:
+        raise SceneError(problems)
+    made = {name: own if isinstance(own, Side) else Side(**own) for name, own in table.items()}
+    return tuple((name, made[name]) for name in names if name in made and made[name].manner)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return f"the walls {', '.join(names)}" if names else "no walls"

@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from typing import Any, NamedTuple
 
-from eventsim.scene import restitution
+from eventsim.scene import manner, restitution
 from eventsim.scene.domain import DOMAINS
 from eventsim.scene.keys import Invalid, Optional, Required, Schema
 from eventsim.scene.numbers import as_number, as_whole
 from eventsim.scene.sizes import RULES, Sizes
 from eventsim.scene.walls import WALLS
-from eventsim.scene.walls.wall import LENGTH, NAME, POINTS, keys_of, optional_keys
+from eventsim.scene.walls.wall import LENGTH, NAME, OWN, POINTS, keys_of, optional_keys
 from eventsim.scene.walls.wall import POINT as PLACE
 
 MOST_FRAMES = 10**9
@@ -106,10 +106,18 @@ def one_of(*words: str) -> Callable[[object], str]:
     return word
 
 
+def sides(value: object) -> dict[str, dict[str, float]]:
+    """What sides of the domain have of their own: a table for each."""
+    wanted = f"must be tables of sides with {', '.join(manner.KEYS)}, as in {{bottom = {{{manner.EXAMPLES['restitution']}}}}}"
+    if not isinstance(value, Mapping) or not all(isinstance(own, Mapping) for own in value.values()):
+        raise Invalid(wanted)
+    return {str(name): {str(key): number(own[key]) for key in own} for name, own in value.items()}
+
+
 POINT = numbers(2, "two numbers [x, y]")
 KIND: dict[Any, Any] = {Required("kind"): text}
 SIZED = Schema(
-    {**KIND, Required("size"): numbers(2, "two numbers [width, height]"), Optional("origin"): POINT}
+    {**KIND, Required("size"): numbers(2, "two numbers [width, height]"), Optional("origin"): POINT, Optional("walls"): sides}
 )
 
 SCENE = Schema(
@@ -152,7 +160,7 @@ GAS = Schema(
 DISKS_FILE = Schema(
     {Required("path"): text, Optional("frame"): whole(-MOST_FRAMES), Optional("radius"): number, Optional("mass"): mass}
 )
-WALL_KEYS: dict[str, Callable[[object], object]] = {PLACE: POINT, POINTS: points, LENGTH: number, NAME: text}
+WALL_KEYS: dict[str, Callable[[object], object]] = {PLACE: POINT, POINTS: points, LENGTH: number, NAME: text, OWN: number}
 WALL = {
     kind: Schema(
         {**KIND, **{(Required, Optional)[key in optional_keys(wall)](key): WALL_KEYS[of] for key, of in keys_of(wall).items()}}

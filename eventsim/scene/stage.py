@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventsim.formulas.doubt import tie_screen
-from eventsim.formulas.laws import Law, law_of
+from eventsim.formulas.laws import Law
 from eventsim.formulas.motion import periods
 from eventsim.formulas.real import Real, is_float
 from eventsim.formulas.rest import Support
@@ -22,6 +22,7 @@ from eventsim.formulas.walls.point import closeness, is_near, is_point
 from eventsim.formulas.walls.post import is_post_to
 from eventsim.formulas.walls.shape import Closed, Thin
 from eventsim.scene.clock import SceneClock, clock_of
+from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.corner import corner_of
 from eventsim.scene.disks import Floats
 from eventsim.scene.numbers import Point
@@ -186,7 +187,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
     size = domain.size
     boundaries, names = boundaries_of(domain)
     features = features_of(scene.walls, float(disks.radius.max()), corner, domain.period, boundaries)
-    law = law_of(scene.restitution, scene.contact_duration)
+    law = law_of_scene(scene)
     lightest, heaviest = _extreme_masses(disks.mass)
     clock = clock_of(scene)
     return Stage(
@@ -212,7 +213,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         boundaries=boundaries,
         features=features,
         surfaces=(*boundaries, *features),
-        supports=_supports(scene, boundaries, features, law.series() == 1.0, x, y),
+        supports=_supports(scene, boundaries, features, law, x, y),
         points=_has_points(features, float(disks.radius.min())),
         wall_names=(*names, *feature_names(scene.walls)),
         corner=corner,
@@ -254,19 +255,20 @@ def _extreme_masses(mass: Floats) -> tuple[float, float]:
 
 
 def _supports(
-    scene: Scene, boundaries: tuple[Boundary, ...], features: tuple[Feature, ...], elastic: bool, x: Floats, y: Floats
+    scene: Scene, boundaries: tuple[Boundary, ...], features: tuple[Feature, ...], law: Law, x: Floats, y: Floats
 ) -> tuple[Support | None, ...] | None:
     """The supports of a scene in which disks can come to rest: walls take energy, or a disk lies on one at the start.
 
-    elastic: contacts that are close to each other take none, as in the TC model.  A wall inside the domain that disks also
-    meet in an image supports nobody: so a disk on it does not reach the border, and a wrap ends no rest.
+    In the TC model contacts that are close to each other take none.  A wall inside the domain that disks also meet in an image
+    supports nobody: so a disk on it does not reach the border, and a wrap ends no rest.
     """
     gravity, disks = scene.gravity, scene.disks
     if gravity is None:
         return None
     faces = [None if item.imaged else item.shape.line() for item in features]
-    supports = supports_of([(one.axis, one.position) for one in boundaries], faces, gravity)
-    if elastic:
+    shares = [law.series(law.of_wall(one.wall)) for one in features]
+    supports = supports_of([(one.axis, one.position) for one in boundaries], faces, gravity, shares)
+    if all(law.series(share) == 1.0 for share in law.shares(pairs=False)):
         falls = np.isfinite(disks.mass)
         flights = x[falls], y[falls], disks.velocity[falls, 0], disks.velocity[falls, 1]
         if not any(one is not None and any_lies(one, flights, disks.radius[falls], gravity) for one in supports):

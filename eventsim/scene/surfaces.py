@@ -132,11 +132,21 @@ def _bounds(wall: Wall) -> Bounds:
 
 
 def supports_of(
-    borders: Sequence[tuple[int, float]], faces: Sequence[Face | None], gravity: tuple[float, float]
+    borders: Sequence[tuple[int, float]],
+    faces: Sequence[Face | None],
+    gravity: tuple[float, float],
+    shares: Sequence[float],
 ) -> tuple[Support | None, ...]:
-    """The supports that walls of the domain (axis, position) and shapes give; None for a shape that is no face, or gives none."""
+    """The supports that walls of the domain (axis, position) and shapes give; None for a shape that is no face, or gives none.
+
+    shares: what comes back of low bounces on each shape.  Where they differ, bounces on walls in line are no one series.
+    """
     straight = [one for one in faces if one is not None]
-    inside = [None if one is None else face_support(one, straight, gravity) for one in faces]
+    kinds = {share: k for k, share in enumerate(dict.fromkeys(shares))}
+    inside: list[Support | None] = []
+    for one, share in zip(faces, shares, strict=True):
+        support = None if one is None else face_support(one, straight, gravity)
+        inside.append(support and support._replace(line=support.line + kinds[share] * len(straight)))
     return (*(border_support(*border, gravity, -1 - k) for k, border in enumerate(borders)), *inside)
 
 

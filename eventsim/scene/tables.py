@@ -107,7 +107,10 @@ def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str]) ->
     else:
         values, broken = schema.read_kind(schema.DOMAIN, data["domain"], "domain", problems)
         if not broken:
-            parts.domain = DOMAINS[values.pop("kind")](**values)
+            try:
+                parts.domain = DOMAINS[values.pop("kind")](**values)
+            except SceneError as error:
+                problems += error.problems
         elif "kind" not in broken:
             problems += domain_problems(DOMAINS[values.pop("kind")](**DOMAIN_STAND_IN | values))
     _read_walls(data, parts, problems)

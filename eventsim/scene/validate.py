@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from eventsim.letters import is_name
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open, hard_sides
+from eventsim.scene.manner import manner_problems
 from eventsim.scene.names import DiskNames, SelectedNames
 from eventsim.scene.numbers import (
     FASTEST,
@@ -132,6 +133,8 @@ def domain_problems(domain: Domain) -> Iterator[str]:
         return
     if not all(map(is_length, domain.size)):
         yield f"domain.size = {list(domain.size)}: both lengths {LENGTHS}"
+    for name, side in domain.walls:
+        yield from (f"domain.walls.{name}{problem}" for problem in manner_problems(side.manner))
     if not is_place(domain.origin):
         yield f"domain.origin = {list(domain.origin)}: must be two finite numbers, at most {LONGEST}"
 

@@ -104,6 +104,8 @@ def _domain_table(domain: Domain) -> dict[str, Any]:
     table: dict[str, Any] = {"kind": domain.kind, "size": list(domain.size)}
     if not all(_is_default(value, 0.0) for value in domain.origin):
         table["origin"] = list(domain.origin)
+    if domain.walls:
+        table["walls"] = {name: side.manner for name, side in domain.walls}
     return table
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import eventsim as es
+from eventsim.scene.domain import hard_sides
 from eventsim.scene.restitution import Restitution
 from tests.engines.scenes import lattice_gas
 
@@ -21,13 +22,18 @@ def _shares(rng: np.random.Generator) -> dict[str, float]:
 LAWS: dict[str, Keys] = {
     "restitution": lambda rng: {"restitution": Restitution(**_shares(rng))},
     "time of contact": lambda rng: {"restitution": Restitution(**_shares(rng)), "contact_duration": 1e-2},
+    "walls of their own": lambda rng: {
+        "restitution": Restitution(**_shares(rng)),
+        "sides": {"bottom": {"restitution": float(rng.choice([0.5, 1.0]))}, "top": {"restitution": 0.75}},
+        "own": {"restitution": float(rng.choice([0.25, 0.9]))},
+    },
     "yielding": lambda rng: {"restitution": Restitution(**_shares(rng), yield_speed=float(rng.choice([0.25, 1.0])))},
     "yielding, kept if soon": lambda rng: {
         "restitution": Restitution(0.9, 0.8, yield_speed=0.5),
         "contact_duration": float(rng.choice([1e-3, 1e-1])),
     },
 }
-"""The keys of a scene that ask for a law, from a generator."""
+"""The keys of a scene that ask for a law, from a generator; sides, own: those of the domain's sides, and of walls."""
 
 
 def random_scene(seed: int, law: str) -> es.Scene:
@@ -39,5 +45,8 @@ def random_scene(seed: int, law: str) -> es.Scene:
     gas = lattice_gas(12, 0.1, domain, seed=seed, radii=(0.5, 0.25), masses=masses)
     pitch = gas.domain.size[0] / 4.0
     corners = [(pitch, pitch), (1.2 * pitch, 1.1 * pitch), (1.0 * pitch, 1.25 * pitch)]
-    walls = [es.Arc(*corners)] if rng.random() < 0.3 else [es.Segment(*corners[:2])] if rng.random() < 0.5 else []
-    return es.Scene(gas.disks, gas.domain, walls, gravity=gravity, **LAWS[law](rng))
+    keys = LAWS[law](rng)
+    own, sides = keys.pop("own", {}), keys.pop("sides", {})
+    walls = [es.Arc(*corners, **own)] if rng.random() < 0.3 else [es.Segment(*corners[:2], **own)] if rng.random() < 0.5 else []
+    hard = {name: side for name, side in sides.items() if name in hard_sides(gas.domain)}
+    return es.Scene(gas.disks, domain(gas.domain.size, walls=hard), walls, gravity=gravity, **keys)

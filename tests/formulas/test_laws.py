@@ -4,6 +4,7 @@ import pytest
 
 import eventsim as es
 from eventsim.formulas.laws import LAWS, Elastic, Inelastic, TimeOfContact, Yielding, law_of
+from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.restitution import Restitution, as_restitution
 
 EXAMPLES = {
@@ -40,8 +41,8 @@ def test_the_loss_is_that_of_the_least_inelastic_contacts():
 
 
 def test_disks_come_to_rest_where_energy_is_lost_at_every_bounce():
-    assert [(law.loses_energy(), law.comes_to_rest(), law.series()) for law in EXAMPLES.values()] == [
-        (False, False, 1.0),
+    assert [(law.loses_energy(), law.comes_to_rest(), law.series(0.75)) for law in EXAMPLES.values()] == [
+        (False, False, 0.75),
         (True, True, 0.75),
         (True, False, 1.0),
         (True, True, 0.75),
@@ -90,3 +91,58 @@ def test_stepped_engines_and_tangent_maps_refuse_a_law_that_they_do_not_know():
         es.simulate(scene, until=1.0, engine="stepped")
     trust = es.simulate(scene, until=1.0, engine="reference", trust=True).trust
     assert "no tangent map" in trust.reason
+
+
+def test_a_wall_and_a_side_of_the_domain_have_shares_of_their_own():
+    disks = es.Disks([[1.0, 1.0], [4.0, 3.0]], [[0.0, -1.0], [1.0, 0.0]], 0.5)
+    floor = es.Segment((0.0, 0.25), (2.0, 0.25), restitution=0.25)
+    scene = es.Scene(disks, es.Box((6.0, 6.0), walls={"right": {"restitution": 0.5}}), [floor], until=2.0)
+    run = es.simulate(scene, engine="reference")
+    assert run.state.velocity.tolist() == [[0.0, 0.25], [-0.5, 0.0]]
+    assert es.Scene(disks, es.Box((6.0, 6.0)), [floor], restitution=0.25).walls[0].restitution == 0.25
+    assert run.residuals.energy is None
+
+
+def test_shares_of_walls_go_through_a_scene_file(tmp_path):
+    disks = es.Disks([[1.0, 1.0]], [[0.0, -1.0]], 0.5)
+    domain = es.Box((6.0, 6.0), walls={"top": {"restitution": 1.0}, "left": {"restitution": 0.1}})
+    chain = es.Polyline([(3.0, 3.0), (4.0, 3.0), (4.0, 4.0)], restitution=0.3)
+    scene = es.Scene(disks, domain, [chain], restitution=0.9)
+    for suffix in ("toml", "json"):
+        scene.save(tmp_path / f"scene.{suffix}")
+        assert es.load_scene(tmp_path / f"scene.{suffix}") == scene
+    assert law_of_scene(scene).walls == (0.1, 0.9, 0.9, 1.0, 0.3, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("walls", "message"),
+    [
+        ({"middle": {"restitution": 0.5}}, "domain.walls.middle: this domain has the walls left, right, bottom, top"),
+        ({"left": {"bounce": 0.5}}, "domain.walls.left.bounce: unknown key"),
+        ({"left": 0.5}, "domain.walls.left = 0.5: must be a table with restitution"),
+        ({"left": {"restitution": "hard"}}, "wall.restitution = 'hard'"),
+    ],
+)
+def test_what_no_side_has_is_refused(walls, message):
+    with pytest.raises(es.SceneError) as refused:
+        es.Box((1.0, 1.0), walls=walls)
+    assert message in str(refused.value)
+
+
+def test_a_share_of_a_side_keeps_its_bounds():
+    with pytest.raises(es.SceneError, match=r"domain.walls.left.restitution = 1.5: must be from 0 to 1"):
+        es.Scene(es.Disks([[1.0, 1.0]], radius=0.5), es.Box((2.0, 2.0), walls={"left": {"restitution": 1.5}}))
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_a_disk_comes_to_rest_on_the_wall_that_takes_energy_and_not_on_another(engine):
+    if engine == "fast":
+        pytest.importorskip("numba")
+    disks = es.Disks([[1.0, 2.0], [5.0, 2.0]], radius=0.5)
+    ledges = [es.Segment((0.5, 1.0), (1.5, 1.0)), es.Segment((4.5, 1.0), (5.5, 1.0), restitution=0.5)]
+    run = es.simulate(es.Scene(disks, es.Box((6.0, 6.0)), ledges, (0.0, -1.0)), until=9.0, engine=engine)
+    assert run.counters.rests == 1
+    assert run.state.velocity[1].tolist() == [0.0, 0.0]
+    assert run.state.position[1, 1] == pytest.approx(1.5, abs=1e-12)
+    fallen = run.state.position[0, 1] - 1.5, run.state.velocity[0, 1]
+    assert fallen[0] + 0.5 * fallen[1] ** 2 == pytest.approx(0.5, abs=1e-12)

@@ -68,8 +68,8 @@ class Arrays(NamedTuple):
     disks: the records, and behind them the calendar's buckets and its waiting room.
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
     parts of velocities, (vx, vy) each.  sides: of points, one number for each shape
-    (`scene.sides`); images: see `rules.images_of`.  levels: the table of `cells`.  rows: the
-    log's buffer, bytes.
+    (`scene.sides`); images: see `rules.images_of`.  levels: the table of `cells`.  shares: see
+    `rules.shares_of`.  rows: the log's buffer, bytes.
     """
 
     disks: object
@@ -83,6 +83,7 @@ class Arrays(NamedTuple):
     supports: object
     sides: object
     images: object
+    shares: object
     rows: object
 
 

@@ -87,6 +87,7 @@ def pointers(a):
         pointer(a.supports),
         pointer(a.sides),
         pointer(a.images),
+        pointer(a.shares),
         pointer(a.rows),
     )
 

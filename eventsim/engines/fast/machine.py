@@ -15,7 +15,7 @@ from eventsim.engines.fast.compiled import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.plan import ORDERED_DISKS, Grids, Sizes, along_a_curve, day_length, shortest_day
-from eventsim.engines.fast.rules import features_of, images_of, rules_of, supports_of
+from eventsim.engines.fast.rules import features_of, images_of, rules_of, shares_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.clock import window_length
 from eventsim.formulas.doubt import screen_in
@@ -99,6 +99,7 @@ class Machine:
         self._features = features_of(stage)
         self._supports = supports_of(stage)
         self._images = images_of(stage)
+        self._shares = shares_of(stage)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._buffers = Buffers()
         self._buffer = self._buffers.blank() if keep_rows else np.empty(0, ROW)
@@ -246,6 +247,7 @@ class Machine:
                 self._supports,
                 state.sides_in_memory,
                 self._images,
+                self._shares,
                 self._buffer.view(np.uint8) if self.keep_rows else None,
             )
             full = fill(self.arrays, self.grid, self.rules, now)

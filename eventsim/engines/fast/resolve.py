@@ -25,7 +25,7 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
-from eventsim.engines.fast.rest import is_support, launched, support_face
+from eventsim.engines.fast.rest import is_support, launched, share_at_wall, support_face
 from eventsim.engines.fast.rows import write_pair, write_wall
 from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal, wall_normal
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
@@ -275,7 +275,8 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     still = _is_still(m, rules, i, t, rules.still) and not series
     ends = series and _ends(m, place_, m.supports)
     approach = _approach_to_wall(m, rules, i, place_, side, x, y, u, w, rules.by_speed, m.features)
-    e = _restitution(m, i, i, t, rules.wall_restitution, rules.law, approach)
+    usual = share_at_wall(m, rules, place_, m.shares)
+    e = _restitution(m, i, i, t, usual, rules.law, approach)
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r

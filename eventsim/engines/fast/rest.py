@@ -73,6 +73,18 @@ def support_face(m, place):
 
 
 @inline
+def share_at_wall(m, rules, place, shares):
+    """The usual restitution at a wall."""
+    return rules.wall_restitution if shares is None else real(shares, 2 * place)
+
+
+@inline
+def _share_of_series(m, rules, place, shares):
+    """The same of bounces that follow each other ever faster."""
+    return rules.series_restitution if shares is None else real(shares, 2 * place + 1)
+
+
+@inline
 def are_in_line(m, one, other):
     """Whether two walls support disks, and are in line."""
     same = real(m.supports, SUPPORT * one + SUPPORT_LINE) == real(m.supports, SUPPORT * other + SUPPORT_LINE)
@@ -176,7 +188,7 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     if rests(m, i) and word(m.disks, i * WORDS + MET) == -1 - place:
         return NEVER, STRUCK
     size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
-    restitution, since = rules.series_restitution, _since_met(m, i, place)
+    restitution, since = _share_of_series(m, rules, place, m.shares), _since_met(m, i, place)
     delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, since)
     if how == SUPPORTED and is_cornered(
         m, rules, i, place, side, real(m.disks, f + X), real(m.disks, f + Y), rules.still
@@ -219,7 +231,7 @@ def shape_rest(m, rules, i, k):
     before = side_met(m, i, place)
     close = beside(m, rules, i, k, m.sides)
     side = flight_side(face, before, close, x, y, vx, vy, r)
-    restitution, since = rules.series_restitution, _since_met(m, i, place)
+    restitution, since = _share_of_series(m, rules, place, m.shares), _since_met(m, i, place)
     if before != 0 and side != before:  # it has come round an end since
         since = NOT_LAST
     delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t, since)

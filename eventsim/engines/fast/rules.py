@@ -37,8 +37,8 @@ def rules_of(stage: Stage) -> Rules:
         width,
         height,
         stage.law.pair,
-        stage.law.wall,
-        stage.law.series(),
+        max(stage.law.shares(pairs=False)),
+        stage.law.series(stage.law.wall),
         stage.law.numbers(),
         1 if stage.law.by_speed else None,
         1 if classes else None,
@@ -55,10 +55,11 @@ def rules_of(stage: Stage) -> Rules:
 
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
+    law = (stage.law.walls, *(stage.law.numbers() or ()))
     asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
-    needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted, *(stage.law.numbers() or ())]
+    needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted, *law]
     return "".join("0" if need is None else "1" for need in needs)
 
 
@@ -73,6 +74,14 @@ def features_of(stage: Stage) -> Floats | None:
         row[2 : 2 + len(numbers)] = numbers
         row[CORNERS:] = feature.corners
     return table.reshape(-1)
+
+
+def shares_of(stage: Stage) -> Floats | None:
+    """What comes back at each wall, and of low bounces there, in one row of memory; None where all walls are alike."""
+    if stage.law.walls is None:
+        return None
+    shares = [stage.law.of_wall(surface.wall) for surface in stage.surfaces]
+    return np.array([(share, stage.law.series(share)) for share in shares]).reshape(-1)
 
 
 def images_of(stage: Stage) -> NDArray[np.int32] | None:

@@ -46,7 +46,7 @@ class Predictor:
         self._shifts = stage.shifts
         self._falls = stage.gravity is not None
         self._settles = stage.settles
-        self._series_restitution = stage.law.series()
+        self._series = [stage.law.series(stage.law.of_wall(surface.wall)) for surface in stage.surfaces]
         self._unmoved = _classes(stage)
         everyone = list(range(stage.n))
         self._everyone: list[Group] = [(everyone, image) for image in images_of(stage)]
@@ -186,7 +186,7 @@ class Predictor:
             delay, how = crossing_delay(x[i], v[i], g[i], target, -step), STRUCK
         else:
             size = abs(state.x[i]) + abs(state.y[i]) + abs(target)
-            held, e = held_by(state.met[i]), self._series_restitution
+            held, e = held_by(state.met[i]), self._series[place]
             since = state.since_met(i, -1 - place)
             delay, how = border_contact(
                 state.supports, held, place, -step, target, x[i], v[i], g[i], size, e, state.t[i], since
@@ -208,7 +208,7 @@ class Predictor:
         if held is not None and held.how == LEFT:
             since = state.since_contact(i)
         beside = state.side_beside(i, place)
-        e, t = self._series_restitution, state.t[i]
+        e, t = self._series[place], state.t[i]
         delay, side, how = shape_contact(
             state.supports, held, place, shape, flight, self._radius[i], met, e, t, since, touches, beside
         )

@@ -110,7 +110,8 @@ class Rests:
             for corner in corners_of(stage, state.met[i] + now, place, side, x, y):
                 is_now = any(corner.place == -1 - other.b for other in component)
                 lag = 0.0 if corner.rests or is_now else t - state.contact_time[i]
-                size, e = abs(x) + abs(y) + self._radius[i], stage.law.wall
+                size = abs(x) + abs(y) + self._radius[i]
+                e = min(stage.law.of_wall(stage.surfaces[k].wall) for k in (corner.place, place))
                 if is_spent(*corner.first, *corner.second, *gravity, *state.speed(i, t), lag, size, e):
                     walls = [stage.wall_names[stage.surfaces[k].wall] for k in (corner.place, place)]
                     raise TwoSupportsError(i, walls, stage)

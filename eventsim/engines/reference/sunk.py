@@ -92,7 +92,8 @@ class Sunk:
         state, law = self._state, self._stage.law
         if state.contact_time[i] != state.t[i]:
             return False
-        return any((law.pair if met[0] >= 0 else law.wall) < 1.0 for met in state.met[i])
+        surfaces = self._stage.surfaces
+        return any((law.pair if met[0] >= 0 else law.of_wall(surfaces[-1 - met[0]].wall)) < 1.0 for met in state.met[i])
 
     def _of_pair(self, event: Event) -> tuple[float, float]:
         """(approach, size): the speed at which the gap of two disks closes, and the size of what it is the difference of."""

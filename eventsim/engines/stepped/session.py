@@ -41,8 +41,8 @@ class SteppedSession(Session):
 
     def __init__(self, stage: Stage, keep_rows: bool = True, dt: float | None = None) -> None:
         super().__init__(stage)
-        if stage.law.by_speed:
-            raise EventsimError(f"{self.name} cannot simulate this scene: it knows no {stage.law.name()}")
+        if stage.law.beyond_steps is not None:
+            raise EventsimError(f"{self.name} cannot simulate this scene: it knows no {stage.law.beyond_steps}")
         self.dt = usual_step(stage) if dt is None else float(dt)
         if not 0.0 < self.dt < math.inf:
             raise EventsimError(f"{self.name}: dt = {self.dt!r}: a step must be a finite time above 0")

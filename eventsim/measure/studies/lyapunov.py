@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 from eventsim.errors import EventsimError
-from eventsim.formulas.laws import law_of
 from eventsim.measure.blocking import ratio_average
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.entries import dash, unsteady_note
@@ -27,6 +26,7 @@ from eventsim.measure.tangent import Passed, Tangent
 from eventsim.measure.trust import smallest_reach
 from eventsim.record.events import Floats, Kind
 from eventsim.replay.log import AnyLog
+from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.disks import typical_speed
 from eventsim.scene.names import plural
 from eventsim.scene.scene import Scene
@@ -239,7 +239,7 @@ def _no_meaning(log: AnyLog) -> str | None:
         return "kicks set velocities, whatever these were before"
     if not len(log):
         return "nothing meets anything in this run"
-    return law_of(scene.restitution, scene.contact_duration).no_tangent
+    return law_of_scene(scene).no_tangent
 
 
 def _too_few(log: AnyLog, discard: float | None) -> str:

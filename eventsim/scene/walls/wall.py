@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, TypeAlias
@@ -16,12 +16,23 @@ from numpy.typing import NDArray
 from eventsim.errors import SceneError
 from eventsim.formulas.walls.shape import Shape
 from eventsim.scene.disks import Floats
-from eventsim.scene.numbers import LENGTHS, LONGEST, SHORTEST, Point, is_length, is_place, number, point
+from eventsim.scene.manner import Manner, manner_problems
+from eventsim.scene.numbers import (
+    LENGTHS,
+    LONGEST,
+    SHORTEST,
+    Point,
+    is_length,
+    is_place,
+    number,
+    optional_number,
+    point,
+)
 
 Bounds: TypeAlias = tuple[Point, Point]
 """A rectangle: its lower-left and its upper-right corner."""
 
-POINT, POINTS, LENGTH, NAME = "Point", "tuple[Point, ...]", "float", "str | None"
+POINT, POINTS, LENGTH, NAME, OWN = "Point", "tuple[Point, ...]", "float", "str | None", "float | None"
 """The types that a wall's keys may have, as its class writes them."""
 
 
@@ -29,11 +40,12 @@ MOST_PERIODS = 1000
 """Each period that a wall stretches over is one more image to look at."""
 
 
-class Wall(ABC):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wall(Manner, ABC):
     """A wall at rest that reflects every disk.
 
     Its class is a frozen dataclass.  The fields are the keys of its [[wall]] table, each a Point, a tuple[Point, ...] or a float,
-    which is a length; and a name.  One with a default may be left out.
+    which is a length; a name; and what every wall may have of its own (`Manner`).  One with a default may be left out.
 
     Attributes:
         kind: what a scene file calls it.
@@ -43,7 +55,6 @@ class Wall(ABC):
         scatters: whether flights that meet it forget where they come from, as at an arc; False keeps a billiard integrable.
     """
 
-    __slots__ = ()
     kind: ClassVar[str]
     made_of: ClassVar[tuple[type[Shape], ...]]
     holds: ClassVar[bool] = False
@@ -94,6 +105,7 @@ class Wall(ABC):
                 for name, place in places.items():
                     if not is_place(place):
                         yield f".{name} = {list(place)}: must be two finite numbers, at most {LONGEST}"
+        yield from manner_problems(values)
 
     def period_problems(self, axis: int, origin: float, length: float) -> Iterator[str]:
         """Rules along an `axis` that repeats, a `length` from `origin` on; each begins with the key that breaks it."""
@@ -108,13 +120,13 @@ class Wall(ABC):
         yield from broken or self.shape_problems()
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Part(Wall):
     """A wall that is one piece, with one name in the log.
 
     sides: what its left or inner side and its right or outer side are called; empty where disks meet but one.
     """
 
-    __slots__ = ()
     sides: ClassVar[tuple[str, str]] = ("", "")
 
     @abstractmethod
@@ -151,13 +163,13 @@ class Part(Wall):
 
 
 def keys_of(kind: type[Wall]) -> dict[str, str]:
-    """The keys of the [[wall]] table of a kind, with the types that the class writes."""
-    return {item.name: str(item.type) for item in fields(kind)}  # type: ignore[arg-type]  # every class of walls is a dataclass
+    """The keys of the [[wall]] table of a kind, with the types that the class writes; what all have, last."""
+    return {item.name: str(item.type) for item in sorted(fields(kind), key=lambda item: item.kw_only is True)}
 
 
 def optional_keys(kind: type[Wall]) -> frozenset[str]:
     """Those of them that may be left out."""
-    return frozenset(item.name for item in fields(kind) if item.default is not MISSING)  # type: ignore[arg-type]  # as above
+    return frozenset(item.name for item in fields(kind) if item.default is not MISSING)
 
 
 def shifts(bounds: Bounds, corner: Point, period: Point, reach: float) -> list[Point]:
@@ -195,4 +207,4 @@ def _chain(value: Any, key: str) -> tuple[Point, ...]:
     return tuple(point(p, f"{key}[{i}]") for i, p in enumerate(points))
 
 
-_IN_FLOATS: dict[str, Callable[[Any, str], Any]] = {POINT: point, POINTS: _chain, LENGTH: number}
+_IN_FLOATS: dict[str, Callable[[Any, str], Any]] = {POINT: point, POINTS: _chain, LENGTH: number, OWN: optional_number}

@@ -81,7 +81,7 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float) -> str | N
     if found is None or not _is_told(met, found, mass, least):
         return None
     who = named(met.key, stage)
-    usual = stage.law.pair if met.key[0] == Kind.PAIR else stage.law.wall
+    usual = stage.law.pair if met.key[0] == Kind.PAIR else stage.law.of_wall(met.key[2])
     possible = stage.law.possible(usual, found.approach)
     right = possible[0]
     if found.unbalanced > CLEAR:
