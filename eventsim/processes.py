@@ -1,11 +1,29 @@
-"""Processes that work for another one: they leave Ctrl-C to it, and end where it has ended, however that was."""
+"""Processes that work for another one: they leave Ctrl-C to it, and end where it has ended, however that was.
 
+And how many may work at once.
+"""
+
+import math
 import multiprocessing
 import multiprocessing.connection
 import os
 import signal
 import threading
 import time
+from contextlib import suppress
+from pathlib import Path
+
+QUOTA = Path("/sys/fs/cgroup/cpu.max")
+"""Where Linux tells how many cores a container may use."""
+
+
+def cores() -> float:
+    """How many cores this process may use at once, by its affinity and by the quota of its container."""
+    count = float(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+    with suppress(OSError, ValueError):
+        quota, period = QUOTA.read_text().split()
+        count = min(count, math.inf if quota == "max" else float(quota) / float(period))
+    return count
 
 
 def obey_parent() -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.output import say
-from eventsim.suffixes import LOGS, PART
+from eventsim.cli.source import chosen_scene, is_log
 
 
 @click.command()
@@ -86,7 +84,6 @@ def command(
 
     from eventsim.cli.explain import explanation, page
     from eventsim.cli.needs import needs_of
-    from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import as_json_text
     from eventsim.scene.validate import all_written_out
 
@@ -110,11 +107,6 @@ def command(
             from eventsim.cli.summary import horizon_words
 
             say(f"  horizon: {horizon_words(estimate)}")
-
-
-def is_log(name: str) -> bool:
-    """Whether a name is that of a log file, whole or in the making."""
-    return Path(name.removesuffix(PART)).suffix.lower() in LOGS
 
 
 def check_log(path: str, as_json: bool, quiet: bool) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING
 
 import click
@@ -10,6 +9,7 @@ import click
 from eventsim import suffixes
 from eventsim.cli.options import Whole, json_option, quiet_option, writable
 from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say
+from eventsim.processes import cores
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
@@ -105,7 +105,7 @@ def command(
                 studies=[name for name, asked in (("structure", structure), ("transport", transport)) if asked],
                 engine=engine,
                 out=target,
-                workers=workers or os.cpu_count() or 1,
+                workers=workers or max(1, int(cores())),
                 executor=executor,
                 progress=progress,
                 name=scene,

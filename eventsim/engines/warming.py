@@ -7,16 +7,13 @@ its parent; where it fails, nothing is said, and the run compiles for itself.
 from __future__ import annotations
 
 import atexit
-import math
 import os
 import pickle
 import sys
-from contextlib import suppress
-from pathlib import Path
 from typing import IO
 
 from eventsim.engines.base import Snapshot, Stop
-from eventsim.processes import end_with
+from eventsim.processes import cores, end_with
 from eventsim.scene.stage import Stage
 
 SWITCH = "EVENTSIM_WARM"
@@ -24,9 +21,6 @@ SWITCH = "EVENTSIM_WARM"
 
 PARENT = "EVENTSIM_WARM_PARENT"
 """The variable that tells the process whose child it is."""
-
-QUOTA = Path("/sys/fs/cgroup/cpu.max")
-"""Where Linux tells how many cores a container may use."""
 
 FREE = 2.0
 """Cores that are needed: one for the run, one for the compiler."""
@@ -70,15 +64,6 @@ class Warming:
 def may_warm() -> bool:
     """Whether a second process would take nothing from this one."""
     return os.environ.get(SWITCH, "").strip() != "0" and cores() >= FREE
-
-
-def cores() -> float:
-    """How many cores this process may use at once, by its affinity and by the quota of its container."""
-    count = float(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
-    with suppress(OSError, ValueError):
-        quota, period = QUOTA.read_text().split()
-        count = min(count, math.inf if quota == "max" else float(quota) / float(period))
-    return count
 
 
 def work(job: IO[bytes]) -> None:

@@ -24,7 +24,7 @@ def tables_of_file(path: Path) -> tuple[dict[str, Any], str]:
         SceneError: naming the file.
     """
     text = _text(path)
-    return _tables_of(path, text), text
+    return _whole_tables_of(path, text), text
 
 
 def tables_of_toml(text: str) -> dict[str, Any]:
@@ -33,8 +33,16 @@ def tables_of_toml(text: str) -> dict[str, Any]:
     Raises:
         SceneError: a sentence, the line, a caret, and the line that would be right.
     """
+    return _tables_of(text, ".toml")
+
+
+def _tables_of(text: str, suffix: str) -> dict[str, Any]:
+    """The tables of a text: of JSON, if the suffix says so, else of TOML."""
     try:
-        return tomllib.loads(text)
+        return json.loads(text, object_pairs_hook=_once) if suffix == ".json" else tomllib.loads(text)
+    except json.JSONDecodeError as error:
+        place = f"(at line {error.lineno}, column {error.colno})"
+        raise SceneError(f"is not valid JSON: {error.msg} {place}") from None
     except tomllib.TOMLDecodeError as error:
         from eventsim.scene.slips import problem_of
 
@@ -63,30 +71,17 @@ def _text(path: Path) -> str:
         raise SceneError(f"{path}: is not a text file (UTF-8)") from None
 
 
-def _tables_of(path: Path, text: str) -> dict[str, Any]:
+def _whole_tables_of(path: Path, text: str) -> dict[str, Any]:
     """The tables of a file with this text."""
     try:
-        data = json.loads(text, object_pairs_hook=_once) if path.suffix.lower() == ".json" else tables_of_toml(text)
+        data = _tables_of(text, path.suffix.lower())
+        if not isinstance(data, dict):
+            raise SceneError("must be a JSON object with the keys of a scene")
+        if not is_shallow(data):
+            raise SceneError("is nested too deeply for a scene file")
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
-    except _TwiceError as error:
-        raise SceneError(f"{path}: gives the key {error.args[0]!r} twice in one table") from None
-    except json.JSONDecodeError as error:
-        place = f"(at line {error.lineno}, column {error.colno})"
-        raise SceneError(f"{path}: is not valid JSON: {error.msg} {place}") from None
-    except RecursionError:
-        raise SceneError(f"{path}: is nested too deeply for a scene file") from None
-    except ValueError:  # Python reads no whole number of thousands of digits
-        raise SceneError(f"{path}: holds a number with too many digits") from None
-    if not isinstance(data, dict):
-        raise SceneError(f"{path}: must be a JSON object with the keys of a scene")
-    if not is_shallow(data):
-        raise SceneError(f"{path}: is nested too deeply for a scene file")
     return data
-
-
-class _TwiceError(Exception):
-    """A table of a JSON file has a key more than once; args: the key."""
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -94,6 +89,6 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table: dict[str, Any] = {}
     for key, value in pairs:
         if key in table:
-            raise _TwiceError(key)
+            raise SceneError(f"gives the key {key!r} twice in one table")
         table[key] = value
     return table

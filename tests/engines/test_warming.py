@@ -9,12 +9,14 @@ import time
 import pytest
 from click.testing import CliRunner
 
+from eventsim import processes
 from eventsim.cli import main
-from eventsim.engines import auto, warming
+from eventsim.engines import auto
 from eventsim.engines.auto import COLD, AutoSession, first_engine, reference_seconds
 from eventsim.engines.base import Stop
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.engines.warming import PARENT, SWITCH, Warming, cores, may_warm
+from eventsim.engines.warming import PARENT, SWITCH, Warming, may_warm
+from eventsim.processes import cores
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
 
@@ -101,7 +103,7 @@ def test_cores_are_counted_by_affinity_and_quota_and_can_be_kept(tmp_path, monke
     for text, count in (("max 100000", 4.0), ("150000 100000", 1.5), ("nonsense", 4.0)):
         quota = tmp_path / "cpu.max"
         quota.write_text(text)
-        monkeypatch.setattr(warming, "QUOTA", quota)
+        monkeypatch.setattr(processes, "QUOTA", quota)
         assert (cores(), may_warm()) == (count, count >= 2.0)
     monkeypatch.setenv(SWITCH, "0")
     assert not may_warm()
