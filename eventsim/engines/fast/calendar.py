@@ -213,8 +213,25 @@ def is_tied(m, grid, i, day, screen):
                 flagged = word(m.disks, k * WORDS + PARTNER_COUNT) & COUNTS != 0
                 if not mutual and (shares or flagged or due == time):
                     return True
+            elif _may_hide_another(j, code, grid.posts) and may_tie(due, time, screen):
+                return True
             k = word(m.disks, k * WORDS + NEXT)
     return False
+
+
+@inline
+def _may_hide_another(j, code, posts):
+    """Whether behind a wrap or crossing a contact with disk j may follow at once: posts do not foresee it."""
+    return False if posts is None else j >= 0 and NOTHING < code < 0
+
+
+@inline
+def earliest_floor(grid, now, screen, posts):
+    """The time before which no contact of a flight that goes on is still to come.
+
+    Where posts foresee no contacts, a post that begins another flight may bring one forward by the last bits of its time.
+    """
+    return now if posts is None else 2.0 * now - latest_tie(now, screen)
 
 
 @inline

@@ -58,7 +58,15 @@ def enter(m, grid, rules, i, column, row):
     edge = column == 1 or row == 1 or column == grid.columns or row == grid.rows
     flags = word(m.disks, i * WORDS + FLAGS) & ~EDGE
     store(m.disks, i * WORDS + FLAGS, flags | EDGE if edge else flags)
-    return _occupy(m, grid, rules, i, column, row, edge, m.slots)
+    if _is_sought(grid, i, grid.posts):
+        return _occupy(m, grid, rules, i, column, row, edge, m.slots)
+    return True
+
+
+@inline
+def _is_sought(grid, i, posts):
+    """Whether others look for disk i in its cell; where nothing but posts can be met, only these are in the slots."""
+    return True if posts is None else i < posts
 
 
 @inline
@@ -81,6 +89,8 @@ def _occupy(m, grid, rules, i, column, row, edge, slots):
 @inline
 def leave(m, grid, rules, i):
     """Take disk i out of its cell."""
+    if not _is_sought(grid, i, grid.posts):
+        return
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     depth = depth_of(grid, grid.deep)
     start = slot_of(grid, column, row)
@@ -161,6 +171,7 @@ def grid_of(m, grid, level):
         grid.look_ahead,
         grid.levels,
         int(real(m.levels, k + FIRST)),
+        grid.posts,
     )
 
 

@@ -23,7 +23,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.loop import pointers
 from eventsim.engines.fast.pairs import images, pair_is_due
-from eventsim.engines.fast.predict import corner_slot
+from eventsim.engines.fast.predict import corner_slot, number_sought
 from eventsim.engines.fast.rest import border_contact
 from eventsim.engines.fast.single_disk_events import shape_time
 from eventsim.formulas.crossing import crossing_delay
@@ -107,7 +107,7 @@ def _pair_between(m, rules, i, j, span, x, y, found, times, count):
 def _pairs_of_everyone(m, grid, rules, i, span, found, times, count):
     span_x = 0 if rules.length_x is None else 1
     span_y = 0 if rules.length_y is None else 1
-    for j in range(grid.n):
+    for j in range(number_sought(grid, grid.posts)):
         for kx in range(-span_x, span_x + 1):
             for ky in range(-span_y, span_y + 1):
                 if j != i:

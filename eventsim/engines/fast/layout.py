@@ -129,7 +129,8 @@ class Grid(NamedTuple):
     n: disks.  columns, rows: of cells, without the ring of ghosts.  depth: slots in a cell; deep: None where it is the usual
     one.  low: the corner of the grid; on the open plane its outer cells reach to infinity.  days: buckets, a power of two.
     lanes: eight pairs at a time, or None.  look_ahead: days at which memory is prefetched, or None.  levels: how many grids
-    there are, None for one; first: the first slot of this one, None for 0.
+    there are, None for one; first: the first slot of this one, None for 0.  posts: where nothing but immovable disks at rest can
+    be met, how many there are, in the first places; else None.
     """
 
     n: int
@@ -148,6 +149,7 @@ class Grid(NamedTuple):
     look_ahead: object
     levels: object
     first: object
+    posts: object
 
 
 STATUS_BUDGET, STATUS_LIMIT, STATUS_EVENTS, STATUS_ROWS = 0, 1, 2, 3

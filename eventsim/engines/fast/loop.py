@@ -6,6 +6,7 @@ from eventsim.engines.fast.advance import anchor, place, pulls, speed, wrap
 from eventsim.engines.fast.calendar import (
     NO_DAY,
     bucket,
+    earliest_floor,
     empty_room,
     first,
     is_mutual,
@@ -66,7 +67,7 @@ from eventsim.engines.fast.layout import (
     WRAPS,
     Arrays,
 )
-from eventsim.engines.fast.predict import predict
+from eventsim.engines.fast.predict import predict, predict_post
 from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.engines.fast.sunk import pair_may_be_sunk, wall_may_be_sunk
@@ -157,11 +158,13 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 break
             i = i if k == grid.n else k
         steps += 1
+        floor = now
         code = word(m.disks, i * WORDS + PARTNER)
         if code >= 0:
             if is_stale(m, i):
                 stale += 1
                 take(m, i)
+                floor = earliest_floor(grid, now, rules.tie_screen, grid.posts)
             elif word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS or pair_may_be_sunk(
                 m, rules, i, code, now, rules.sinks
             ):
@@ -169,12 +172,11 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 break
             else:
                 take(m, i)
-                take(m, code)
-                overlap = resolve_pair(m, rules, sums, i, code, now, clock, events, first_slot + events)
+                _take_partner(m, code, grid.posts)
+                overlap = resolve_pair(m, rules, sums, i, code, now, clock, events, first_slot + events, grid.posts)
                 deepest = overlap if overlap > deepest else deepest
                 events += 1
-                predict(m, grid, rules, code, now, now)
-                room, deadline = push_later(m, grid, code, day, room, deadline, grid.look_ahead)
+                room, deadline = _predict_partner(m, grid, rules, code, now, day, room, deadline, grid.posts)
         elif code <= WALL:
             if word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS or wall_may_be_sunk(
                 m, rules, i, code, now, rules.gx, rules.sinks
@@ -187,6 +189,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             events += 1
         else:
             take(m, i)
+            floor = earliest_floor(grid, now, rules.tie_screen, grid.posts)
             if code <= WRAP_RIGHT:
                 wraps += 1
                 wrap(m, rules, i, code, now)
@@ -194,7 +197,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 counts[DISK] = i
                 status = STATUS_FULL
                 break
-        predict(m, grid, rules, i, now, now)
+        predict(m, grid, rules, i, now, floor)
         room, deadline = push_later(m, grid, i, day, room, deadline, grid.look_ahead)
         if word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
             counts[DISK] = i
@@ -212,6 +215,21 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
     counts[STEPS] += steps
     counts[CROSSINGS] += steps - (events - begun) - stale - wraps
     return status
+
+
+@inline
+def _take_partner(m, i, posts):
+    if posts is None:
+        take(m, i)
+
+
+@inline
+def _predict_partner(m, grid, rules, i, now, day, room, deadline, posts):
+    """Predict the second disk of a contact and put it into the calendar; a post stays in it, with nothing ahead."""
+    if posts is not None:
+        return room, deadline
+    predict(m, grid, rules, i, now, now)
+    return push_later(m, grid, i, day, room, deadline, grid.look_ahead)
 
 
 @kernel
@@ -234,8 +252,16 @@ def predict_some(arrays, grid, rules, counts, begin, end, now, floor):
     m = pointers(arrays)
     for i in range(begin, end):
         take(m, i)
-        predict(m, grid, rules, i, now, floor)
+        if _foresees(i, grid.posts):
+            predict(m, grid, rules, i, now, floor)
+        else:
+            predict_post(m, i)
         push(m, grid, i, counts[DAY])
+
+
+@inline
+def _foresees(i, posts):
+    return True if posts is None else i >= posts
 
 
 @kernel

@@ -14,11 +14,11 @@ from eventsim.engines.fast import layout
 from eventsim.engines.fast.compiled import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
-from eventsim.engines.fast.plan import ORDERED_DISKS, Grids, Sizes, along_a_curve, day_length, shortest_day
+from eventsim.engines.fast.plan import Grids, Sizes, day_length, in_memory, shortest_day
 from eventsim.engines.fast.rules import features_of, images_of, rules_of, shares_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.clock import window_length
-from eventsim.formulas.doubt import screen_in
+from eventsim.formulas.doubt import latest_tie, screen_in
 from eventsim.formulas.expansion import two_sum
 from eventsim.record.events import ROW, Floats, Rows
 from eventsim.scene.stage import Stage
@@ -93,7 +93,7 @@ class Machine:
         plain = stage.mass is None or not np.any(np.isinf(stage.mass) | (stage.mass == 0.0))
         wanted = lanes_work() if lanes is None else lanes
         self._lanes = 8 if wanted and beside and plain else None
-        order = along_a_curve(stage.x, stage.y) if stage.n >= ORDERED_DISKS else np.arange(stage.n)
+        order = in_memory(stage)
         self.state = FastState(stage, order, self.counts)
         self.rules = rules_of(stage)
         self._features = features_of(stage)
@@ -256,7 +256,7 @@ class Machine:
             self.grids.deepen(full)
         self.due[:] = now
         schedule(self.arrays, self.grid, self.counts, now)
-        self._predict(0, state.n, now)
+        self._predict(0, state.n, self._floor)
         self.schedule()
 
     def predict_one(self, i: int, floor: float) -> None:
@@ -288,7 +288,13 @@ class Machine:
 
     def _renew(self, stale: NDArray[np.bool_]) -> None:
         for i in np.flatnonzero(stale).tolist():
-            self._predict(i, i + 1, self.state.now)
+            self._predict(i, i + 1, self._floor)
+
+    @property
+    def _floor(self) -> float:
+        """As `calendar.earliest_floor`."""
+        now: float = self.state.now
+        return now if self.grids.posts is None else 2.0 * now - float(latest_tie(now, self.rules.tie_screen))
 
     def _predict(self, begin: int, end: int, floor: float) -> None:
         predict_some(self.arrays, self.grid, self.rules, self.counts, begin, end, self.state.now, floor)

@@ -196,6 +196,42 @@ def day_length(due: Floats, now: float, end: float, n: int) -> float:
     return float(max((SHARE_OF_MANY if n >= MANY_DISKS else SHARE) * share, least))
 
 
+def posts_of(stage: Stage) -> NDArray[np.bool_] | None:
+    """(n,) which disks are immovable, where nothing else can be met: tracers and points do not meet each other; None elsewhere.
+
+    Not under gravity: whether a falling disk grazes a post is not exact, so it may depend on when the post was met last.  Not
+    where a post reaches half a period, so that two of its images can be equally near.
+    """
+    posts = np.full(stage.n, False) if stage.mass is None else np.isinf(stage.mass)
+    alone = ~posts
+    tracers = stage.mass is not None and not np.any(stage.mass[alone])
+    if stage.gravity is not None or not (tracers or alone.sum() <= 1 or not stage.radius[alone].any()):
+        return None
+    reach = float(stage.radius[posts].max(initial=0.0) + stage.radius[alone].max(initial=0.0)) * MARGIN
+    clear = all(length is None or reach < 0.5 * length for length in stage.period)
+    return posts if clear else None
+
+
+def in_memory(stage: Stage) -> NDArray[np.int64]:
+    """The disks in the order in which memory holds them: neighbours near each other, and posts before what meets only them."""
+    order = along_a_curve(stage.x, stage.y) if stage.n >= ORDERED_DISKS else np.arange(stage.n)
+    posts = posts_of(stage)
+    return order if posts is None else order[np.argsort(~posts[order], kind="stable")]
+
+
+def cells_of_posts(stage: Stage, x: Floats, y: Floats, posts: NDArray[np.bool_]) -> tuple[Sizes, ...] | None:
+    """The cells for posts at (x, y), which alone are in the slots; None where there are few, or a period is too short."""
+    number = int(posts.sum())
+    if number < FEW_DISKS:
+        return None
+    low, size = _around(x[posts], y[posts]) if stage.size is None else ((0.0, 0.0), stage.size)
+    reach = float(stage.radius[posts].max() + stage.radius[~posts].max(initial=0.0)) * MARGIN
+    wide = max(reach, 1e-6 * max(size), math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(number))
+    columns, rows = (max(1, int(length / wide)) for length in size)
+    sizes = (Sizes(low, columns, rows, (size[0] / columns, size[1] / rows), DEEP),)
+    return sizes if _images_are_clear(stage, list(sizes)) else None
+
+
 FEW_DISKS = 24
 """Below it, looking at all disks is as fast as cells."""
 
@@ -214,6 +250,8 @@ class Grids:
         self._depths: dict[int, int] = {}
         self._given: tuple[Sizes, ...] | None = None
         self._chooses = isinstance(wanted, str) and stage.n >= FEW_DISKS
+        self._still = posts_of(stage)
+        self.posts: int | None = None
         if not (wanted is None or isinstance(wanted, str)):
             self._given = (wanted,) if isinstance(wanted, Sizes) else wanted
         self._classes = classes_of(stage) if self._chooses else (float(stage.radius.max()),)
@@ -221,8 +259,14 @@ class Grids:
 
     def choose(self, motion: Motion) -> None:
         """Choose the cells for the disks where they are."""
+        still = self._still
+        self.posts = None
+        if still is not None and not (motion.vx[still].any() or motion.vy[still].any()):
+            self.posts = int(still.sum())
         if self._given is not None:
             self.sizes = self._given
+        elif still is not None and self.posts is not None:
+            self.sizes = cells_of_posts(self._stage, motion.x, motion.y, still) if self._chooses else None
         elif self._chooses:
             self.sizes = cell_sizes(self._stage, motion.x, motion.y, self._classes, self._depths)
             if self.sizes is None and len(self._classes) > 1:
@@ -289,6 +333,7 @@ class Grids:
             LOOK_AHEAD if n >= MANY_DISKS and self.sizes is not None else None,
             len(self.sizes) if self.sizes is not None and several else None,
             0 if several else None,
+            self.posts,
         )
 
 

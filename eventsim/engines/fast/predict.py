@@ -20,6 +20,7 @@ from eventsim.engines.fast.layout import (
     LOOK,
     MET,
     NOBODY,
+    NOTHING,
     PARTNER,
     PARTNER_COUNT,
     RADIUS,
@@ -39,6 +40,17 @@ from eventsim.engines.fast.rest import is_for_rules, may_be_spent
 from eventsim.engines.fast.single_disk_events import border_events, crossing, earliest_at_shapes
 from eventsim.formulas.doubt import may_tie
 from eventsim.formulas.real import NEVER
+
+BEYOND = 2.0**-20
+"""How far beyond a boundary, as a part of the period, nothing is met before a wrap."""
+
+
+@inline
+def predict_post(m, i):
+    """Schedule nothing for disk i, which others foresee contacts with."""
+    store(m.disks, i * REALS + DUE, NEVER)
+    store(m.disks, i * WORDS + PARTNER, NOTHING)
+    store(m.disks, i * WORDS + PARTNER_COUNT, 0)
 
 
 @inline
@@ -95,13 +107,40 @@ def contacts_of_everyone(m, grid, rules, i, now, floor, x, y, time, code, shared
     """The same where there are no cells: all disks, in all images."""
     span_x = 0 if rules.length_x is None else 1
     span_y = 0 if rules.length_y is None else 1
-    for j in range(grid.n):
+    for j in range(number_sought(grid, grid.posts)):
         if j == i:
             continue
         for kx in range(-span_x, span_x + 1):
             for ky in range(-span_y, span_y + 1):
-                time, code, shared = _or_with(m, rules, i, j, kx, ky, floor, time, code, shared)
+                if _is_in_reach(m, rules, i, j, kx, ky, grid.posts):
+                    time, code, shared = _or_with(m, rules, i, j, kx, ky, floor, time, code, shared)
     return time, code, shared
+
+
+@inline
+def number_sought(grid, posts):
+    """The disks in the first so many places can be met."""
+    return grid.n if posts is None else posts
+
+
+@inline
+def _is_in_reach(m, rules, i, j, kx, ky, posts):
+    """Whether an image of disk j may be met before disk i leaves the domain; told where it is a post."""
+    if posts is None:
+        return True
+    f, g = i * REALS, j * REALS
+    reach = real(m.disks, f + RADIUS) + real(m.disks, g + RADIUS)
+    beyond_x = _beyond(real(m.disks, g + X), kx, rules.length_x, reach)
+    return not beyond_x and not _beyond(real(m.disks, g + Y), ky, rules.length_y, reach)
+
+
+@inline
+def _beyond(x, k, length, reach):
+    """Whether all that is within reach of an image of x is beyond a period, and not only by rounding."""
+    if length is None:
+        return False
+    there, room = x + k * length, reach + BEYOND * length
+    return there + room < 0.0 or there - room > length
 
 
 @inline

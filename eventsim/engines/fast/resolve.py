@@ -185,11 +185,19 @@ def _in_order(m, i, j, mass):
 
 
 @inline
-def _image_met(m, rules, a, b, t, dx, dy, slots):
-    """The image in which two disks that are (dx, dy) apart meet at time t."""
+def _is_clear(slots, posts):
+    """None where several images of a disk can be equally near."""
+    if slots is None and posts is None:
+        return None
+    return 1
+
+
+@inline
+def _image_met(m, rules, a, b, t, dx, dy, clear):
+    """The image in which two disks that are (dx, dy) apart meet at time t; clear: it is the nearest one."""
     if rules.length_x is None and rules.length_y is None:
         return 0, 0
-    if slots is None:
+    if clear is None:
         return _image_due(m, rules, a, b, t)
     return image(dx, rules.length_x), image(dy, rules.length_y)
 
@@ -207,13 +215,13 @@ def _image_due(m, rules, a, b, t):
 
 
 @inline
-def resolve_pair(m, rules, sums, i, j, t, clock, number, slot):
+def resolve_pair(m, rules, sums, i, j, t, clock, number, slot, posts):
     """Resolve the contact of disks i and j at time t; its overlap in reaches."""
     a, b = _in_order(m, i, j, m.mass)
     xa, ya = place(m, rules, a, t)
     xb, yb = place(m, rules, b, t)
     dx, dy = xa - xb, ya - yb
-    kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
+    kx, ky = _image_met(m, rules, a, b, t, dx, dy, _is_clear(m.slots, posts))
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     still = _are_still(m, rules, a, b, t, kx, ky, rules.still)
     ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)

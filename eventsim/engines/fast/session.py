@@ -249,6 +249,8 @@ class FastSession(ExactSession):
 
     def _kick(self, i: int, vx: float, vy: float) -> None:
         self._resolver.kick(i, vx, vy)
+        if int(self.state.place_of[i]) < (self._machine.grids.posts or 0):  # it moves from now on
+            self._predict_afresh()
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
