@@ -14,6 +14,9 @@ from eventsim.formulas.real import Real
 from eventsim.formulas.rest import NOT_LAST, SUPPORTED, Support, has_struck, held_by
 from eventsim.scene.sides import Sides
 
+LONG_AGO = -1e300
+"""The time of the last contact of a disk that has met nothing, but has been kicked."""
+
 Met: TypeAlias = tuple[tuple[int, int, int], ...]
 """Whom a disk met last: (disk, image kx, ky), or (-1 - number of the surface, side, STRUCK, SUPPORTED or LEFT); several after a
 joint contact."""
@@ -24,11 +27,12 @@ class ExactState(ABC):
 
     t, x, y, vx, vy: the anchor of each flight, t a remainder in the present epoch.  count: the invalidation counts.
     wraps_x, wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was
-    (a remainder; -inf: never).  at_once: its contacts at that very time, to see that an instant does not end.  number: makes
-    a number of the engine's type from a float.  low_parts: whether velocities carry what their rounding at a contact left, in
-    low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.  gravity_x, gravity_y: the
-    acceleration of each disk, None without gravity.  sides: of walls that points are on, None where no disk is one.  window: the
-    exponent of its length; window_end: where the window ends, later where it stayed open because it had no row (opened).
+    (a remainder; -inf: never, LONG_AGO: never, but it was kicked).  at_once: its contacts at that very time, to see that an
+    instant does not end.  number: makes a number of the engine's type from a float.  low_parts: whether velocities carry what
+    their rounding at a contact left, in low_vx and low_vy, which are empty otherwise; numbers of another type than float need
+    none.  gravity_x, gravity_y: the acceleration of each disk, None without gravity.  sides: of walls that points are on, None
+    where no disk is one.  window: the exponent of its length; window_end: where the window ends, later where it stayed open
+    because it had no row (opened).
     """
 
     n: int
@@ -153,6 +157,15 @@ class ExactState(ABC):
         """How long before its flight began disk i had its last contact."""
         begun, struck = self.t[i], self.contact_time[i]
         return 0.0 if begun is struck else begun - struck
+
+    def is_as_at_start(self, i: int) -> bool:
+        """Whether nothing has changed the velocity of disk i, but gravity: so it flies as the scene says."""
+        return bool(self.contact_time[i] == -float("inf"))
+
+    def note_kick(self, i: int) -> None:
+        """Remember that disk i does not fly as at the start any more."""
+        if self.is_as_at_start(i):
+            self.contact_time[i] = LONG_AGO
 
     def begins_on_contact(self, i: int) -> bool:
         """Whether the present flight of disk i began at its last contact."""

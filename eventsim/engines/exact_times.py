@@ -1,29 +1,27 @@
-"""When contacts come, exactly: as roots of quadratics in rationals, from the flights and the numbers of the scene."""
+"""When contacts come, exactly: as roots of quadratics in rationals, from the flights and the numbers of the scene.
+
+A disk that nothing has struck yet flies as the scene says, whatever wraps and turnovers of the clock have rounded since.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
-from typing import TypeAlias
 
-from eventsim.formulas.real import Acceleration
+from eventsim.engines.exact_state import ExactState
 from eventsim.formulas.rest import STRUCK
 from eventsim.formulas.roots import Line, Moment, falls_to, less_number, order_of, rational, reaches
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.scene.stage import Stage
 
-Flight: TypeAlias = tuple[float, float, float, float, float, Acceleration, Acceleration]
-"""A free flight: t, x, y, vx, vy, and its acceleration."""
-
 ZERO = Fraction(0)
 
 
 class ExactTimes:
-    """The exact times of contacts in one stage; flight(i): the present flight of disk i."""
+    """The exact times of contacts in one stage, in the state of a run."""
 
-    def __init__(self, stage: Stage, flight: Callable[[int], Flight]) -> None:
+    def __init__(self, stage: Stage, state: ExactState) -> None:
         self._stage = stage
-        self._flight = flight
+        self._state = state
 
     def of(self, a: int, b: int, image: tuple[int, int], time: float) -> Moment:
         """The exact time of a contact whose float time is `time`; that itself where it is no root of a quadratic.
@@ -31,38 +29,55 @@ class ExactTimes:
         b: the other disk, image: of it, (kx, ky); or -1 - place of a wall, and (side, how).  No root: a parabola against a
         round thing, coming to rest, sliding over the end of a wall.
         """
-        flights = [self._flight(i) for i in ((a,) if b < 0 else (a, b))]
+        disks = (a,) if b < 0 else (a, b)
         if b >= 0:
             reach = Fraction(float(self._stage.radius[a])) + Fraction(float(self._stage.radius[b]))
-            moment = self._of_pair(image, reach, flights)
+            moment = self._of_pair(image, reach, a, b)
         else:
-            moment = self._of_wall(-1 - b, image, float(self._stage.radius[a]), flights[0])
+            moment = self._of_wall(-1 - b, image, float(self._stage.radius[a]), a)
         if moment is None:
             return rational(time)
-        begin = rational(max(flight[0] for flight in flights))
+        begin = rational(max(self._state.t[i] for i in disks))
         return begin if order_of(moment, begin) < 0 else moment  # an overlap is due now
 
-    def _of_pair(self, image: tuple[int, int], reach: Fraction, flights: list[Flight]) -> Moment | None:
+    def _of_pair(self, image: tuple[int, int], reach: Fraction, a: int, b: int) -> Moment | None:
         apart: list[Line] = []
-        for one, other, k, length in zip(*map(_lines, flights), image, self._stage.period, strict=True):
+        for one, other, k, length in zip(self._lines(a), self._lines(b), image, self._stage.period, strict=True):
             line = _less(one, other)
             apart.append(less_number(line, k * length) if k and length is not None else line)
         return reaches(apart[0], apart[1], reach, -1)
 
-    def _of_wall(self, number: int, image: tuple[int, int], radius: float, flight: Flight) -> Moment | None:
+    def _of_wall(self, number: int, image: tuple[int, int], radius: float, i: int) -> Moment | None:
         stage, (side, how) = self._stage, image
         if how != STRUCK:
             return None
-        lines = _lines(flight)
+        lines = self._lines(i)
         surface = stage.surfaces[number]
         if not isinstance(surface, Boundary):
             return surface.shape.moment(*lines, side, radius)
         return falls_to(lines[surface.axis], surface.target(radius), side)
 
+    def _lines(self, i: int) -> tuple[Line, Line]:
+        """The flight of disk i in the present epoch."""
+        state, stage = self._state, self._stage
+        gx, gy = state.gravity_x[i], state.gravity_y[i]
+        if not state.is_as_at_start(i):
+            t = Fraction(state.t[i])
+            return _line(state.x[i], state.vx[i], gx, t), _line(state.y[i], state.vy[i], gy, t)
+        begun = -state.epoch * Fraction(state.epoch_length)
+        lines = (
+            _line(float(stage.x[i]), float(stage.vx[i]), gx, begun),
+            _line(float(stage.y[i]), float(stage.vy[i]), gy, begun),
+        )
+        wraps = state.wraps_x[i], state.wraps_y[i]
+        return (
+            _behind_wraps(lines[0], wraps[0], stage.period[0]),
+            _behind_wraps(lines[1], wraps[1], stage.period[1]),
+        )
 
-def _lines(flight: Flight) -> tuple[Line, Line]:
-    t, x, y, vx, vy, gx, gy = flight
-    return _line(x, vx, gx, Fraction(t)), _line(y, vy, gy, Fraction(t))
+
+def _behind_wraps(line: Line, wraps: int, length: float | None) -> Line:
+    return line if length is None else less_number(line, int(wraps) * Fraction(length))
 
 
 def _line(x: float, v: float, g: float | None, t: Fraction) -> Line:

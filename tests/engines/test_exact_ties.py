@@ -66,3 +66,50 @@ def test_which_wall_of_a_corner_a_disk_meets_first_is_exact(engine):
         times = [(gap - mpf(0.1)) / (gap / 2) for gap in gaps]
         first = f"corner.{int(times[1] < times[0])}"
         assert run.log.wall_name[0] == first or times[0] == times[1]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    ("places", "velocities", "radius"),
+    [
+        pytest.param(
+            [(63.25, 1.15625), (0.03125, 5.5625), (58.21875, 0.375)],
+            [(-0.1875, 0.1484375), (0.1171875, -0.015625), (0.1328125, -0.15625)],
+            2.125,
+            id="behind it",
+        ),
+        pytest.param(
+            [(63.78515625, 0.302734375), (0.01953125, 0.541015625), (0.013671875, 0.03125)],
+            [(-0.21875, -0.84375), (-0.96875, -0.65625), (-0.875, -0.5)],
+            0.15625,
+            id="where it is passed",
+        ),
+    ],
+)
+def test_a_tie_is_seen_although_a_disk_passes_a_periodic_border_before(places, velocities, radius, engine):
+    """Places of the starting floats, not of the flight behind the border, which begins at a rounded time."""
+    scene = es.Scene(es.Disks(places, velocities, radius), es.Periodic((64.0, 64.0)))
+    assert is_cluster(es.simulate(scene, events=2, engine=engine, log=True))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_turn_of_the_clock_does_not_decide_which_wall_comes_first(engine):
+    """Aimed at the joint of `top` and a segment; `top` comes 8e-18 earlier, the turn of the clock rounds places by 1e-16."""
+    disk = es.Disks([(1.4190531704169334, 2.6698699743267973)], [(-0.48237677404447593, 0.8759638393577921)], 1e-18)
+    walls = [es.Segment((0.0, 2.667109388752594), (1.2372567883696897, 3.0))]
+    run = es.simulate(es.Scene(disk, es.Box((4.0, 3.0)), walls), events=1, engine=engine, log=True)
+    assert run.log.wall_name[0] == "top"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_kick_ends_what_the_starting_floats_say(engine):
+    """Without a kick disk 0 meets both others at once; it is stopped and sent on its way again, too late for one of them."""
+    places, velocities = [(8.0, 8.0), (11.0, 9.0), (11.0, 7.0)], [(1.0, 0.0), (0.0, 0.0), (0.0, 0.0)]
+    scene = es.Scene(es.Disks(places, velocities, 0.75), es.Periodic((64.0, 64.0)))
+    assert is_cluster(es.simulate(scene, events=2, engine=engine, log=True))
+    sim = es.Simulation(scene, engine=engine)
+    sim.advance_to(0.5)
+    sim.set_velocity(1, (0.0, 1e-13))
+    sim.set_velocity(0, (1.0, 0.0))
+    sim.advance_to(3.0)
+    assert sim.log.joint.tolist()[2:4] == [-1, -1]

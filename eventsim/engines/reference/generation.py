@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from eventsim.engines.exact_state import ExactState
-from eventsim.engines.exact_times import ExactTimes, Flight
+from eventsim.engines.exact_times import ExactTimes
 from eventsim.engines.reference.calendar import Event
-from eventsim.formulas.crossing import crossing_delay
-from eventsim.formulas.real import NEVER
 from eventsim.formulas.roots import order_of
 from eventsim.scene.stage import Stage
 
@@ -18,9 +16,7 @@ class Ties:
     """
 
     def __init__(self, stage: Stage, state: ExactState) -> None:
-        self._stage = stage
-        self._state = state
-        self._moments = ExactTimes(stage, self._flight)
+        self._moments = ExactTimes(stage, state)
 
     def settle(self, near: list[Event]) -> list[Event]:
         """Of contacts within the screen: those that are to be resolved in one instant, in the order of rows.
@@ -29,7 +25,7 @@ class Ties:
         """
         first = min(event.time for event in near)
         chosen: list[Event] = []
-        for component in components([event for event in near if event.time == first or not self._is_cut_short(event)]):
+        for component in components(near):
             if min(event.time for event in component) == first:
                 chosen += component if len(component) == 1 else self._earliest(component)
         return sorted(chosen, key=lambda event: (row_order(event), event.image))
@@ -41,22 +37,6 @@ class Ties:
             if order_of(moment, first) < 0:
                 first = moment
         return [event for event, moment in zip(component, moments, strict=True) if order_of(moment, first) == 0]
-
-    def _is_cut_short(self, event: Event) -> bool:
-        """Whether one of the disks passes a periodic boundary before the contact, which is then predicted anew."""
-        return any(self._next_wrap(i) <= event.time for i in disks_of(event))
-
-    def _next_wrap(self, i: int) -> float:
-        t, x, y, u, w, gx, gy = self._flight(i)
-        due = NEVER
-        for (at, v, g), length in zip(((x, u, gx), (y, w, gy)), self._stage.period, strict=True):
-            if length is not None:
-                due = min(due, crossing_delay(at, v, g, 0.0, 1.0), crossing_delay(at, v, g, length, -1.0))
-        return t + due
-
-    def _flight(self, i: int) -> Flight:
-        s = self._state
-        return s.t[i], s.x[i], s.y[i], s.vx[i], s.vy[i], s.gravity_x[i], s.gravity_y[i]
 
 
 def disks_of(event: Event) -> list[int]:

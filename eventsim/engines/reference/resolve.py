@@ -83,6 +83,7 @@ class Resolver:
         state.keep_sides(i, t, (x, y), (vx, vy))
         state.anchor(i, t, x, y, vx, vy)
         state.forget_low_parts(i)
+        state.note_kick(i)
         state.meet(i, ())
         strength = self._ledger.book_kick(i, vx - before[0], vy - before[1])
         self._counters.kicks += 1

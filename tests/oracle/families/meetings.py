@@ -91,29 +91,31 @@ def _starts(rng: np.random.Generator) -> Start:
             return start
 
 
-def _exactly(x: float, way: float, shift: float, size: float) -> float | None:
-    """(x + shift) mod size; None where a bit is lost, or the way from there passes a border, where places are rounded."""
+def _exactly(x: float, shift: float, size: float) -> float | None:
+    """(x + shift) mod size; None where a bit is lost."""
     moved = (Fraction(x) + Fraction(shift)) % Fraction(size)
-    stays = Fraction(float(moved)) == moved and 0.0 < float(moved) < size and 0.0 < float(moved) + way < size
-    return float(moved) if stays else None
+    return float(moved) if Fraction(float(moved)) == moved and 0.0 < float(moved) < size else None
 
 
 def _placed(start: Start, shift: tuple[float, float], size: float) -> list[tuple[float | None, ...]]:
     """The disks of a start in a box."""
-    return [
-        tuple(_exactly(x, v * start.t, s, size) for x, v, s in zip(place, velocity, shift, strict=True))
-        for place, velocity in zip(start.places, start.velocities, strict=True)
-    ]
+    return [tuple(_exactly(x, s, size) for x, s in zip(place, shift, strict=True)) for place in start.places]
 
 
 def borders(rng: np.random.Generator) -> Case:
-    """A tie of pairs anywhere in a periodic box or channel, mostly of images across its borders."""
+    """A tie of pairs anywhere in a periodic box or channel, mostly of images across its borders, some behind wraps."""
     while True:
         start, size = _starts(rng), 64.0
         shift = [float(rng.choice([0.0, 0.0, 32.0])) + dyadic(rng, -2, 2, 2) for _ in range(2)]
         channel = rng.random() < 0.3
         if channel:
             shift[1] = 32.0
+        if rng.random() < 0.6:  # one that moves passes a border on its way
+            way = float(rng.uniform(0.0, 1.0))
+            k = int(rng.integers(3))
+            axis = 0 if channel else int(rng.integers(2))
+            passes = start.places[k][axis] + start.velocities[k][axis] * start.t * way
+            shift[axis] = -float(np.round(passes * 2.0**9) / 2.0**9)
         places = _placed(start, (shift[0], shift[1]), size)
         if any(x is None for place in places for x in place):
             continue
