@@ -49,6 +49,7 @@ class Law:
         pair, wall: the usual restitution between disks, and at walls.
         duration: how long a contact matters to the next one of its disks; None where it does not.
         walls: the usual restitution of each wall, by its number in the log; None where `wall` is that of all.
+        pairs: that of each two species, by their numbers; None where `pair` is that of all.
         by_speed: whether it looks at the speed of approach.  Then contacts of one instant that share disks are resolved only
             where each is what it would be alone, and stepped engines do not know it.
     """
@@ -57,15 +58,21 @@ class Law:
     wall: float
     duration: float | None
     walls: tuple[float, ...] | None = field(default=None, kw_only=True)
+    pairs: tuple[tuple[float, ...], ...] | None = field(default=None, kw_only=True)
     by_speed: ClassVar[bool] = False
 
     def of_wall(self, wall: int) -> float:
         """The usual restitution at a wall, by its number in the log."""
         return self.wall if self.walls is None else self.walls[wall]
 
+    def of_pair(self, one: int, other: int) -> float:
+        """The usual restitution between disks of two species."""
+        return self.pair if self.pairs is None else self.pairs[one][other]
+
     def shares(self, pairs: bool = True, walls: bool = True) -> tuple[float, ...]:
         """All usual restitutions: those between disks, those at walls."""
-        return (*((self.pair,) if pairs else ()), *((self.walls or (self.wall,)) if walls else ()))
+        between = ((self.pair,),) if self.pairs is None else self.pairs
+        return (*(share for row in between for share in row if pairs), *((self.walls or (self.wall,)) if walls else ()))
 
     def numbers(self) -> Numbers | None:
         """What makes its contacts other than usual ones; None where nothing does."""
@@ -103,7 +110,9 @@ class Law:
     @property
     def beyond_steps(self) -> str | None:
         """What of it stepped engines do not know; None where they do: `pair` and `wall` are all."""
-        return self.name() if self.by_speed else "restitution of single walls" if self.walls is not None else None
+        if self.by_speed:
+            return self.name()
+        return "restitution of single walls or species" if self.walls or self.pairs else None
 
     @property
     def no_tangent(self) -> str | None:
@@ -116,8 +125,8 @@ class Law:
 
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts; number: how it writes one."""
-        walls = [number(share) for share in dict.fromkeys(self.walls or (self.wall,))]
-        return f"restitution {number(self.pair)} between disks, {' or '.join(walls)} at walls: energy is lost"
+        pairs, walls = (" or ".join(map(number, dict.fromkeys(self.shares(*kind)))) for kind in ((True, False), (False, True)))
+        return f"restitution {pairs} between disks, {walls} at walls: energy is lost"
 
     def remedy(self) -> str:
         """What is left to do about contacts that pile up."""
@@ -218,10 +227,16 @@ LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact, Yielding)
 """The table of laws."""
 
 
-def law_of(restitution: Shares | None, duration: float | None, walls: tuple[float, ...] | None = None) -> Law:
-    """The law of a scene with these keys: its restitution, None where it is elastic, a contact duration, those of walls."""
+def law_of(
+    restitution: Shares | None,
+    duration: float | None,
+    walls: tuple[float, ...] | None = None,
+    pairs: tuple[tuple[float, ...], ...] | None = None,
+) -> Law:
+    """The law of a scene: its restitution, None where it is elastic; a contact duration; the shares of walls and of species."""
     if restitution is None:
         return Elastic(1.0, 1.0, None)
     if restitution.yield_speed is not None:
-        return Yielding(restitution.pair, restitution.wall, duration, restitution.yield_speed, walls=walls)
-    return (Inelastic if duration is None else TimeOfContact)(restitution.pair, restitution.wall, duration, walls=walls)
+        return Yielding(restitution.pair, restitution.wall, duration, restitution.yield_speed, walls=walls, pairs=pairs)
+    kind = Inelastic if duration is None else TimeOfContact
+    return kind(restitution.pair, restitution.wall, duration, walls=walls, pairs=pairs)

@@ -23,6 +23,7 @@ from eventsim.patience import patience
 from eventsim.record.events import State
 from eventsim.replay.replay import Replay
 from eventsim.scene import Box, Disks, Scene, Segment
+from eventsim.scene.disks import join
 from eventsim.show.player.pack import PackedColumn, scene_description, stage_description, start_columns
 
 if TYPE_CHECKING:
@@ -134,12 +135,8 @@ class World:
         """Begin anew from the state at the time that is shown, with one more disk, at rest and of mass 1."""
         async with self._changing():
             state, scene = await self._state_at(message.time), self.tracks[0].scene
-            disks = Disks(
-                np.vstack([state.position, message.position]),
-                np.vstack([state.velocity, (0.0, 0.0)]),
-                np.append(scene.disks.radius, message.radius),
-                np.append(scene.disks.mass, 1.0),
-            )
+            moved = scene.disks.begun_at(state.position, state.velocity)
+            disks = join([moved, Disks([message.position], radius=message.radius)])
             await self._begin(scene.begun_at(state.time, disks), self._rate, "disk", self.speed)
 
     async def add_wall(self, message: AddWall) -> None:
@@ -193,7 +190,7 @@ class World:
     def _scene_from(self, state: State, domain: Box | None = None) -> Scene:
         """Return the scene with another start; its disks keep radius and mass."""
         scene = self.tracks[0].scene
-        disks = Disks(state.position, state.velocity, scene.disks.radius, scene.disks.mass)
+        disks = scene.disks.begun_at(state.position, state.velocity)
         return scene.begun_at(state.time, disks, domain)
 
     async def _state_at(self, time: float, disk: int = 0) -> State:

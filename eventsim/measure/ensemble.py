@@ -38,11 +38,12 @@ LOOKED_FROM = 32
 
 
 class Species(NamedTuple):
-    """Disks of one radius and one mass; NaN where several kinds are measured together."""
+    """Disks of one radius, one mass and one name; NaN where several kinds are measured together."""
 
     radius: float
     mass: float
     number: int
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -365,7 +366,7 @@ def ensemble_of(scene: Scene, kicked: bool = False) -> Ensemble:
     found = species_among(disks.select(np.flatnonzero(counted)))
     species_of = np.full(len(disks), -1, dtype=np.int64)
     if len(found.count) <= MOST_SPECIES:
-        species = list(map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist()))
+        species = list(map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist(), found.name.tolist()))
         species_of[counted] = found.of
     else:
         species = [Species(math.nan, math.nan, int(counted.sum()))]

@@ -25,6 +25,7 @@ def state_columns(scene: Scene, states: Sequence[State]) -> dict[str, Column]:
     count = len(scene.disks)
     position = np.concatenate([np.empty((0, 2)), *(state.position for state in states)])
     velocity = np.concatenate([np.empty((0, 2)), *(state.velocity for state in states)])
+    species = scene.disks.species
     return {
         "time": np.repeat(np.array([state.time for state in states]), count),
         "disk": np.tile(np.arange(count), len(states)),
@@ -34,6 +35,7 @@ def state_columns(scene: Scene, states: Sequence[State]) -> dict[str, Column]:
         "vy": velocity[:, 1],
         "radius": np.tile(scene.disks.radius, len(states)),
         "mass": np.tile(scene.disks.mass, len(states)),
+        **({} if species is None else {"species": np.tile(species, len(states))}),
     }
 
 
@@ -63,5 +65,5 @@ def write_states(
 def write_csv(target: IO[bytes], columns: dict[str, Column]) -> None:
     """Write columns as CSV with a header row; used for files and for standard output."""
     target.write((",".join(columns) + "\n").encode())
-    words = (map(repr, column.tolist()) for column in columns.values())
+    words = (map(str if column.dtype.kind == "U" else repr, column.tolist()) for column in columns.values())
     target.writelines(f"{','.join(line)}\n".encode() for line in zip(*words, strict=True))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eventsim.formulas.laws import Law, law_of
+from eventsim.scene.disks import named_species
 from eventsim.scene.domain import Domain, hard_sides
 from eventsim.scene.manner import Manner, Side
 from eventsim.scene.restitution import Restitution
@@ -14,12 +15,17 @@ from eventsim.scene.walls import Wall
 
 def law_of_scene(scene: Scene) -> Law:
     """Return the law of a scene's contacts."""
-    own = manners_of(scene.domain, scene.walls)
-    if all(one.restitution is None for one in own):
-        return law_of(scene.restitution, scene.contact_duration)
-    usual = scene.restitution or Restitution()
-    walls = tuple(usual.wall if one.restitution is None else one.restitution for one in own)
-    return law_of(usual, scene.contact_duration, walls)
+    own, usual = manners_of(scene.domain, scene.walls), scene.restitution
+    walls = None
+    if any(one.restitution is not None for one in own):
+        usual = usual or Restitution()
+        walls = tuple(usual.wall if one.restitution is None else one.restitution for one in own)
+    if usual is None or not usual.pairs:
+        return law_of(usual, scene.contact_duration, walls)
+    names, _ = named_species(scene.disks)
+    given = {pair: share for a, b, share in usual.pairs for pair in ((a, b), (b, a))}
+    pairs = tuple(tuple(given.get((a, b), usual.pair) for b in names) for a in names)
+    return law_of(usual, scene.contact_duration, walls, pairs)
 
 
 def manners_of(domain: Domain, walls: Sequence[Wall]) -> tuple[Manner, ...]:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TypeAlias
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eventsim.errors import SceneError
+from eventsim.letters import is_name
 from eventsim.notebook import few, html_table
 
 Floats: TypeAlias = NDArray[np.float64]
+Names: TypeAlias = NDArray[np.str_]
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -23,12 +26,14 @@ class Disks:
         velocity: shape (N, 2), length / time.
         radius: shape (N,), length; 0 is a point.
         mass: shape (N,); inf cannot be deflected (a post or a moving obstacle), 0 deflects nobody (a tracer).
+        species: shape (N,), names, "" where a disk has none of its own; None where no disk has one.
     """
 
     position: Floats
     velocity: Floats
     radius: Floats
     mass: Floats
+    species: Names | None
 
     def __init__(
         self,
@@ -36,8 +41,9 @@ class Disks:
         velocity: ArrayLike | None = None,
         radius: ArrayLike | None = None,
         mass: ArrayLike = 1.0,
+        species: str | Sequence[str] | Names | None = None,
     ) -> None:
-        """Disks at `position` (N, 2); velocity (N, 2) or None for rest; radius and mass (N,) or one for all.
+        """Disks at `position` (N, 2); velocity (N, 2) or None for rest; radius, mass and species (N,) or one for all.
 
         A radius must be given: points are asked for by radius=0.
 
@@ -69,8 +75,10 @@ class Disks:
                 shape = f"{wanted[key]}" if key == "velocity" else f"{wanted[key]} or a single number"
                 problems.append(f"disks.{key} has the shape {array.shape}: must be {shape}")
             arrays[key] = array
+        names = _names(species, count, problems)
         if problems:
             raise SceneError(problems)
+        object.__setattr__(self, "species", names)
         for key, array in arrays.items():
             array.setflags(write=False)
             object.__setattr__(self, key, array)
@@ -89,33 +97,44 @@ class Disks:
 
     def select(self, index: NDArray[np.int64]) -> Disks:
         """The disks with these numbers, in this order; index: (M,) whole numbers."""
-        position, velocity, radius, mass = (array[index] for array in self._arrays())
-        return Disks(position, velocity, radius, mass)
+        return Disks(**{key: array[index] for key, array in self._arrays().items()})
+
+    def begun_at(self, position: ArrayLike, velocity: ArrayLike) -> Disks:
+        """The same disks elsewhere, position and velocity (N, 2)."""
+        return Disks(**{**self._arrays(), "position": position, "velocity": velocity})
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Disks):
             return NotImplemented
         mine, theirs = self._arrays(), other._arrays()
-        return all(np.array_equal(a, b) for a, b in zip(mine, theirs, strict=True))
+        return mine.keys() == theirs.keys() and all(np.array_equal(array, theirs[key]) for key, array in mine.items())
 
     def __hash__(self) -> int:
         # Adding 0.0 turns -0.0 into 0.0: equal disks have equal hashes.
-        return hash(tuple((array + 0.0).tobytes() for array in self._arrays()))
+        arrays = self._arrays().values()
+        return hash(tuple((array + 0.0 if array.dtype == np.float64 else array).tobytes() for array in arrays))
 
-    def _arrays(self) -> tuple[Floats, Floats, Floats, Floats]:
-        return self.position, self.velocity, self.radius, self.mass
+    def _arrays(self) -> dict[str, Any]:
+        """What the disks have, by the name of the argument."""
+        found = {key: getattr(self, key) for key in KEYS}
+        return {key: array for key, array in found.items() if array is not None}
+
+
+KEYS = tuple(item.name for item in fields(Disks))
+"""What disks may have: the arguments of Disks, in their order."""
 
 
 @dataclass(frozen=True, slots=True)
 class Species:
-    """The kinds of disks: S pairs of a radius and a mass, in the order of these.
+    """The kinds of disks: S triples of a radius, a mass and a name, in the order of these.
 
-    radius, mass, count: (S,) of each kind, and how many disks it has.  first: (S,) the first of them.  of: (N,) the kind of
-    each disk.
+    radius, mass, name, count: (S,) of each kind, name "" of one without; and how many disks it has.  first: (S,) the first of
+    them.  of: (N,) the kind of each disk.
     """
 
     radius: Floats
     mass: Floats
+    name: Names
     count: NDArray[np.int64]
     first: NDArray[np.int64]
     of: NDArray[np.int64]
@@ -125,23 +144,70 @@ def species_among(disks: Disks) -> Species:
     """The kinds that there are among disks; O(N log N)."""
     radii, radius_code = np.unique(disks.radius, return_inverse=True)
     masses, mass_code = np.unique(disks.mass, return_inverse=True)
+    names, name_code = np.unique(_named(disks), return_inverse=True)
     codes, first, of, count = np.unique(
-        radius_code * len(masses) + mass_code, return_index=True, return_inverse=True, return_counts=True
-    )
+        (radius_code * len(masses) + mass_code) * len(names) + name_code,
+        return_index=True, return_inverse=True, return_counts=True,
+    )  # fmt: skip
+    codes, name_of = np.divmod(codes, max(len(names), 1))
     radius_of, mass_of = np.divmod(codes, max(len(masses), 1))
-    return Species(radii[radius_of], masses[mass_of], count, first, of)
+    return Species(radii[radius_of], masses[mass_of], names[name_of], count, first, of)
+
+
+def named_species(disks: Disks) -> tuple[tuple[str, ...], NDArray[np.int64]]:
+    """The names of the species, in the order of the scene, and which of them each disk is, (N,).
+
+    Disks without a name of their own are one species where radius and mass are equal: 0, 1, ... in the order of the scene.
+    """
+    found = species_among(disks)
+    order = np.argsort(found.first, kind="stable")
+    unnamed = iter(range(len(order)))
+    names: list[str] = []
+    number = np.empty(len(order), np.int64)
+    for kind in order.tolist():
+        name = str(found.name[kind]) or str(next(unnamed))
+        if name not in names:
+            names.append(name)
+        number[kind] = names.index(name)
+    return tuple(names), number[found.of]
+
+
+def _named(disks: Disks) -> Names:
+    return np.full(len(disks), "", np.str_) if disks.species is None else disks.species
 
 
 def join(parts: list[Disks]) -> Disks:
     """All the disks of `parts`, in order, as one."""
     if not parts:
         return Disks(np.empty((0, 2)), radius=0.0)
+    named = any(part.species is not None for part in parts)
     return Disks(
         np.concatenate([part.position for part in parts]),
         np.concatenate([part.velocity for part in parts]),
         np.concatenate([part.radius for part in parts]),
         np.concatenate([part.mass for part in parts]),
+        np.concatenate([_named(part) for part in parts]) if named else None,
     )
+
+
+def _names(value: str | Sequence[str] | Names | None, count: int, problems: list[str]) -> Names | None:
+    """A fresh copy (count,) of names of species; None where there are none."""
+    if value is None:
+        return None
+    if isinstance(value, str):
+        value = [value] * count
+    names = np.array(value)
+    if names.size and (names.dtype.kind != "U" or not all(isinstance(name, str) for name in value)):
+        problems.append("disks.species: every entry must be a text")
+        return None
+    names = names.astype(np.str_)
+    if names.shape != (count,):
+        problems.append(f"disks.species has the shape {names.shape}: must be ({count},) or a single text")
+        return None
+    wrong = [name for name in np.unique(names).tolist() if name and not (is_name(name) and "-" not in name)]
+    problems += [f"disks.species = {name!r}: must be one line without control characters and hyphens" for name in wrong]
+    names.setflags(write=False)
+    return names if names.any() else None
 
 
 def _floats(value: ArrayLike, key: str, problems: list[str]) -> Floats:

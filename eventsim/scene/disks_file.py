@@ -6,7 +6,7 @@ import csv
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 
@@ -15,11 +15,14 @@ from eventsim.errors import EventsimError, SceneError
 from eventsim.readers import read_start
 from eventsim.reading import Npz, as_floats, reading
 from eventsim.scene.cells import Indices
-from eventsim.scene.disks import Disks, Floats
+from eventsim.scene.disks import Disks
 from eventsim.scene.domain import Domain
 from eventsim.scene.gas import MOST_DISKS
 
 COLUMNS = ("x", "y", "vx", "vy", "radius", "mass")
+SPECIES = "species"
+"""A column of texts that may be there."""
+
 DEFAULTS = {"vx": 0.0, "vy": 0.0, "mass": 1.0}
 """What disks have where a file lacks a column, as in [[disk]]."""
 
@@ -39,9 +42,9 @@ class DisksFile:
 def read_disks_file(
     path: Path, domain: Domain | None = None, frame: int | None = None, radius: float | None = None, mass: float | None = None
 ) -> DisksFile:
-    """The disks of a file with the columns x, y, vx, vy, radius, mass; further columns are ignored.
+    """The disks of a file with the columns x, y, vx, vy, radius, mass, species; further columns are ignored.
 
-    Velocities and mass may be missing, as in [[disk]].  A file written by `eventsim state` will do if it holds one time.
+    Velocities, species and mass may be missing, as in [[disk]].  A file written by `eventsim state` will do if it holds one time.
 
     Args:
         path: a file that ends as one of `suffixes.STARTS`.
@@ -70,7 +73,8 @@ def read_disks_file(
                 f"{path}: holds the disks at {len(times)} times ({listed}); one start needs one time"
             )
     x, y, vx, vy, r, m = (columns[key] if key in columns else np.full(len(columns["x"]), given[key]) for key in COLUMNS)
-    return DisksFile(Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), r, m), row, number)
+    disks = Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), r, m, columns.get(SPECIES))
+    return DisksFile(disks, row, number)
 
 
 def _read_frame(path: Path, domain: Domain | None, frame: int | None, given: dict[str, float]) -> DisksFile:
@@ -103,10 +107,11 @@ def _read_frame(path: Path, domain: Domain | None, frame: int | None, given: dic
 def write_disks_file(path: Path, disks: Disks) -> None:
     """Write disks as an .npz file; every bit of them is read back."""
     columns = (*disks.position.T, *disks.velocity.T, disks.radius, disks.mass)
-    np.savez(path, **dict(zip(COLUMNS, columns, strict=True)))
+    named: dict[str, Any] = {} if disks.species is None else {SPECIES: disks.species}
+    np.savez(path, **named, **dict(zip(COLUMNS, columns, strict=True)))
 
 
-def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Floats], str, Indices]:
+def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Any], str, Indices]:
     """The columns by name, and the line of each row; lines that begin with # are comments."""
     try:
         lines = file.read().decode("utf-8-sig").splitlines()
@@ -124,7 +129,11 @@ def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dic
         table = np.loadtxt(rows, delimiter=",", usecols=places, comments=None, quotechar='"', ndmin=2)
     except ValueError:
         raise SceneError(_bad_lines(path, rows, number, wanted, places)) from None
-    return dict(zip(wanted, table.T, strict=True)), "line", np.array(number)
+    columns: dict[str, Any] = dict(zip(wanted, table.T, strict=True))
+    if SPECIES in header:
+        place = header.index(SPECIES)
+        columns[SPECIES] = np.array([cells[place].strip() if place < len(cells) else "" for cells in csv.reader(rows)])
+    return columns, "line", np.array(number)
 
 
 def _bad_lines(
@@ -146,7 +155,7 @@ def _bad_lines(
     return problems or [f"{path}: cannot be read as comma-separated numbers"]
 
 
-def _read_npz(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Floats], str, Indices]:
+def _read_npz(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Any], str, Indices]:
     """The columns by name, and the index of each row."""
     if not zipfile.is_zipfile(file):
         raise SceneError(f"{path}: is not an npz file with arrays of numbers; a table of text is named .csv")
@@ -155,7 +164,9 @@ def _read_npz(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dic
     longest = max(arrays.open(name).count for name in wanted)
     if longest > MOST_DISKS:
         raise SceneError(f"{path}: holds {longest} disks: must be at most {MOST_DISKS}")
-    columns = {name: as_floats(arrays.read(name)) for name in wanted}
+    columns: dict[str, Any] = {name: as_floats(arrays.read(name)) for name in wanted}
+    if SPECIES in arrays.names:
+        columns[SPECIES] = arrays.read(SPECIES)
     shapes = {name: array.shape for name, array in columns.items() if name != "time"}
     if len(set(shapes.values())) > 1 or len(shapes["x"]) != 1:
         listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())

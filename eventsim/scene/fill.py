@@ -58,7 +58,7 @@ def place_gas(
         place = _Place(gas, domain, walls, present, region, where)
         velocity = start_velocity(gas, rng)
     position = place.at_random(rng) if gas.arrangement == "random" else place.on_lattice()
-    return Disks(position, velocity, place.radius if gas.radii is None else gas.radii, gas.mass)
+    return Disks(position, velocity, place.radius if gas.radii is None else gas.radii, gas.mass, gas.species)
 
 
 def clear_of(

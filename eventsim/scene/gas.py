@@ -31,6 +31,7 @@ class Gas:
         count: number of disks.
         radius: length, or the law of lengths; or else packing_fraction, of the region.
         mass: of each.
+        species: its name; None: that of others of its radius and mass.
         temperature: kT, mass length^2 / time^2; or else speed, the same for all; neither: at rest.
         arrangement: "random", "square", "hexagonal", or "compressed": grown in place, together with the other gases of the
             region that are.
@@ -45,6 +46,7 @@ class Gas:
     radius: float | Sizes | None = None
     packing_fraction: float | None = None
     mass: float = 1.0
+    species: str | None = None
     temperature: float | None = None
     speed: float | None = None
     arrangement: str = "random"

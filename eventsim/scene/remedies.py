@@ -26,6 +26,7 @@ EXAMPLES = {
     "velocity": "velocity = [1.0, 0.0]",
     "radius": "radius = 0.05",
     "mass": "mass = 2.0",
+    "species": 'species = "a"',
     "count": "count = 20",
     "packing_fraction": "packing_fraction = 0.3",
     "temperature": "temperature = 1.0",
@@ -47,7 +48,7 @@ EXAMPLES = {
 }
 """A line for each key that a table may have."""
 
-TEXTS = ("name", "kind", "arrangement", "path", "inside")
+TEXTS = ("name", "kind", "arrangement", "path", "inside", "species")
 WHOLES = ("events", "count", "seed", "frame")
 PAIRS = tuple(key for key, line in EXAMPLES.items() if re.fullmatch(r"\w+ = \[[^,]+, [^,]+\]", line))
 

@@ -15,7 +15,7 @@ from eventsim.scene.domain import DOMAINS, Domain
 from eventsim.scene.names import DiskNames, plural
 from eventsim.scene.numbers import Point, number, optional_number, optional_whole, point
 from eventsim.scene.restitution import Restitution, as_restitution
-from eventsim.scene.validate import find_problems, scalar_problems, touching_notes
+from eventsim.scene.validate import find_problems, scalar_problems, species_problems, touching_notes
 from eventsim.scene.walls import WALLS, Wall
 
 UNNAMED = "a scene without a name"
@@ -62,7 +62,7 @@ class Scene:
         domain: Domain,
         walls: Sequence[Wall] = (),
         gravity: Sequence[float] | None = None,
-        restitution: Restitution | Mapping[str, float] | float | None = None,
+        restitution: Restitution | Mapping[str, Any] | float | None = None,
         contact_duration: float | None = None,
         until: float | None = None,
         events: int | None = None,
@@ -97,7 +97,8 @@ class Scene:
         for key, value in given.items():
             object.__setattr__(self, key, value)
         names = names or DiskNames()
-        problems = find_problems(disks, domain, self.walls, self.gravity, names, list(scalar_problems(given)))
+        scalars = [*scalar_problems(given), *species_problems(self.restitution, disks)]
+        problems = find_problems(disks, domain, self.walls, self.gravity, names, scalars)
         if problems:
             raise SceneError(problems)
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from typing import Any, NamedTuple
 
+from eventsim.letters import is_name
 from eventsim.scene import manner, restitution
 from eventsim.scene.domain import DOMAINS
 from eventsim.scene.keys import Invalid, Optional, Required, Schema
@@ -106,6 +107,21 @@ def one_of(*words: str) -> Callable[[object], str]:
     return word
 
 
+def species(value: object) -> str:
+    """A name of a species."""
+    name = text(value)
+    if not name or not is_name(name) or "-" in name:
+        raise Invalid("must be one line without control characters and hyphens")
+    return name
+
+
+def table_of_numbers(value: object) -> dict[str, float]:
+    """A table of numbers by names."""
+    if not isinstance(value, Mapping):
+        raise Invalid("must be a table of numbers")
+    return {str(key): number(entry) for key, entry in value.items()}
+
+
 def sides(value: object) -> dict[str, dict[str, float]]:
     """What sides of the domain have of their own: a table for each."""
     wanted = f"must be tables of sides with {', '.join(manner.KEYS)}, as in {{bottom = {{{manner.EXAMPLES['restitution']}}}}}"
@@ -132,7 +148,7 @@ SCENE = Schema(
         Optional("equilibration"): number,
     }
 )
-RESTITUTION = Schema({Optional(key): number for key in restitution.KEYS})
+RESTITUTION = Schema({Optional(key): number if key != restitution.PAIRS else table_of_numbers for key in restitution.KEYS})
 DOMAIN = {"box": SIZED, "periodic": SIZED, "channel": SIZED, "open": Schema(KIND)}
 DISK = Schema(
     {
@@ -140,15 +156,17 @@ DISK = Schema(
         Optional("velocity"): POINT,
         Required("radius"): number,
         Optional("mass"): mass,
+        Optional("species"): species,
     }
 )
-DISK_KEYS = frozenset(map(str, DISK.schema))
+PLAIN_KEYS = frozenset(("position", "velocity", "radius", "mass"))
 GAS = Schema(
     {
         Required("count"): whole(1),
         Optional("radius"): radius_or_sizes,
         Optional("packing_fraction"): number,
         Optional("mass"): mass,
+        Optional("species"): species,
         Optional("temperature"): number,
         Optional("speed"): number,
         Optional("arrangement"): one_of(*ARRANGEMENTS),
@@ -186,7 +204,7 @@ NOTHING = Read({}, frozenset({"kind"}))
 
 def is_plain_disk(table: object) -> bool:
     """Whether a [[disk]] table is what reading it would give: long lists of disks are read many times faster."""
-    if type(table) is not dict or not table.keys() <= DISK_KEYS:
+    if type(table) is not dict or not table.keys() <= PLAIN_KEYS:
         return False
     if type(table.get("radius")) is not float or type(table.get("mass", 1.0)) is not float:
         return False

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.formulas.doubt import tie_screen
 from eventsim.formulas.laws import Law
@@ -24,7 +25,7 @@ from eventsim.formulas.walls.shape import Closed, Thin
 from eventsim.scene.clock import SceneClock, clock_of
 from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.corner import corner_of
-from eventsim.scene.disks import Floats
+from eventsim.scene.disks import Floats, named_species
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
 from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of
@@ -52,6 +53,7 @@ class Stage:
             masses are very uneven.
         gravity: (gx, gy), or None.
         law: the law of its contacts.
+        species: (n,) the species of each disk, where the law asks for it; else None.
         period: the period along x and y; None along an axis without one.
         size: (width, height) of the domain, or None.
         boundaries: hard walls of the domain.
@@ -77,6 +79,7 @@ class Stage:
     low_parts: bool
     gravity: Point | None
     law: Law
+    species: NDArray[np.int64] | None
     period: tuple[float | None, float | None]
     size: Point | None
     boundaries: tuple[Boundary, ...]
@@ -103,6 +106,12 @@ class Stage:
     def shifts(self, image: tuple[int, int]) -> tuple[float, float]:
         """The distance of an image (kx, ky) of the domain, along x and y."""
         return periods(image[0], self.period[0]), periods(image[1], self.period[1])
+
+    def usual(self, a: int, b: int) -> float:
+        """The usual restitution of disks a and b, or of a and the surface -1 - b."""
+        if b < 0:
+            return self.law.of_wall(self.surfaces[-1 - b].wall)
+        return self.law.pair if self.species is None else self.law.of_pair(int(self.species[a]), int(self.species[b]))
 
     def nearest(self, d: Floats) -> Floats:
         """Differences (..., 2) of any two places to their nearest images."""
@@ -208,6 +217,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         ),
         gravity=scene.gravity,
         law=law,
+        species=None if law.pairs is None else named_species(disks)[1],
         period=domain.period,
         size=size,
         boundaries=boundaries,

@@ -19,7 +19,7 @@ from eventsim.scene.fill import place_gas
 from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems, inside_of, region_of
 from eventsim.scene.names import BlockNames
 from eventsim.scene.scene import Scene
-from eventsim.scene.validate import NO_DISKS, domain_problems, number_problems
+from eventsim.scene.validate import NO_DISKS, NO_SPECIES, domain_problems, number_problems
 from eventsim.scene.walls import WALLS, Wall, wall_names
 
 DISK_STAND_IN = {"position": (0.0, 0.0), "radius": 0.0}
@@ -44,7 +44,8 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Sce
         scene = found.scene(disks)
     except SceneError as error:
         # Disks may be missing because their gas has not been placed, or because their tables have problems.
-        problems += [p for p in error.problems if p != NO_DISKS or not (gases or problems)]
+        waiting = bool(gases or problems)
+        problems += [p for p in error.problems if not (waiting and (p == NO_DISKS or NO_SPECIES in p))]
     if problems:
         raise SceneError(problems)
     if not gases:
@@ -176,6 +177,7 @@ def _disks_of(tables: Collection[dict[str, Any]]) -> Disks:
         [table.get("velocity", (0.0, 0.0)) for table in tables],
         [table["radius"] for table in tables],
         [table.get("mass", 1.0) for table in tables],
+        [table.get("species", "") for table in tables],
     )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.letters import is_name
-from eventsim.scene.disks import Disks
+from eventsim.scene.disks import Disks, named_species
 from eventsim.scene.domain import BOUNDARY_NAMES, Domain, Open, hard_sides
 from eventsim.scene.manner import manner_problems
 from eventsim.scene.names import DiskNames, SelectedNames
@@ -36,6 +36,7 @@ from eventsim.scene.overlaps import (
     feature_overlaps,
     pair_overlaps,
 )
+from eventsim.scene.restitution import Restitution
 from eventsim.scene.scale_rules import scale_problems
 from eventsim.scene.walls import Wall, parts_of, wall_names
 
@@ -46,6 +47,7 @@ LIGHTEST = 1e-320
 """A mass that has a half."""
 
 NO_DISKS = "disk: a scene needs at least one disk"
+NO_SPECIES = "no disk is of the species"
 
 
 def find_problems(
@@ -125,6 +127,17 @@ def scalar_problems(given: Mapping[str, Any]) -> Iterator[str]:
         yield f"until = {until}: must be finite and not before start_time = {start}"
     if events is not None and events < 0:
         yield f"events = {events}: must be at least 0"
+
+
+def species_problems(restitution: Restitution | None, disks: Disks) -> Iterator[str]:
+    """Rules for species that a restitution names."""
+    if restitution is None or not restitution.pairs or not len(disks):
+        return
+    names, _ = named_species(disks)
+    for a, b, _ in restitution.pairs:
+        for name in dict.fromkeys((a, b)):
+            if name not in names:
+                yield f"restitution.pairs.{a}-{b}: {NO_SPECIES} {name} (there are {', '.join(names)})"
 
 
 def domain_problems(domain: Domain) -> Iterator[str]:

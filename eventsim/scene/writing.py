@@ -6,9 +6,8 @@ import json
 import math
 import os
 import secrets
-from collections.abc import Iterator
-from dataclasses import asdict
-from itertools import islice
+from collections.abc import Iterable, Iterator
+from itertools import islice, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -79,7 +78,7 @@ def _tables(scene: Scene) -> dict[str, Any]:
     if scene.gravity is not None:
         data["gravity"] = list(scene.gravity)
     if scene.restitution is not None:
-        data["restitution"] = {key: value for key, value in asdict(scene.restitution).items() if value is not None}
+        data["restitution"] = scene.restitution.table()
     data["domain"] = _domain_table(scene.domain)
     data["disk"] = []
     if scene.walls:
@@ -112,12 +111,14 @@ def _domain_table(domain: Domain) -> dict[str, Any]:
 def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
     tables: list[dict[str, Any]] = []
     columns = (disks.position.tolist(), disks.velocity.tolist(), disks.radius.tolist(), disks.mass.tolist())
-    for position, velocity, radius, mass in zip(*columns, strict=True):
+    for position, velocity, radius, mass, name in zip(*columns, _names(disks), strict=True):
         table = {"position": position, "velocity": velocity, "radius": radius}
         if _is_default(velocity[0], 0.0) and _is_default(velocity[1], 0.0):
             del table["velocity"]
         if mass != 1.0:
             table["mass"] = "inf" if math.isinf(mass) else mass
+        if name:
+            table["species"] = name
         tables.append(table)
     return tables
 
@@ -125,11 +126,17 @@ def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
 def _disk_texts(disks: Disks) -> Iterator[str]:
     """The tables of disks as JSON."""
     columns = (*disks.position.T, *disks.velocity.T, disks.radius, disks.mass)
-    for x, y, vx, vy, radius, mass in zip(*(column.tolist() for column in columns), strict=True):
+    for x, y, vx, vy, radius, mass, name in zip(*(column.tolist() for column in columns), _names(disks), strict=True):
         moves = not (_is_default(vx, 0.0) and _is_default(vy, 0.0))
         velocity = f', "velocity": [{vx!r}, {vy!r}]' if moves else ""
         weight = "" if mass == 1.0 else f', "mass": {repr(mass) if mass < math.inf else json.dumps("inf")}'
-        yield f'{{"position": [{x!r}, {y!r}]{velocity}, "radius": {radius!r}{weight}}}'
+        species = f', "species": {json.dumps(name)}' if name else ""
+        yield f'{{"position": [{x!r}, {y!r}]{velocity}, "radius": {radius!r}{weight}{species}}}'
+
+
+def _names(disks: Disks) -> Iterable[str]:
+    """The names of the species of disks, "" where they have none of their own."""
+    return repeat("", len(disks)) if disks.species is None else disks.species.tolist()
 
 
 def _wall_table(wall: Wall) -> dict[str, Any]:

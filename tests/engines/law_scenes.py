@@ -27,13 +27,17 @@ LAWS: dict[str, Keys] = {
         "sides": {"bottom": {"restitution": float(rng.choice([0.5, 1.0]))}, "top": {"restitution": 0.75}},
         "own": {"restitution": float(rng.choice([0.25, 0.9]))},
     },
+    "species": lambda rng: {
+        "restitution": Restitution(0.9, 1.0, pairs={"a-a": float(rng.choice([0.5, 1.0])), "a-b": 0.75}),
+        "species": ["a", "b", "b", "c"] * 3,
+    },
     "yielding": lambda rng: {"restitution": Restitution(**_shares(rng), yield_speed=float(rng.choice([0.25, 1.0])))},
     "yielding, kept if soon": lambda rng: {
         "restitution": Restitution(0.9, 0.8, yield_speed=0.5),
         "contact_duration": float(rng.choice([1e-3, 1e-1])),
     },
 }
-"""The keys of a scene that ask for a law, from a generator; sides, own: those of the domain's sides, and of walls."""
+"""The keys of a scene that ask for a law, from a generator; sides, own: those of the domain's sides, and of walls; species."""
 
 
 def random_scene(seed: int, law: str) -> es.Scene:
@@ -46,7 +50,8 @@ def random_scene(seed: int, law: str) -> es.Scene:
     pitch = gas.domain.size[0] / 4.0
     corners = [(pitch, pitch), (1.2 * pitch, 1.1 * pitch), (1.0 * pitch, 1.25 * pitch)]
     keys = LAWS[law](rng)
-    own, sides = keys.pop("own", {}), keys.pop("sides", {})
+    own, sides, species = keys.pop("own", {}), keys.pop("sides", {}), keys.pop("species", None)
+    disks = es.Disks(gas.disks.position, gas.disks.velocity, gas.disks.radius, gas.disks.mass, species)
     walls = [es.Arc(*corners, **own)] if rng.random() < 0.3 else [es.Segment(*corners[:2], **own)] if rng.random() < 0.5 else []
     hard = {name: side for name, side in sides.items() if name in hard_sides(gas.domain)}
-    return es.Scene(gas.disks, domain(gas.domain.size, walls=hard), walls, gravity=gravity, **keys)
+    return es.Scene(disks, domain(gas.domain.size, walls=hard), walls, gravity=gravity, **keys)

@@ -4,7 +4,12 @@ import pytest
 
 import eventsim as es
 from eventsim.formulas.laws import LAWS, Elastic, Inelastic, TimeOfContact, Yielding, law_of
+from eventsim.record.events import State
+from eventsim.replay.states import write_states
 from eventsim.scene.contact_law import law_of_scene
+from eventsim.scene.disks import named_species
+from eventsim.scene.disks_file import read_disks_file, write_disks_file
+from eventsim.scene.files import scene_from_dict
 from eventsim.scene.restitution import Restitution, as_restitution
 
 EXAMPLES = {
@@ -107,7 +112,7 @@ def test_shares_of_walls_go_through_a_scene_file(tmp_path):
     disks = es.Disks([[1.0, 1.0]], [[0.0, -1.0]], 0.5)
     domain = es.Box((6.0, 6.0), walls={"top": {"restitution": 1.0}, "left": {"restitution": 0.1}})
     chain = es.Polyline([(3.0, 3.0), (4.0, 3.0), (4.0, 4.0)], restitution=0.3)
-    scene = es.Scene(disks, domain, [chain], restitution=0.9)
+    scene = es.Scene(disks, domain, [chain], restitution=0.9, name="scene")
     for suffix in ("toml", "json"):
         scene.save(tmp_path / f"scene.{suffix}")
         assert es.load_scene(tmp_path / f"scene.{suffix}") == scene
@@ -146,3 +151,69 @@ def test_a_disk_comes_to_rest_on_the_wall_that_takes_energy_and_not_on_another(e
     assert run.state.position[1, 1] == pytest.approx(1.5, abs=1e-12)
     fallen = run.state.position[0, 1] - 1.5, run.state.velocity[0, 1]
     assert fallen[0] + 0.5 * fallen[1] ** 2 == pytest.approx(0.5, abs=1e-12)
+
+
+def species_scene(**keys):
+    position = [[1.0, 1.0], [3.0, 1.0], [1.0, 3.0], [3.0, 3.0], [1.0, 5.0], [3.0, 5.0]]
+    velocity = [[1.0, 0.0], [0.0, 0.0]] * 3
+    disks = es.Disks(position, velocity, 0.5, 1.0, ["a", "b", "a", "", "", ""])
+    return es.Scene(disks, es.Open(), restitution={"pair": 0.5, "pairs": {"b-a": 0.25, "0-a": 0.0}}, name="species", **keys)
+
+
+def test_two_species_have_a_share_of_their_own():
+    run = es.simulate(species_scene(), until=2.0, engine="reference")
+    relative = run.state.velocity[1::2, 0] - run.state.velocity[::2, 0]
+    assert relative.tolist() == [0.25, 0.0, 0.5]
+
+
+def test_species_go_through_scene_files_disks_files_and_logs(tmp_path):
+    scene = species_scene(until=2.0)
+    for suffix in ("toml", "json"):
+        scene.save(tmp_path / f"scene.{suffix}")
+        assert es.load_scene(tmp_path / f"scene.{suffix}") == scene
+    es.simulate(scene, log=tmp_path / "log.npz", engine="reference")
+    assert es.load_log(tmp_path / "log.npz").scene == scene
+    for suffix in ("csv", "npz"):
+        write_states(tmp_path / f"start.{suffix}", scene, [State(0.0, scene.disks.position, scene.disks.velocity)])
+        assert read_disks_file(tmp_path / f"start.{suffix}").disks == scene.disks
+    write_disks_file(tmp_path / "disks.npz", scene.disks)
+    assert read_disks_file(tmp_path / "disks.npz").disks == scene.disks
+    names, of = named_species(scene.disks)
+    assert (names, of.tolist()) == (("a", "b", "0"), [0, 1, 0, 2, 2, 2])
+
+
+def test_gases_have_a_species_and_so_have_disks_without_one(tmp_path):
+    tables = {
+        "domain": {"kind": "periodic", "size": [9.0, 9.0]},
+        "restitution": {"pairs": {"dust-0": 0.5, "1-1": 0.75}},
+        "gas": [
+            {"count": 4, "radius": 0.25, "seed": 1, "species": "dust"},
+            {"count": 2, "radius": 0.25, "seed": 2},
+            {"count": 2, "radius": 0.5, "seed": 3},
+        ],
+    }
+    scene = scene_from_dict(tables)
+    assert named_species(scene.disks)[1].tolist() == [0] * 4 + [1] * 2 + [2] * 2
+    assert law_of_scene(scene).pairs == ((1.0, 0.5, 1.0), (0.5, 1.0, 1.0), (1.0, 1.0, 0.75))
+
+
+@pytest.mark.parametrize(
+    ("pairs", "message"),
+    [
+        ({"a-x": 0.5}, "restitution.pairs.a-x: no disk is of the species x (there are a, b)"),
+        ({"a": 0.5}, "restitution.pairs.a: must be two species with a hyphen between"),
+        ({"a-b": 1.5}, "restitution.pairs.a-b = 1.5: must be from 0 to 1"),
+        ({"a-b": 0.5, "b-a": 0.5}, "restitution.pairs.b-a: these two species have a share already"),
+    ],
+)
+def test_pairs_of_species_that_mean_nothing_are_refused(pairs, message):
+    disks = es.Disks([[1.0, 1.0], [3.0, 1.0]], radius=0.5, species=["a", "b"])
+    with pytest.raises(es.SceneError) as refused:
+        es.Scene(disks, es.Open(), restitution={"pairs": pairs})
+    assert message in str(refused.value)
+
+
+@pytest.mark.parametrize("species", ["a-b", ["a"], ["a", 3.0, "b"], [1.0, 2.0, 3.0]])
+def test_names_of_species_are_texts_without_hyphens_one_for_each_disk(species):
+    with pytest.raises(es.SceneError, match=r"disks\.species"):
+        es.Disks([[1.0, 1.0], [3.0, 1.0], [5.0, 1.0]], radius=0.5, species=species)

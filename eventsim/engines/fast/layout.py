@@ -69,7 +69,8 @@ class Arrays(NamedTuple):
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
     parts of velocities, (vx, vy) each.  sides: of points, one number for each shape
     (`scene.sides`); images: see `rules.images_of`.  levels: the table of `cells`.  shares: see
-    `rules.shares_of`.  rows: the log's buffer, bytes.
+    `rules.shares_of`.  species: of each disk; pairs: see
+    `rules.pairs_of`.  rows: the log's buffer, bytes.
     """
 
     disks: object
@@ -84,6 +85,8 @@ class Arrays(NamedTuple):
     sides: object
     images: object
     shares: object
+    species: object
+    pairs: object
     rows: object
 
 

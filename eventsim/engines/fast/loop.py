@@ -89,6 +89,8 @@ def pointers(a):
         pointer(a.sides),
         pointer(a.images),
         pointer(a.shares),
+        pointer(a.species),
+        pointer(a.pairs),
         pointer(a.rows),
     )
 

@@ -15,7 +15,7 @@ from eventsim.engines.fast.compiled import lanes_work
 from eventsim.engines.fast.layout import Arrays, Grid
 from eventsim.engines.fast.loop import fill, predict_some, run, schedule, turn_over
 from eventsim.engines.fast.plan import Grids, Sizes, day_length, in_memory, shortest_day
-from eventsim.engines.fast.rules import features_of, images_of, rules_of, shares_of, supports_of
+from eventsim.engines.fast.rules import features_of, images_of, pairs_of, rules_of, shares_of, supports_of
 from eventsim.engines.fast.state import FastState
 from eventsim.formulas.clock import window_length
 from eventsim.formulas.doubt import latest_tie, screen_in
@@ -100,6 +100,8 @@ class Machine:
         self._supports = supports_of(stage)
         self._images = images_of(stage)
         self._shares = shares_of(stage)
+        self._pairs = pairs_of(stage)
+        self._species = None if stage.species is None else np.ascontiguousarray(stage.species[order], np.int32)
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._buffers = Buffers()
         self._buffer = self._buffers.blank() if keep_rows else np.empty(0, ROW)
@@ -248,6 +250,8 @@ class Machine:
                 state.sides_in_memory,
                 self._images,
                 self._shares,
+                self._species,
+                self._pairs,
                 self._buffer.view(np.uint8) if self.keep_rows else None,
             )
             full = fill(self.arrays, self.grid, self.rules, now)

@@ -77,6 +77,14 @@ def _restitution(m, a, b, t, usual, law, approach):
 
 
 @inline
+def _share_of_pair(m, rules, a, b, species):
+    """The usual restitution between two disks."""
+    if species is None:
+        return rules.pair_restitution
+    return real(m.pairs, 1 + int(real(m.pairs, 0)) * word(species, a) + word(species, b))
+
+
+@inline
 def _approach_of_pair(m, rules, a, b, t, dx, dy, by_speed):
     """The speed at which two disks (dx, dy) apart meet; 0 where the law does not ask."""
     if by_speed is None:
@@ -248,7 +256,7 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot, posts):
 def _parted(m, rules, a, b, t, dx, dy, mass, low):
     """The velocities of a pair after contact, and q; low parts are set."""
     approach = _approach_of_pair(m, rules, a, b, t, dx, dy, rules.by_speed)
-    e = _restitution(m, a, b, t, rules.pair_restitution, rules.law, approach)
+    e = _restitution(m, a, b, t, _share_of_pair(m, rules, a, b, m.species), rules.law, approach)
     if low is not None:
         return _carefully_parted(m, a, b, dx, dy, e)
     ua, wa = speed(m, rules, a, t)

@@ -55,7 +55,7 @@ def rules_of(stage: Stage) -> Rules:
 
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
-    law = (stage.law.walls, *(stage.law.numbers() or ()))
+    law = (stage.law.walls, stage.law.pairs, *(stage.law.numbers() or ()))
     asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
@@ -82,6 +82,12 @@ def shares_of(stage: Stage) -> Floats | None:
         return None
     shares = [stage.law.of_wall(surface.wall) for surface in stage.surfaces]
     return np.array([(share, stage.law.series(share)) for share in shares]).reshape(-1)
+
+
+def pairs_of(stage: Stage) -> Floats | None:
+    """How many species there are, then what comes back between them, in one row of memory; None where all are alike."""
+    pairs = stage.law.pairs
+    return None if pairs is None else np.array([float(len(pairs)), *(share for row in pairs for share in row)])
 
 
 def images_of(stage: Stage) -> NDArray[np.int32] | None:

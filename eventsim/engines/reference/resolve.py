@@ -308,7 +308,7 @@ class Resolver:
     def _restitution(self, event: Event, t: Real, dx: Real, dy: Real, speeds: tuple[tuple[Real, Real], ...]) -> Real:
         """The restitution of a contact along (dx, dy), whose disks have these velocities."""
         law, state, b = self._stage.law, self._state, event.a if event.b < 0 else event.b
-        usual = law.pair if event.b >= 0 else law.of_wall(self._stage.surfaces[-1 - event.b].wall)
+        usual = self._stage.usual(event.a, event.b)
         if law.numbers() is None:
             return usual
         approach = 0.0

@@ -89,11 +89,10 @@ class Sunk:
 
     def _has_lost(self, i: int) -> bool:
         """Whether the flight of disk i began at a contact that took energy."""
-        state, law = self._state, self._stage.law
+        state = self._state
         if state.contact_time[i] != state.t[i]:
             return False
-        surfaces = self._stage.surfaces
-        return any((law.pair if met[0] >= 0 else law.of_wall(surfaces[-1 - met[0]].wall)) < 1.0 for met in state.met[i])
+        return any(self._stage.usual(i, met[0]) < 1.0 for met in state.met[i])
 
     def _of_pair(self, event: Event) -> tuple[float, float]:
         """(approach, size): the speed at which the gap of two disks closes, and the size of what it is the difference of."""

@@ -66,7 +66,9 @@ def measures(records: Records) -> Iterator[Measure]:
 
 def _is_told(ensemble: Ensemble) -> bool:
     """Whether theory speaks of such a gas."""
-    return not ensemble.law.by_speed and ensemble.torus and ensemble.alone and ensemble.equal and ensemble.n >= FEW
+    if ensemble.law.by_speed or ensemble.law.pairs is not None:
+        return False
+    return ensemble.torus and ensemble.alone and ensemble.equal and ensemble.n >= FEW
 
 
 def flowing(ensemble: Ensemble, contacts: float) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from eventsim.errors import EventsimError
 from eventsim.readers.samples import Samples
 from eventsim.record.events import Floats, Rows
-from eventsim.scene import Disks, Scene
+from eventsim.scene import Scene
 from eventsim.scene.stage import Stage
 from eventsim.validation.follow import distances
 from eventsim.validation.judge.flights import UNLIKE, Flights
@@ -37,7 +37,7 @@ def scene_at(scene: Scene, first: float) -> Scene:
     run = truth_of(scene, [first]).run
     if run.stopped is not None:
         raise EventsimError(f"the motion begins at t = {first:g}, and the event-driven run stopped before ({run.stopped})")
-    disks = Disks(run.position[0], run.velocity[0], scene.disks.radius, scene.disks.mass)
+    disks = scene.disks.begun_at(run.position[0], run.velocity[0])
     return scene.begun_at(first, disks)
 
 

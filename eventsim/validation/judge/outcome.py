@@ -81,7 +81,7 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float) -> str | N
     if found is None or not _is_told(met, found, mass, least):
         return None
     who = named(met.key, stage)
-    usual = stage.law.pair if met.key[0] == Kind.PAIR else stage.law.of_wall(met.key[2])
+    usual = _usual(met.key, stage)
     possible = stage.law.possible(usual, found.approach)
     right = possible[0]
     if found.unbalanced > CLEAR:
@@ -102,6 +102,11 @@ def _is_told(met: Met, found: Outcome, mass: Floats, least: float) -> bool:
     if met.key[0] == Kind.PAIR and still:
         return False
     return found.approach > BLUR * least / CLEAR
+
+
+def _usual(key: Key, stage: Stage) -> float:
+    kind, a, other = key
+    return stage.usual(a, other) if kind == Kind.PAIR else stage.law.of_wall(other)
 
 
 def named(key: Key, stage: Stage) -> str:
