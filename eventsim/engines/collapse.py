@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventsim.engines.endless import is_endless
 from eventsim.formulas.doubt import AT_ONCE, kept_up_instant
 from eventsim.record.events import Floats, Kind, Rows
 from eventsim.scene.stage import Stage
@@ -39,6 +40,9 @@ LAST_ROUNDS = 4
 
 STEADY = 1.005
 """Ratios of rounds that differ by no more than this factor are one; near the critical restitution they drift by more."""
+
+SEEN = 1e-9
+"""What is left of a series is told where it is more than this part of the time, which is written with nine digits."""
 
 RECENT = 6
 """The disks of a series are those that are connected through so many rows at its end."""
@@ -87,7 +91,7 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
 def diagnosis_of_sunk(rows: Rows, stage: Stage, time: float) -> tuple[str, str] | None:
     """The same of a run that stops because a gap has sunk below the digits; None where no rounds came before.
 
-    A series whose ratio has become steady is a collapse: the ratio is the eigenvalue of the matrix that a round is.
+    A series is a collapse if the map of a round says that it has no end; without such a map, if its ratio has become steady.
     """
     rows = rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)][-TAIL:]
     if len(rows) == 0:
@@ -96,7 +100,10 @@ def diagnosis_of_sunk(rows: Rows, stage: Stage, time: float) -> tuple[str, str] 
     mine = rows[np.isin(rows["a"], disks) & ((rows["b"] < 0) | np.isin(rows["b"], disks))]
     times = (mine["epoch"] - mine["epoch"][-1]) * stage.epoch_length + mine["remainder"]
     rounds = _series(disks, mine, times, 0.0, CLEAN_OF_SUNK)
-    return None if rounds.number < 2 else _of_rounds(rounds, stage, time, rounds.steady)
+    if rounds.number < 2:
+        return None
+    told = is_endless(mine, stage)
+    return _of_rounds(rounds, stage, time, rounds.steady if told is None else told)
 
 
 def _of_rounds(rounds: Rounds, stage: Stage, time: float, collapses: bool) -> tuple[str, str]:
@@ -105,7 +112,9 @@ def _of_rounds(rounds: Rounds, stage: Stage, time: float, collapses: bool) -> tu
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
     if collapses:
-        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {stage.law.remedy()}"
+        left = rounds.last * rounds.ratio / (1.0 - rounds.ratio)
+        rest = f", and those that are left take about {left:.2g}" if left > SEEN * abs(time) else ""
+        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}{rest}; {stage.law.remedy()}"
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
         f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {stage.law.remedy()}"

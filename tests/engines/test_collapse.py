@@ -57,11 +57,31 @@ def test_three_disks_collapse_at_a_known_time():
 
 
 def test_gaps_below_the_digits_are_said_to_be_that():
-    run = es.simulate(es.gallery("collapse", restitution=0.0717), engine="reference", log=True)
+    """The critical restitution is 7 - 4 sqrt 3 = .07179677."""
+    run = es.simulate(es.gallery("collapse", restitution=0.0718), engine="reference", log=True)
     assert run.stopped == "digits"
     assert run.log.provenance.ending.reason == "digits"
     assert "disks 0, 1, 2" in run.reason
     assert "cannot be told" in run.reason
+
+
+CRITICAL_AT_WALL, CRITICAL_OF_THREE = 3.0 - 2.0 * math.sqrt(2.0), 7.0 - 4.0 * math.sqrt(3.0)
+
+
+@pytest.mark.parametrize("below", [1e-2, 1e-3, 1e-4, 1e-6, 1e-9])
+def test_a_series_is_called_endless_below_the_critical_restitution_and_never_above(below):
+    """Ratios of rounds settle on both sides; the eigenvalues of a round are real below, and complex above."""
+
+    def wall_and_two(restitution):
+        disks = es.Disks([(1.0, 0.0), (3.0, 0.0)], [(0.0, 0.0), (-1.0, 0.0)], 0.5)
+        return es.Scene(disks, es.Open(), [es.Segment((-0.5, -9.0), (-0.5, 9.0))], restitution=restitution)
+
+    def three(restitution):
+        return es.gallery("collapse", restitution=restitution)
+
+    for make, critical in ((wall_and_two, CRITICAL_AT_WALL), (three, CRITICAL_OF_THREE)):
+        assert es.simulate(make(critical - below), until=1e6, engine="reference").stopped == "collapse"
+        assert es.simulate(make(critical + below), until=1e6, engine="reference").stopped in ("digits", "quiet")
 
 
 def test_step_by_step_the_same_is_said():
