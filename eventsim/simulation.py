@@ -62,23 +62,37 @@ def simulate(
 ) -> Run:
     """Simulate a scene until a time on its clock or for a number of events, whichever comes first.
 
-    until, events: given here, they replace what the scene says.  engine: a name of `ENGINES`, or "auto".  log: False
-    (counters only), True (in memory) or a path (.csv, .jsonl, .npz, .parquet; streamed; `compact` leaves out what replay
-    computes).  digest: compute the digest also where no log is kept.  progress(fraction, events, time): called a few times a
-    second.  on_event(rows): called with each block of new rows.  measure: True, or the time at the beginning to leave out, for
-    `run.measures`, in constant memory and without a log.  profile: "x" or "y", for profiles along it as well.
-    trust: estimate until when positions hold, for `run.trust`; None: where that costs little, with the reference engine, and at
-    the beginning of a log.  checkpoint: a file
-    that `resume` can go on from, replaced `every` so many events (1000000) or so much time ("90s", "5min", "2h"), and at the end.
-    interrupt: ends the run between two events once another thread asks it to (`Interrupt().ask()`).  options: the engine's own,
-    such as check=True.
-
     Simultaneous contacts are never cut apart, so a run that stops by `events` may have a few events more.
+    Whatever breaks the run off (Ctrl-C raises KeyboardInterrupt), a log that has rows stays as NAME.part, which `load_log` reads.
 
-    Returns a Run; its `stopped` tells why it ended.  Raises SceneError where nothing says when to stop, EventsimError for an
-    engine or an option that does not exist and for wishes that do not go together, LogError and CheckpointError for files that
-    cannot be written.  Whatever breaks the run off (Ctrl-C raises KeyboardInterrupt), a log that has rows stays as NAME.part,
-    which `load_log` reads.
+    Args:
+        scene: what there is.
+        until: a time on the scene's clock; given here, it replaces what the scene says, as does `events`.
+        events: how many events.
+        engine: a name of `ENGINES`, or "auto".
+        log: False (counters only), True (in memory) or a path (.csv, .jsonl, .npz, .parquet; streamed).
+        compact: leave out of the log what replay computes.
+        digest: compute the digest also where no log is kept.
+        progress: called as progress(fraction, events, time) a few times a second.
+        on_event: called as on_event(rows) with each block of new rows.
+        measure: True, or the time at the beginning to leave out: `run.measures`, in constant memory and without a log.
+        profile: "x" or "y", for profiles along it as well.
+        trust: estimate until when positions hold, for `run.trust`; None: where that costs little, with the reference engine,
+            and at the beginning of a log.
+        command: what the log says that wrote it; None: nothing.
+        checkpoint: a file that `resume` can go on from, replaced while the run goes on, and at the end.
+        every: how often: after so many events (1000000) or so much time ("90s", "5min", "2h").
+        interrupt: ends the run between two events once another thread asks it to (`Interrupt().ask()`).
+        **options: the engine's own, such as check=True.
+
+    Returns:
+        A Run; its `stopped` tells why it ended.
+
+    Raises:
+        SceneError: where nothing says when to stop.
+        EventsimError: for an engine or an option that does not exist, and for wishes that do not go together.
+        LogError: for a log that cannot be written.
+        CheckpointError: for a checkpoint that cannot be written.
     """
     chosen = engine_named(engine)
     given = chosen.options_from(options, PARAMETERS)
