@@ -72,8 +72,25 @@ def _compiled() -> Kernels:
     # rare, or long: calls of their own
     for rare in (sums.widen, sums.merge, sums.mark, sums.sample, sums.hold, sums.spread, sums.fall, sums.side_of, sums.strike):
         register_jitable(**ALONE)(rare)
+    _fetch_disks()
     whole = (sums.take, sums.finish, sums.hold_all)
     try:
         return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False, cache=True)(part) for part in whole))
     except RuntimeError:  # no folder to keep them in
         return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False)(part) for part in whole))
+
+
+def _fetch_disks() -> None:
+    """Have machine code ask for the two cache lines of a disk where `sums.expect` is called."""
+    from numba.extending import overload
+
+    from eventsim.engines.fast.numba_memory import pointer, prefetch
+
+    @overload(sums.expect, inline="always", strict=False)  # type: ignore[untyped-decorator]
+    def expect(disks: Any, i: Any) -> Callable[..., None]:
+        def asked(disks, i):  # type: ignore[no-untyped-def]
+            line = pointer(disks)
+            prefetch(line, i * sums.DISK_COLUMNS)
+            prefetch(line, i * sums.DISK_COLUMNS + sums.DISK_COLUMNS // 2)
+
+        return asked

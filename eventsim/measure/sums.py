@@ -69,6 +69,9 @@ its middle; from the middle of the region to the wall, a disk's own being shorte
 presses that rests on it, and its acceleration; the radius of a round one, 0 of a straight one; the cosine of half its turn;
 the side that all disks are on, or `BOTH`."""
 
+AHEAD = 4
+"""Rows ahead of which disks are asked for: many disks do not fit into the nearest cache, and memory is slower than a contact."""
+
 SIDES = 3
 LEFT, RIGHT, END, BOTH = 0, 1, 2, -1
 """Of a wall: left or inner, right or outer, ends."""
@@ -439,10 +442,17 @@ def strike(plan: Plan, sums: Sums, a: int, wall: int, side: int, impulse: float)
             bins[place, first_wall(plan) + SIDES * wall + side] += impulse
 
 
+def expect(disks: Floats, i: int) -> None:
+    """Disk i is needed soon: machine code fetches it, plain Python does nothing."""
+
+
 def take(block: Block, first: int, plan: Plan, sums: Sums) -> int:
     """Take up rows from `first` on; return the number of the next row: all are taken, or the buffer of samples is full."""
     disks, numbers = sums.disks, sums.numbers
     for row in range(first, len(block.time)):
+        if row + AHEAD < len(block.time):
+            expect(disks, block.a[row + AHEAD])
+            expect(disks, max(block.b[row + AHEAD], 0))
         time = block.time[row]
         if not sample_before(sums, time):
             return row

@@ -1,6 +1,6 @@
 """Structure of a fluid, averaged over exact states at even times: g(r), S(k), bond order psi_6, coordination.
 
-Neighbours and Voronoi cells are freud's; it works in single precision, so distances are taken anew from the places.  g(r) has
+Neighbours and pairs are found in double precision (`measure.neighbours`), and bond order of the neighbours is freud's.  g(r) has
 bins of a hundredth of a diameter that begin at contact, and its value there is that of a polynomial through the first of them.
 S(k) is |sum of exp(i k r)|^2 / N at wave vectors of the box.
 
@@ -11,6 +11,9 @@ I. R. McDonald, Theory of Simple Liquids (2013), sections 2.5 and 4.1.
 from __future__ import annotations
 
 import math
+from collections import deque
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
 
@@ -24,6 +27,7 @@ from eventsim.measure.ensemble import Ensemble, ensemble_of
 from eventsim.measure.entries import Expected, averaged, beside, dash, unsteady_note
 from eventsim.measure.found import Columns, Found
 from eventsim.measure.measures import Measure
+from eventsim.measure.neighbours import pairs_within, voronoi_neighbours, wrapped
 from eventsim.record.events import Floats
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
@@ -37,8 +41,11 @@ FEWEST, MOST, WORK = 50, 200, 1_000_000
 SETTLING = 0.1
 """Share of a run that is left out where neither the scene nor anybody else says how much."""
 
-FEW = 10_000
-"""Disks below which threads take longer to start than they save."""
+LOOKERS = 2
+"""States that are looked at at once: each takes memory."""
+
+SHORT_BLOCK = 48
+"""Disks whose waves are multiplied together: few enough for the nearest cache, and for no library to begin threads of its own."""
 
 BIN, FARTHEST = 0.01, 4.0
 """Width of a bin of g(r), and how far it goes, in diameters."""
@@ -92,8 +99,8 @@ def found(log: AnyLog, discard: float | None) -> Found:
     looker = _Looker(freud, ensemble, kept)
     # in the middles of even spans: where a run ends with an event, two disks touch
     times = begun + (np.arange(count) + 0.5) * ((end - begun) / count)
-    with freud.parallel.NumThreads(1 if len(kept) < FEW else None):
-        samples = [looker.look(state.position[kept]) for state in passage.states(times.tolist())]
+    with freud.parallel.NumThreads(1):
+        samples = list(_looked_at(looker, (state.position[kept] for state in passage.states(times.tolist()))))
     note = unsteady_note(ensemble)
     contacts, g = looker.distribution(np.array([sample.pairs for sample in samples]), note)
     waves, s = looker.structure_factor(np.array([sample.waves for sample in samples]), note)
@@ -108,6 +115,18 @@ def found(log: AnyLog, discard: float | None) -> Found:
     )
     told = f"{len(samples)} states from t = {begun:.6g} to {end:.6g}; coordination: disks nearer than {NEAR:g} diameters"
     return Found((*contacts, *waves, *quantities), {"g": g, "S": s}, (told,))
+
+
+def _looked_at(looker: _Looker, places: Iterable[Floats]) -> Iterator[_Sample]:
+    """Yield what states say, in order; some are looked at while the log is read on."""
+    with ThreadPoolExecutor(LOOKERS) as pool:
+        waiting: deque[Future[_Sample]] = deque()
+        for place in places:
+            waiting.append(pool.submit(looker.look, place))
+            if len(waiting) > LOOKERS:
+                yield waiting.popleft().result()
+        for looked in waiting:
+            yield looked.result()
 
 
 def _freud() -> Any:
@@ -177,46 +196,55 @@ class _Looker:
 
     def look(self, place: Floats) -> _Sample:
         """Look at a state, (n, 2)."""
-        from_middle = place - self._origin - 0.5 * self._size
-        points = np.column_stack([from_middle, np.zeros(len(place))])
-        voronoi = self._freud.locality.Voronoi()
-        voronoi.compute((self._box, points))
-        hexatic = self._freud.order.Hexatic(k=6, weighted=False)
-        hexatic.compute((self._box, points), neighbors=voronoi.nlist)
-        bonds = np.asarray(hexatic.particle_order)
-        pairs, near = self._pairs_by_bin(from_middle, points)
+        place = wrapped(place - self._origin, self._size)
+        one, other, apart = voronoi_neighbours(place, self._size)
+        bonds = self._bond_order(place, one, other, apart)
+        pairs, near = self._pairs_by_bin(place)
         return _Sample(
             pairs=pairs,
-            waves=self._structure_factor(place - self._origin),
+            waves=self._structure_factor(place),
             order=float(np.abs(bonds.mean())),
             local=float(np.abs(bonds).mean()),
             near=near,
-            sixfold=float((np.asarray(voronoi.nlist.neighbor_counts) == 6).mean()),
+            sixfold=float((np.bincount(one, minlength=len(place)) == 6).mean()),
         )
 
-    def _pairs_by_bin(self, place: Floats, points: Floats) -> tuple[Floats, float]:
+    def _bond_order(self, place: Floats, one: Indices, other: Indices, apart: Floats) -> NDArray[np.complex64]:
+        """psi_6 of each disk, of its neighbours."""
+        order = np.argsort(one, kind="stable")
+        flat = np.zeros((len(order), 3))
+        flat[:, :2] = apart[order]
+        bonds = self._freud.locality.NeighborList.from_arrays(len(place), len(place), one[order], other[order], flat)
+        hexatic = self._freud.order.Hexatic(k=6, weighted=False)
+        points = np.column_stack([place - 0.5 * self._size, np.zeros(len(place))])
+        hexatic.compute((self._box, points), neighbors=bonds)
+        return np.asarray(hexatic.particle_order)
+
+    def _pairs_by_bin(self, place: Floats) -> tuple[Floats, float]:
         """Pairs of each pair of species by bin (pairs, bins), and neighbours of a disk."""
-        query = self._freud.locality.AABBQuery(self._box, points)
-        close = query.query(points, {"r_max": self._far * (1.0 + 1e-5), "exclude_ii": True}).toNeighborList()
-        one, other = np.asarray(close.query_point_indices), np.asarray(close.point_indices)
-        once = one < other
-        one, other = one[once], other[once]
+        one, other = pairs_within(place, self._size, self._far).T
         apart = self._stage.nearest(place[one] - place[other])
         distance = np.hypot(apart[:, 0], apart[:, 1])
         which = self._place[self._kind[one], self._kind[other]]
         away = distance / self._reach[which]
         counted = np.maximum(((away - 1.0) / BIN).astype(np.int64), 0)
-        told = (counted < self._bins) & (distance < self._far)
+        told = counted < self._bins
         flat = np.bincount(which[told] * self._bins + counted[told], minlength=len(self._pairs) * self._bins)
         near = 2.0 * float((away < NEAR).sum()) / len(place)
         return flat.reshape(len(self._pairs), self._bins).astype(np.float64), near
 
     def _structure_factor(self, place: Floats) -> Floats:
         """|sum of exp(i k r)|^2 / N at the chosen wave vectors: the waves along x times those along y, as one product."""
-        x, y = (2.0 * math.pi / self._size[axis] * place[:, axis, None] for axis in (0, 1))
-        waves_x, waves_y = np.exp(1j * x * self._along_x), np.exp(1j * y * self._along_y)
-        density = np.einsum("nx,ny->xy", waves_x, waves_y) if len(place) < FEW else waves_x.T @ waves_y
-        factor: Floats = (np.abs(density.ravel()[self._chosen]) ** 2) / len(place)
+        up = self._along_y[self._along_y >= 0]
+        products = np.zeros((2 * len(self._along_x), 2 * len(up)))
+        for first in range(0, len(place), SHORT_BLOCK):
+            x, y = (2.0 * math.pi / self._size * place[first : first + SHORT_BLOCK]).T
+            phases = np.outer(x, self._along_x), np.outer(y, up)
+            waves_x, waves_y = (np.hstack([np.cos(phase), np.sin(phase)]) for phase in phases)
+            products += waves_x.T @ waves_y
+        (cc, cs), (sc, ss) = ((half[:, : len(up)], half[:, len(up) :]) for half in np.vsplit(products, 2))
+        falling, rising = (cc + ss) ** 2 + (sc - cs) ** 2, (cc - ss) ** 2 + (sc + cs) ** 2  # k_y below 0, and from 0 on
+        factor: Floats = np.hstack([falling[:, :0:-1], rising]).ravel()[self._chosen] / len(place)
         return factor
 
     def distribution(self, pairs: Floats, note: str | None) -> tuple[list[Measure], Columns]:
