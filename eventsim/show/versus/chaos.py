@@ -16,6 +16,8 @@ from eventsim.validation.truth import BELIEVED
 
 FIRST = 1e-16
 STYLES = ("-", ":")
+BELIEVED_NOT = "#eceff2"
+"""Background where no digit is left."""
 
 
 def draw_chaos(axes: Axes, chaos: Chaos) -> None:
@@ -33,9 +35,9 @@ def draw_chaos(axes: Axes, chaos: Chaos) -> None:
         text = f"{chaos.slope:.2g} bits lost in each contact"
         axes.semilogy(chaos.contacts[shown], steep[shown], "--", color=LIGHT.faint, lw=1.2, label=text)
         axes.axvline(chaos.horizon, color=LIGHT.ink, lw=1.1)
-        axes.axvspan(chaos.horizon, float(chaos.contacts[-1]), color="#eceff2", zorder=0)
+        axes.axvspan(chaos.horizon, float(chaos.contacts[-1]), color=BELIEVED_NOT, zorder=0)
         text = f"float64 ends:\n{chaos.horizon:.0f} contacts,\nerror {BELIEVED:g}\n\nonly statistics\nare true here"
-        note(axes, text, (chaos.horizon, 1e-6), offset=(5, 0), va="center", bbox=None)
+        note(axes, text, (chaos.horizon, 1e-6), offset=(5, 0), va="center", back=BELIEVED_NOT)
     axes.set_xlim(0.0, float(chaos.contacts[-1]))
     axes.set_ylim(FIRST / 3.0, 30.0)
     axes.legend(loc="lower right", fontsize=8.5, framealpha=0.95, borderpad=0.3)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from textwrap import fill
 
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, NullLocator
@@ -11,14 +12,17 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import NAMES, look
-from eventsim.show.versus.notes import ACROSS, note
+from eventsim.show.versus.notes import ACROSS, note, panel_title
 from eventsim.validation.compare import Comparison, Line
 from eventsim.validation.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
 
 STEP = "step: radii that a typical disk flies in it"
 
-MOST_NAMES = 2
-"""Engines that a note names: more would leave its panel."""
+NOTE_LETTERS = 20
+"""In a line of a note: a wide one would hide curves."""
+
+PERFECT = "#eef3ea"
+"""Background where energy says that all is well."""
 
 NONE = 0.2
 """Per cent: where runs that miss no contact are drawn, at most; half a contact may be more, and would lie above real losses."""
@@ -41,16 +45,14 @@ def draw_energy(axes: Axes, comparison: Comparison) -> None:
     """The relative change of energy of the same runs."""
     _draw(axes, comparison, lambda line: math.nan if line.energy is None else max(abs(line.energy), ROUNDING))
     axes.set_ylim(0.3 * ROUNDING, 3.0)
-    axes.axhspan(0.3 * ROUNDING, PERFECT_ENERGY, color="#eef3ea", zorder=0)
+    axes.axhspan(0.3 * ROUNDING, PERFECT_ENERGY, color=PERFECT, zorder=0)
     blind = blindest(comparison)
-    text = "energy looks perfect here"
+    text = "green: energy looks perfect"
     if blind:
-        labels = list(dict.fromkeys(line.label for line in blind))
-        named = ", ".join(labels[:MOST_NAMES]) + (f" and {len(labels) - MOST_NAMES} more" if len(labels) > MOST_NAMES else "")
         share = blind[0].census.share(blind[0].census.missed)
-        text += f",\nwith up to {share:.0%} of the contacts missed\n({named})"
-    note(axes, text, (0.03, 3e-10), ACROSS, va="top", bbox=None)
-    label(axes, STEP, "relative change of energy", "What does energy hide? The losses on the left")
+        text += f", yet up to {share:.0%} of the contacts are missed ({blind[0].label})"
+    note(axes, fill(text, NOTE_LETTERS), (0.02, 1e-10), ACROSS, va="top", back=PERFECT)
+    label(axes, STEP, "relative change of energy", panel_title("What does energy hide? The losses on the left"))
 
 
 def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) -> None:

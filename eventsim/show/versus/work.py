@@ -12,7 +12,7 @@ from eventsim.show.figures.style import label
 from eventsim.show.output import as_written
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import look
-from eventsim.show.versus.notes import ACROSS, note
+from eventsim.show.versus.notes import ACROSS, note, panel_title
 from eventsim.validation.advantages import (
     WANTED,
     Advantage,
@@ -57,14 +57,14 @@ def draw_work(axes: Axes, curves: Curves) -> None:
         axis.set_minor_formatter(NullFormatter())
     if curves.floor > 0.0:
         axes.axhspan(axes.get_ylim()[0], curves.floor, color=SHADE, zorder=0)
-        note(axes, "below: chance", (0.98, 0.015), "axes fraction", ha="right", color=LIGHT.faint, bbox=None)
+        note(axes, "below: chance", (0.98, 0.015), "axes fraction", ha="right", color=LIGHT.faint, back=SHADE)
     win = winning(curves)
     if win is not None:
         _draw_win(axes, win)
     else:
         _draw_advantages(axes, curves)
     title = f"{curves.task.name}: {curves.task.words}" if curves.task.words else curves.task.name
-    label(axes, "CPU seconds per time unit of the scene", ERRORS[curves.task.measure], as_written(title))
+    label(axes, "CPU seconds per time unit of the scene", ERRORS[curves.task.measure], as_written(panel_title(title)))
     axes.title.set_fontsize(10.5)
 
 
@@ -79,7 +79,7 @@ def _draw_win(axes: Axes, win: Win) -> None:
     """Shade the errors at which a stepped engine is the faster one."""
     axes.axhspan(axes.get_ylim()[0], win.begins, color=WON, zorder=0)
     text = f"shaded: {win.label} is ahead,\n{amount(win.ratio)} x sooner at {win.error:.1g}"
-    note(axes, text, (0.02, 0.03), "axes fraction", bbox=None)
+    note(axes, text, (0.02, 0.03), "axes fraction", back=WON)
 
 
 def _draw_advantages(axes: Axes, curves: Curves) -> None:
