@@ -135,11 +135,11 @@ def _lost(needs: Needs) -> str:
 def _contacts(needs: Needs) -> str:
     law = needs.law
     if not law.keeps_energy():
-        return law.words(short)
+        return law.words(short) + law.rough_words(short)
     kept = "but a moving disk of mass inf does work, so energy is not conserved"
     if not needs.obstacles:
         kept = "energy is conserved; the run says in the end how far rounding changed it"
-    text = f"{law.words(short)}{'; ' if needs.obstacles else ': '}{kept}"
+    text = f"{law.words(short)}{law.rough_words(short)}{'; ' if needs.obstacles else ': '}{kept}"
     return f"{text}; masses so uneven that velocities carry what their rounding leaves" if needs.low_parts else text
 
 

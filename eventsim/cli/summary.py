@@ -42,7 +42,7 @@ def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = N
         "write_s": run.write_s,
         "events_per_s": _rate(run),
         "digest": run.digest,
-        "residuals": asdict(run.residuals),
+        "residuals": {key: value for key, value in asdict(run.residuals).items() if key in USUAL or value is not None},
         "horizon": None if horizon is None else asdict(horizon),
         "trust": None if run.trust is None else asdict(run.trust),
         "stopped": run.stopped,
@@ -60,6 +60,7 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
         ("events", _events(run)),
         ("energy", _energy(residuals.energy)),
         ("momentum", _momentum(residuals.momentum)),
+        *(() if residuals.angular_momentum is None else [("rotation", _rotation(residuals.angular_momentum))]),
         ("overlap", _overlap(residuals.max_overlap)),
         ("stopped", stop_words(run)),
     ]
@@ -78,6 +79,14 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
     if files.checkpoint is not None:
         rows.append(("checkpoint", f"eventsim run --resume {quote(str(files.checkpoint))} goes on from here"))
     return f"{title(asked, run.scene.name)}: {scene_line(run.scene)}\n{aligned(rows)}"
+
+
+USUAL = ("energy", "momentum", "max_overlap")
+"""Residuals that every run has."""
+
+
+def _rotation(change: float) -> str:
+    return f"angular momentum changed by {abs(change):.1g} of the sum of its terms"
 
 
 def horizon_words(horizon: Horizon) -> str:

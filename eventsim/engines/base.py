@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.trajectory import Trajectory
-from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.events import Floats, Rows, row_of
 from eventsim.record.times import clock_times
 from eventsim.scene.stage import Stage
 
@@ -31,7 +31,8 @@ class Stop:
 class Snapshot:
     """All that the future of a run depends on, whichever engine holds it; see `EngineState` for the meaning of the names.
 
-    low_vx, low_vy: empty where velocities have no low parts; sides: where no disk is a point to a wall.
+    low_vx, low_vy: empty where velocities have no low parts; sides: where no disk is a point to a wall; spin: where disks have
+    none.
     Calendars and cells are no part of it: they follow from the flights.
     """
 
@@ -52,6 +53,7 @@ class Snapshot:
     low_vx: tuple[float, ...] = ()
     low_vy: tuple[float, ...] = ()
     sides: tuple[Any, ...] = ()
+    spin: tuple[float, ...] = ()
 
 
 @dataclass(slots=True)
@@ -91,7 +93,7 @@ class Counters:
 
 
 class Motion(NamedTuple):
-    """All disks at one time: (n,) arrays relative to the corner, and how often each wrapped around the domain."""
+    """All disks at one time: (n,) arrays relative to the corner, how often each wrapped around the domain, spins if they have."""
 
     x: Floats
     y: Floats
@@ -99,6 +101,7 @@ class Motion(NamedTuple):
     vy: Floats
     wraps_x: NDArray[np.int64]
     wraps_y: NDArray[np.int64]
+    spin: Floats | None = None
 
 
 class BrokenOffError(BaseException):
@@ -174,9 +177,9 @@ class Session(ABC):
         """End here: rows that were held back, because it might have begun again, can be taken."""
 
 
-def rows_from(tuples: list[tuple[Any, ...]], epoch_length: float, start_time: float) -> Rows:
-    """An array of ROW from the tuples that an engine appended, the column `time` filled in."""
-    rows = np.array(tuples, dtype=ROW)
+def rows_from(tuples: list[tuple[Any, ...]], stage: Stage) -> Rows:
+    """An array of rows from the tuples that an engine appended, the column `time` filled in."""
+    rows = np.array(tuples, dtype=row_of(stage.spin is not None))
     if len(rows):
-        rows["time"] = clock_times(rows["epoch"], rows["remainder"], epoch_length, start_time)
+        rows["time"] = clock_times(rows["epoch"], rows["remainder"], stage.epoch_length, stage.start_time)
     return rows

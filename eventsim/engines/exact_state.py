@@ -30,9 +30,9 @@ class ExactState(ABC):
     (a remainder; -inf: never, LONG_AGO: never, but it was kicked).  at_once: its contacts at that very time, to see that an
     instant does not end.  number: makes a number of the engine's type from a float.  low_parts: whether velocities carry what
     their rounding at a contact left, in low_vx and low_vy, which are empty otherwise; numbers of another type than float need
-    none.  gravity_x, gravity_y: the acceleration of each disk, None without gravity.  sides: of walls that points are on, None
-    where no disk is one.  window: the exponent of its length; window_end: where the window ends, later where it stayed open
-    because it had no row (opened).
+    none.  spin: angular velocities, None where disks have none; contacts change them.  gravity_x, gravity_y: the acceleration of
+    each disk, None without gravity.  sides: of walls that points are on, None where no disk is one.  window: the exponent of its
+    length; window_end: where the window ends, later where it stayed open because it had no row (opened).
     """
 
     n: int
@@ -58,6 +58,7 @@ class ExactState(ABC):
     low_parts: bool
     low_vx: MutableSequence[float]
     low_vy: MutableSequence[float]
+    spin: Any
     gravity_x: Any
     gravity_y: Any
     supports: Any

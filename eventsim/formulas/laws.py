@@ -8,11 +8,12 @@ what follows for contacts that pile up, for rest, for neighbouring runs.  Kernel
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, NamedTuple, Protocol
 
 from eventsim.formulas.impulse import contact_restitution
 from eventsim.formulas.real import Real
+from eventsim.formulas.rough import SMOOTH, Roughness
 
 
 class Numbers(NamedTuple):
@@ -52,6 +53,7 @@ class Law:
         pairs: that of each two species, by their numbers; None where `pair` is that of all.
         by_speed: whether it looks at the speed of approach.  Then contacts of one instant that share disks are resolved only
             where each is what it would be alone, and stepped engines do not know it.
+        rough: the tangential restitution, where disks spin; None where they have no spin.
     """
 
     pair: float
@@ -60,6 +62,7 @@ class Law:
     walls: tuple[float, ...] | None = field(default=None, kw_only=True)
     pairs: tuple[tuple[float, ...], ...] | None = field(default=None, kw_only=True)
     by_speed: ClassVar[bool] = False
+    rough: Roughness | None = field(default=None, kw_only=True)
 
     def of_wall(self, wall: int) -> float:
         """The usual restitution at a wall, by its number in the log."""
@@ -89,11 +92,12 @@ class Law:
 
     def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
         """Whether contacts conserve energy: those between disks, those at walls."""
-        return all(share == 1.0 for share in self.shares(pairs, walls))
+        normal = all(share == 1.0 for share in self.shares(pairs, walls))
+        return normal and (self.rough is None or self.rough.keeps_energy(pairs, walls))
 
     def loses_energy(self) -> bool:
         """Whether contacts take energy, so that they can pile up."""
-        return any(share < 1.0 for share in self.shares())
+        return any(share < 1.0 for share in self.shares()) or (self.rough is not None and not self.rough.keeps_energy())
 
     def loss(self) -> float:
         """1 - e of the least inelastic contacts that take energy, at the lowest speeds; 0 where none does."""
@@ -101,7 +105,7 @@ class Law:
 
     def comes_to_rest(self) -> bool:
         """Whether bounces become ever lower, so that under gravity disks end up lying on something."""
-        return self.loses_energy()
+        return any(share < 1.0 for share in self.shares())
 
     def series(self, usual: float) -> float:
         """The restitution of bounces that follow each other ever faster, at a wall with this usual one."""
@@ -110,6 +114,8 @@ class Law:
     @property
     def beyond_steps(self) -> str | None:
         """What of it stepped engines do not know; None where they do: `pair` and `wall` are all."""
+        if self.rough is not None:
+            return "disks that spin"
         if self.by_speed:
             return self.name()
         return "restitution of single walls or species" if self.walls or self.pairs else None
@@ -117,7 +123,14 @@ class Law:
     @property
     def no_tangent(self) -> str | None:
         """Why it is not known how neighbouring runs part at its contacts, a clause; None where it is."""
+        if self.rough is not None:
+            return "rough disks turn each other: no tangent map of that is known here"
         return f"{self.name()} hangs on how fast disks meet: no tangent map of it is known here" if self.by_speed else None
+
+    @property
+    def grips(self) -> tuple[bool, bool]:
+        """Whether contacts turn disks: those between disks, those at walls."""
+        return (False, False) if self.rough is None else (self.rough.pair > SMOOTH, self.rough.wall > SMOOTH)
 
     def name(self) -> str:
         """What a sentence calls it."""
@@ -127,6 +140,13 @@ class Law:
         """What a page on a scene says of its contacts; number: how it writes one."""
         pairs, walls = (" or ".join(map(number, dict.fromkeys(self.shares(*kind)))) for kind in ((True, False), (False, True)))
         return f"restitution {pairs} between disks, {walls} at walls: energy is lost"
+
+    def rough_words(self, number: Callable[[float], str]) -> str:
+        """What it says of spins; nothing where there are none."""
+        if self.rough is None:
+            return ""
+        pair, wall = number(self.rough.pair), number(self.rough.wall)
+        return f"; tangential restitution {pair} between disks, {wall} at walls (-1: smooth, 1: perfectly rough)"
 
     def remedy(self) -> str:
         """What is left to do about contacts that pile up."""
@@ -232,8 +252,19 @@ def law_of(
     duration: float | None,
     walls: tuple[float, ...] | None = None,
     pairs: tuple[tuple[float, ...], ...] | None = None,
+    rough: Roughness | None = None,
 ) -> Law:
-    """The law of a scene: its restitution, None where it is elastic; a contact duration; the shares of walls and of species."""
+    """The law of a scene: its restitution, None if it is elastic; a contact duration; shares of walls, of species; roughness."""
+    law = _smooth_law_of(restitution, duration, walls, pairs)
+    return law if rough is None else replace(law, rough=rough)
+
+
+def _smooth_law_of(
+    restitution: Shares | None,
+    duration: float | None,
+    walls: tuple[float, ...] | None,
+    pairs: tuple[tuple[float, ...], ...] | None,
+) -> Law:
     if restitution is None:
         return Elastic(1.0, 1.0, None)
     if restitution.yield_speed is not None:

@@ -13,7 +13,8 @@ from eventsim.scene.contact_law import law_of_scene
 def settings_of(scene: Scene) -> str | None:
     """What a scene has besides its disks and walls that changes its contacts, in words; None where it has nothing."""
     law = law_of_scene(scene)
-    return None if law.keeps_energy() else law.words("{:g}".format)
+    words = law.words("{:g}".format) + law.rough_words("{:g}".format)
+    return None if law.keeps_energy() and law.rough is None else words
 
 
 def gas_of(scene: Scene) -> dict[str, Any]:

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
 from eventsim.errors import CollapseError, EventsimError
 from eventsim.patience import patience
-from eventsim.record.events import Rows, State, blank_rows
+from eventsim.record.events import Rows, State, joined
 from eventsim.replay.log import EventLog
 from eventsim.scene import Scene
 from eventsim.simulation import SavedSimulation, Simulation
@@ -125,7 +123,7 @@ class Track:
             parts.append(self._blocks[place][first - begin : end - begin])
             first = self._ends[place]
             place += 1
-        return np.concatenate(parts) if parts else blank_rows(0)
+        return joined(parts)
 
     def log(self) -> EventLog:
         """Return all that happened so far."""

@@ -26,8 +26,8 @@ from eventsim.measure.profile import Profiler
 from eventsim.measure.records import Records
 from eventsim.measure.speeds import FASTEST
 from eventsim.measure.walls import described_walls
-from eventsim.record.events import ROW, Floats, Kind, Rows
-from eventsim.record.provenance import Kick, Provenance
+from eventsim.record.events import Floats, Kind, Rows, row_of
+from eventsim.record.provenance import Kick, Provenance, has_spin
 from eventsim.replay.log import AnyLog, stream_log
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
@@ -36,7 +36,6 @@ from eventsim.scene.stage import Stage, stage_of
 BLOCK = 1 << 15
 """Rows that are taken up together."""
 
-WHOLE = np.dtype((np.void, ROW.itemsize))
 """A row as it lies in memory: copied at once, and not column by column."""
 
 FIRST_BINS = 64
@@ -107,7 +106,8 @@ class Meter:
         self._sums = _sums(scene, stage, ensemble, self._plan, watched)
         self._sums.numbers[sums.ORIGIN] = self.discard or 0.0
         self._groups = Groups(ensemble.counted)
-        self._block = np.empty(BLOCK, dtype=ROW)
+        self._block = np.empty(BLOCK, dtype=row_of(has_spin(scene)))
+        self._whole = np.dtype((np.void, self._block.itemsize))
         self._filled, self._rows = 0, 0
         self._correlator: Correlator | None = None
         self._most_samples = len(self._sums.way)
@@ -119,7 +119,7 @@ class Meter:
         while begin < len(rows):
             count = min(len(rows) - begin, BLOCK - self._filled)
             part = rows[begin : begin + count]
-            self._block[self._filled : self._filled + count].view(WHOLE)[:] = part.view(WHOLE)
+            self._block[self._filled : self._filled + count].view(self._whole)[:] = part.view(self._whole)
             self._filled, begin = self._filled + count, begin + count
             if self._filled == BLOCK:
                 self._take(self._block)

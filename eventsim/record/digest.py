@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eventsim.record.events import OFFSETS, ROW, Rows
+from eventsim.record.events import OFFSETS, ROW, SPIN_ROW, SPINS, Rows, has_spins
 
 CHUNK = 1 << 16
 """Rows that are hashed together."""
@@ -26,18 +26,19 @@ RECORD = np.dtype(
     + [("remainder", "<f8")]
     + [(name, "<c16") for name in ("place_a", "place_b", "velocity_a", "velocity_b")]
 )
+SPIN_RECORD = np.dtype([*((name, RECORD[name]) for name in RECORD.names or ()), *((name, "<f8") for name in SPINS)])
+"""That of scenes with spin."""
+
 FLOATS = ("remainder", *PAIRS.values())
 PIECE = 1 << 11
 """Rows that are made records of at a time: these, and the rows, stay in a core's own cache."""
 
-PAIRS_OF_ROWS = np.dtype(
-    {
-        "names": list(PAIRS.values()),
-        "formats": ["<c16"] * len(PAIRS),
-        "offsets": [OFFSETS[first] for first in PAIRS],
-        "itemsize": ROW.itemsize,
-    }
-)
+def _pairs_of(row: np.dtype[Any]) -> np.dtype[Any]:
+    names, offsets = list(PAIRS.values()), [OFFSETS[first] for first in PAIRS]
+    return np.dtype({"names": names, "formats": ["<c16"] * len(PAIRS), "offsets": offsets, "itemsize": row.itemsize})
+
+
+PAIRS_OF_ROWS = {row: _pairs_of(row) for row in (ROW, SPIN_ROW)}
 
 Records = NDArray[np.void]
 
@@ -91,12 +92,15 @@ class Digester:
     """The running digest of what rows tell, in order.
 
     Each row contributes the little-endian 64-bit values kind code, a, b, wall index, epoch, remainder, positions
-    (xa, ya, xb, yb), velocities (vxa, vya, vxb, vyb). -0.0 counts as 0.0 and there is one NaN, since
-    neither sign nor payload of these is physics. Event number, time, impulse and joint are no part of it.
+    (xa, ya, xb, yb), velocities (vxa, vya, vxb, vyb), and, where disks have spin, spin_a and spin_b. -0.0 counts as 0.0 and
+    there is one NaN, since neither sign nor payload of these is physics. Event number, time, impulse and joint are no part of it.
     """
 
-    def __init__(self) -> None:
-        self._sum = Chunked(RECORD)
+    def __init__(self, spin: bool = False) -> None:
+        """spin: whether disks have spin."""
+        self._sum = Chunked(record_of(spin))
+        self._spins = SPINS if spin else ()
+        self._floats = (*FLOATS, *self._spins)
         self.progress, self.go_on, self.hexdigest = self._sum.progress, self._sum.go_on, self._sum.hexdigest
 
     def update(self, rows: Rows) -> None:
@@ -108,10 +112,12 @@ class Digester:
             for name in INTEGERS:
                 records[name] = piece[name]
             np.add(piece["remainder"], 0.0, out=records["remainder"])  # -0.0 + 0.0 is 0.0
-            pairs = piece.view(PAIRS_OF_ROWS)
+            pairs = piece.view(PAIRS_OF_ROWS[piece.dtype])
             for name in PAIRS.values():
                 np.add(pairs[name], 0.0, out=records[name])
-            if any(np.isnan(records[name]).any() for name in FLOATS):
+            for name in self._spins:
+                np.add(piece[name], 0.0, out=records[name])
+            if any(np.isnan(records[name]).any() for name in self._floats):
                 floats = records.view(np.float64).reshape(len(piece), -1)[:, len(INTEGERS) :]
                 np.copyto(floats, np.nan, where=np.isnan(floats))
             self._sum.add(records)
@@ -124,8 +130,8 @@ class StoredDigester:
     def __init__(self, columns: tuple[str, ...]) -> None:
         """columns: of the file, all or those of a compact log."""
         self._columns = columns
-        self._floats = [name for name in columns if ROW[name].kind == "f"]
-        self._sum = Chunked(np.dtype([(name, "<f8" if ROW[name].kind == "f" else "<i8") for name in columns]))
+        self._floats = [name for name in columns if SPIN_ROW[name].kind == "f"]
+        self._sum = Chunked(np.dtype([(name, "<f8" if name in self._floats else "<i8") for name in columns]))
         self.hexdigest = self._sum.hexdigest
 
     def update(self, rows: Rows) -> None:
@@ -142,8 +148,13 @@ class StoredDigester:
             first += len(records)
 
 
+def record_of(spin: bool) -> np.dtype[Any]:
+    """Return what a row contributes to a digest, of a scene with or without spin."""
+    return SPIN_RECORD if spin else RECORD
+
+
 def digest_of(rows: Rows) -> str:
     """Return the digest of full rows."""
-    digester = Digester()
+    digester = Digester(has_spins(rows))
     digester.update(rows)
     return digester.hexdigest()

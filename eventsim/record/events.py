@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias, get_type_hints
@@ -85,14 +86,30 @@ class Columns:
     remainder: Annotated[Column, Field("<f8", kept=True)]
 
 
-FIELDS: dict[str, Field] = {
-    name: hint.__metadata__[0] for name, hint in get_type_hints(Columns, include_extras=True).items()
-}
+class SpinColumns(Columns):
+    """The same of scenes whose disks have spin: angular velocities after the contact."""
 
-ROW = np.dtype([(name, field.type) for name, field in FIELDS.items()])
+    spin_a: Annotated[Column, FLOAT]
+    spin_b: Annotated[Column, FLOAT]
+
+
+def _columns(kind: type[Columns]) -> tuple[str, ...]:
+    return tuple(get_type_hints(kind))
+
+
+FIELDS: dict[str, Field] = {
+    name: hint.__metadata__[0] for name, hint in get_type_hints(SpinColumns, include_extras=True).items()
+}
+COLUMNS: tuple[str, ...] = _columns(Columns)
+SPINS: tuple[str, ...] = tuple(name for name in FIELDS if name not in COLUMNS)
+"""The columns that only scenes with spin have."""
+
+SPIN_ROW = np.dtype([(name, FIELDS[name].type) for name in (*COLUMNS, *SPINS)])
+"""A row of a scene whose disks have spin."""
+
+ROW = np.dtype([(name, FIELDS[name].type) for name in COLUMNS])
 """One row per impulse; b, wall and joint are -1 and floats NaN where there is none.  128 bytes without gaps: two cache lines."""
 
-COLUMNS: tuple[str, ...] = tuple(FIELDS)
 OFFSETS = {name: int(field[1]) for name, field in (ROW.fields or {}).items()}
 """Where each column lies in a row, bytes."""
 
@@ -100,15 +117,39 @@ COMPACT_COLUMNS: tuple[str, ...] = tuple(name for name, field in FIELDS.items() 
 """What a compact log keeps; replay computes the others."""
 
 
-def blank_rows(count: int) -> Rows:
+def columns_of(spin: bool) -> tuple[str, ...]:
+    """Return the names of the columns of full rows, of a scene with or without spin."""
+    return (*COLUMNS, *SPINS) if spin else COLUMNS
+
+
+def row_of(spin: bool) -> np.dtype[Any]:
+    """Return the type of such rows."""
+    return SPIN_ROW if spin else ROW
+
+
+def has_spins(rows: Rows) -> bool:
+    """Whether rows are those of a scene with spin."""
+    return rows.dtype == SPIN_ROW
+
+
+def blank_rows(count: int, spin: bool = False) -> Rows:
     """Return `count` rows in which everything is missing: zeros for event, epoch and kind, else -1 or NaN."""
-    rows = np.zeros(count, dtype=ROW)
-    for name, layout in FIELDS.items():
-        if ROW[name].kind == "f":
+    rows = np.zeros(count, dtype=row_of(spin))
+    for name in columns_of(spin):
+        missing = FIELDS[name].missing
+        if rows.dtype[name].kind == "f":
             rows[name] = np.nan
-        elif layout.missing is not None:
-            rows[name] = layout.missing
+        elif missing is not None:
+            rows[name] = missing
     return rows
+
+
+def joined(blocks: Sequence[Rows], spin: bool | None = None) -> Rows:
+    """Return blocks of rows as one; empty ones may be of either type.  spin: which there would be, if nobody tells."""
+    told = [rows for rows in blocks if len(rows)]
+    if told:
+        return np.concatenate(told)
+    return blocks[0] if blocks and spin is None else blank_rows(0, bool(spin))
 
 
 def unchangeable(rows: Rows) -> Rows:
@@ -124,12 +165,14 @@ class State:
 
     time: on the scene's clock. position, velocity: float64 arrays (N, 2) on the scene's axes, as in a scene file;
     along a period the position lies inside the domain.  scene: what the disks are; None where that is not known.
+    spin: angular velocities (N,); None where disks have none.
     """
 
     time: float
     position: Floats
     velocity: Floats
     scene: Scene | None = field(default=None, compare=False)
+    spin: Floats | None = None
 
     def __repr__(self) -> str:
         return f"State(time = {self.time!r}, {len(self.position)} disks)"
@@ -141,12 +184,15 @@ class State:
 
     @property
     def energy(self) -> float:
-        """Kinetic and, under gravity, potential energy (0 at the point (0, 0)) of the disks of finite mass.
+        """Kinetic (of rotation too) and, under gravity, potential energy (0 at the point (0, 0)) of the disks of finite mass.
 
         Raises EventsimError where a state was made without its scene.
         """
         mass = self._masses()
         energy = 0.5 * float(mass @ (self.velocity**2).sum(axis=1))
+        if self.spin is not None and self.scene is not None:
+            disks = self.scene.disks
+            energy += 0.5 * float((mass * disks.moments()) @ (disks.radius * self.spin) ** 2)
         if self.scene is not None and self.scene.gravity is not None:
             energy -= float(mass @ (self.position @ np.array(self.scene.gravity)))
         return energy

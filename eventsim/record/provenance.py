@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventsim.errors import LogError, SceneError
-from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, Kind, Rows
+from eventsim.record.events import COMPACT_COLUMNS, Kind, Rows, columns_of
 from eventsim.scene import Scene
 from eventsim.scene.corner import least_starting_place
 from eventsim.scene.files import listed_scene, scene_beside_disks, scene_to_json
@@ -82,7 +82,12 @@ class Provenance:
 
 def columns_kept(provenance: Provenance) -> tuple[str, ...]:
     """Return the names of the columns that a log has, in order."""
-    return COMPACT_COLUMNS if provenance.compact else COLUMNS
+    return COMPACT_COLUMNS if provenance.compact else columns_of(has_spin(provenance.scene))
+
+
+def has_spin(scene: Scene) -> bool:
+    """Whether the disks of a scene turn, so that its rows tell their spins."""
+    return scene.tangential_restitution is not None
 
 
 class Recorded(NamedTuple):
@@ -211,8 +216,11 @@ def scene_digest(provenance: Provenance) -> str:
     scene, frame = provenance.scene, provenance
     disks = scene.disks
     sha = hashlib.sha256(scene_beside_disks(scene).encode())
-    for column in (disks.position, disks.velocity, disks.radius, disks.mass):
+    columns = (disks.position, disks.velocity, disks.radius, disks.mass, disks.spin, disks.moment)
+    for column in (column for column in columns if column is not None):
         sha.update(np.ascontiguousarray(column, "<f8").data)
+    if disks.species is not None:
+        sha.update(json.dumps(disks.species.tolist()).encode())
     sha.update(json.dumps([frame.bits, frame.epoch_length, frame.corner, list(frame.wall_names)]).encode())
     return sha.hexdigest()
 

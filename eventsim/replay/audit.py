@@ -9,7 +9,7 @@ from pathlib import Path
 
 from eventsim.errors import LogError, LogWarning
 from eventsim.record.digest import Digester
-from eventsim.record.provenance import BITS
+from eventsim.record.provenance import BITS, has_spin
 from eventsim.replay.filed import open_filed
 from eventsim.replay.passage import Passage
 
@@ -48,7 +48,7 @@ def audit(path: str | PathLike[str]) -> Audit:
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always", LogWarning)
         log = open_filed(path)
-        provenance, digester = log.provenance, Digester()
+        provenance, digester = log.provenance, Digester(has_spin(log.scene))
         for rows in log.blocks():
             digester.update(rows)
     changed = [str(one.message) for one in said if "not what its run wrote" in str(one.message)]

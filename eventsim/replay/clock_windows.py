@@ -253,6 +253,8 @@ def changes_in(stage: Stage, rows: Rows, windows: Column) -> tuple[Column, Fligh
     flights.window, flights.t = windows[row], found["remainder"].copy()
     for name in ("x", "y", "vx", "vy"):
         setattr(flights, name, np.where(is_a, found[name + "a"], found[name + "b"]))
+    if flights.spin is not None:
+        flights.spin = np.where(is_a, found["spin_a"], found["spin_b"])
     if stage.supports is not None and flights.gx is not None and flights.gy is not None:
         rests = found["kind"] == Kind.REST
         flights.gx[rests], flights.gy[rests] = stage.slopes[found["wall"][rests]].T

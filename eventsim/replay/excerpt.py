@@ -10,7 +10,7 @@ import numpy as np
 
 from eventsim.errors import EventsimError
 from eventsim.notebook import few, html_table
-from eventsim.record.events import COLUMNS, LABELS, Column, Columns, Kind, Rows, unchangeable
+from eventsim.record.events import LABELS, Column, Kind, Rows, SpinColumns, columns_of, has_spins, unchangeable
 from eventsim.record.places import on_scene_axes
 from eventsim.record.provenance import Provenance
 from eventsim.scene.corner import corner_of
@@ -55,10 +55,11 @@ SHOWN = ("event", "time", "kind", "a", "b", "wall", "xa", "ya", "impulse")
 """Columns of the table in a notebook."""
 
 
-class Excerpt(Columns):
+class Excerpt(SpinColumns):
     """Some rows of a log.
 
-    Every column is an attribute holding a read-only array (`rows.time`, `rows.vxa`, ...): `kind` holds codes
+    Every column is an attribute holding a read-only array (`rows.time`, `rows.vxa`, ...), `spin_a` and `spin_b` only where disks
+    have spin: `kind` holds codes
     (`kinds` the text), `wall` indices into `provenance.wall_names` (`wall_name` the text).  Places are relative to
     `provenance.corner`; `rows[i]` and `to_pandas()` give those of the scene.
     """
@@ -67,7 +68,7 @@ class Excerpt(Columns):
         view = unchangeable(rows)
         self.provenance = provenance
         self.rows = view
-        for name in COLUMNS:
+        for name in columns_of(has_spins(rows)):
             setattr(self, name, view[name])
 
     def __len__(self) -> int:
@@ -120,7 +121,7 @@ class Excerpt(Columns):
             import pandas as pd
         except ImportError:
             raise EventsimError("a data frame is made by pandas: pip install pandas") from None
-        columns: dict[str, Any] = {name: self.rows[name].copy() for name in COLUMNS}
+        columns: dict[str, Any] = {name: self.rows[name].copy() for name in columns_of(has_spins(self.rows))}
         columns |= {name: self._place(columns[name], name) for name in PLACES}
         columns["kind"] = pd.Categorical.from_codes(columns["kind"], [kind.label for kind in Kind])
         columns["wall"] = pd.Categorical.from_codes(columns["wall"], list(self.provenance.wall_names))

@@ -14,8 +14,8 @@ from eventsim.engines import TABLE, engine_named
 from eventsim.engines.auto import first_engine
 from eventsim.engines.base import Session, Stop
 from eventsim.errors import LogError
-from eventsim.record.events import COMPACT_COLUMNS, ROW, Kind, Rows, blank_rows
-from eventsim.record.provenance import BITS, Ending, Provenance
+from eventsim.record.events import COMPACT_COLUMNS, Kind, Rows, blank_rows, joined, row_of
+from eventsim.record.provenance import BITS, Ending, Provenance, has_spin
 from eventsim.record.times import clock_times
 from eventsim.replay.clock_windows import MOST_WINDOWS, stage_of_log
 from eventsim.runner.recording import Writer
@@ -38,7 +38,7 @@ def expand_rows(provenance: Provenance, compact: Rows) -> Rows:
 def expand_blocks(provenance: Provenance, blocks: Iterable[Rows]) -> Generator[Rows]:
     """Yield the full rows of a compact log, block by block; LogError as `expand_rows`."""
     coming = iter(blocks)
-    first = next(coming, blank_rows(0))
+    first = next(coming, blank_rows(0, has_spin(provenance.scene)))
     expansion = Expansion(provenance, max(provenance.rows or 0, len(first)))
     for block in chain([first], coming):
         yield expansion.follow(block)
@@ -89,16 +89,17 @@ class Expansion:
         chosen = engine_named(first_engine(self._stage, Stop(events=count)))
         self._session: Session = chosen.open(self._stage)
         self._set = {event: (vx, vy) for event, vx, vy in provenance.kicks}
-        self._ahead = blank_rows(0)  # rows of a generation that the log has cut, or has not come to
+        self._spin = has_spin(provenance.scene)
+        self._ahead = blank_rows(0, self._spin)  # rows of a generation that the log has cut, or has not come to
         self._followed, self._epoch, self._budget = 0, 0, FIRST_BUDGET
-        self._compact, self._full, self._done = blank_rows(0), blank_rows(0), 0
+        self._compact, self._full, self._done = self._ahead, self._ahead, 0
 
     def follow(self, compact: Rows) -> Rows:
         """Return the next rows of the log as full ones; LogError where the engine finds others."""
         self._demand_reachable(compact)
-        self._compact, self._full, self._done = compact, np.empty(len(compact), ROW), 0
+        self._compact, self._full, self._done = compact, np.empty(len(compact), row_of(self._spin)), 0
         writer = Writer([self._take])
-        ahead, self._ahead = self._ahead, blank_rows(0)
+        ahead, self._ahead = self._ahead, blank_rows(0, self._spin)
         try:
             writer.write(ahead)
             for end in [*np.flatnonzero(compact["kind"] == Kind.KICK).tolist(), len(compact)]:
@@ -136,7 +137,7 @@ class Expansion:
         """Compare the engine's next rows with those of the log; with many this is done beside the engine."""
         left = len(self._compact) - self._done
         if len(found) > left:
-            self._ahead = np.concatenate([self._ahead, found[left:]])
+            self._ahead = joined([self._ahead, found[left:]])
         for first in range(0, min(len(found), left), PIECE):
             here = found[first : min(first + PIECE, left)]
             rows, same = self._compact[self._done : self._done + len(here)], len(here)

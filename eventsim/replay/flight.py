@@ -25,7 +25,7 @@ class Flights:
     """Free flights of disks, arrays (n,): window of the clock, remainder t in it, place and velocity at t.
 
     gx, gy: each disk's own acceleration, 0 where it is immovable, that along its wall where it rests on one; None in a scene
-    without gravity.
+    without gravity.  spin: None where disks have none.
     """
 
     window: NDArray[np.int64]
@@ -36,6 +36,7 @@ class Flights:
     vy: Floats
     gx: Floats | None
     gy: Floats | None
+    spin: Floats | None = None
 
     def take(self, chosen: Column) -> Flights:
         """Return copies of some of the flights."""
@@ -68,7 +69,8 @@ def start_flights(stage: Stage) -> Flights:
     if stage.gravity is not None:
         falls = np.ones(stage.n) if stage.mass is None else np.isfinite(stage.mass)
         gx, gy = np.where(falls, stage.gravity[0], 0.0), np.where(falls, stage.gravity[1], 0.0)
-    return Flights(window, t, stage.x.copy(), stage.y.copy(), stage.vx.copy(), stage.vy.copy(), gx, gy)
+    spin = None if stage.spin is None else stage.spin.copy()
+    return Flights(window, t, stage.x.copy(), stage.y.copy(), stage.vx.copy(), stage.vy.copy(), gx, gy, spin)
 
 
 def fly(flights: Flights, stage: Stage, windows: Windows, window: int, remainder: float) -> None:

@@ -64,6 +64,6 @@ def unwrapped(motion: Motion, states: Sequence[State], images: Indices) -> list[
     """Return the states with places that go on over the sides."""
     size = np.array([period or 0.0 for period in motion.log.scene.domain.period])
     return [
-        State(state.time, state.position + image * size, state.velocity, state.scene)
+        State(state.time, state.position + image * size, state.velocity, state.scene, state.spin)
         for state, image in zip(states, images, strict=True)
     ]

@@ -63,7 +63,7 @@ class Motion:
         fly(flights, self.stage, self.windows, window, remainder)
         corner, period = self.stage.corner, self.stage.period
         x, y = on_scene_axes(flights.x, corner[0], period[0]), on_scene_axes(flights.y, corner[1], period[1])
-        return State(time, np.column_stack([x, y]), np.column_stack([flights.vx, flights.vy]), self.log.scene)
+        return State(time, np.column_stack([x, y]), np.column_stack([flights.vx, flights.vy]), self.log.scene, flights.spin)
 
 
 def pull_of(flights: Flights, n: int) -> Floats:

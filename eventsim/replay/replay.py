@@ -86,6 +86,8 @@ class Replay(Motion):
             flights.gx[disks[rests]], flights.gy[disks[rests]] = self.stage.slopes[rows["wall"][rests]].T
         for target, name in ((flights.x, "x"), (flights.y, "y"), (flights.vx, "vx"), (flights.vy, "vy")):
             target[disks] = np.where(is_a, rows[name + "a"], rows[name + "b"])
+        if flights.spin is not None:
+            flights.spin[disks] = np.where(is_a, rows["spin_a"], rows["spin_b"])
         return flights
 
     def _last_rows(self, window: int, remainder: float) -> NDArray[np.int64]:

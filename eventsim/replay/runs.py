@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.record.events import Kind, Rows, blank_rows
+from eventsim.record.events import Kind, Rows, blank_rows, joined
 
 
 class Kicked(NamedTuple):
@@ -52,7 +52,7 @@ class Runs:
         self.first: list[int] = [*places, self.count]
         self.epoch, self.remainder = found["epoch"].copy(), found["remainder"].copy()
         self.begun_by_kick = found["kind"] == Kind.KICK
-        self._kicked, self._kicks = kicked, np.concatenate(kicks)
+        self._kicked, self._kicks = kicked, joined(kicks)
 
     def __len__(self) -> int:
         return len(self.epoch)

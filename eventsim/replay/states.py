@@ -13,6 +13,7 @@ from eventsim import suffixes
 from eventsim.errors import EventsimError
 from eventsim.record.events import Column, State
 from eventsim.record.files.atomic import atomic_write
+from eventsim.record.provenance import has_spin
 from eventsim.replay.exchange import write_exchange
 from eventsim.replay.flight_table import Indices
 from eventsim.scene import Scene
@@ -36,7 +37,16 @@ def state_columns(scene: Scene, states: Sequence[State]) -> dict[str, Column]:
         "radius": np.tile(scene.disks.radius, len(states)),
         "mass": np.tile(scene.disks.mass, len(states)),
         **({} if species is None else {"species": np.tile(species, len(states))}),
+        **_turning_columns(scene, states),
     }
+
+
+def _turning_columns(scene: Scene, states: Sequence[State]) -> dict[str, Column]:
+    """Spins, and moments, of a scene whose disks have them."""
+    spins = [state.spin for state in states if state.spin is not None]
+    if not has_spin(scene) or not spins:
+        return {}
+    return {"spin": np.concatenate(spins), "moment": np.tile(scene.disks.moments(), len(states))}
 
 
 def write_states(

@@ -21,11 +21,11 @@ from eventsim import __version__
 from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.errors import CheckpointError, LogError
 from eventsim.reading import Npz, reading
-from eventsim.record.digest import CHUNK, RECORD, Progress
-from eventsim.record.events import ROW, Kind, Rows
+from eventsim.record.digest import CHUNK, Progress, record_of
+from eventsim.record.events import Kind, Rows, row_of
 from eventsim.record.files import Mark
 from eventsim.record.files.atomic import demand_place
-from eventsim.record.provenance import BITS, Provenance, provenance_from_text
+from eventsim.record.provenance import BITS, Provenance, has_spin, provenance_from_text
 from eventsim.runner.snapshots import Arrays, demand_fit, packed, unpacked
 from eventsim.scene.stage import stage_of
 
@@ -212,18 +212,18 @@ def _checkpoint(data: dict[str, Any], arrays: Arrays, path: Path) -> Checkpoint:
         last_rows=_last_rows(arrays[LAST_ROWS], kept),
         elapsed_s=_seconds(data["elapsed_s"]),
         write_s=_seconds(data["write_s"]),
-        digest=_progress(arrays, data),
+        digest=_progress(arrays, data, kept),
     )
 
 
-def _progress(arrays: Arrays, data: dict[str, Any]) -> Progress | None:
+def _progress(arrays: Arrays, data: dict[str, Any], provenance: Provenance) -> Progress | None:
     """How far the digest of a compact log has come; it is of as many rows as the log has."""
     if data["log"] is None or not data["log"]["compact"]:
         return None
     chunks, records = arrays[CHUNKS], arrays[RECORDS]
     if chunks.dtype != np.uint8 or records.dtype != np.uint8 or chunks.ndim != 1 or records.ndim != 1 or len(chunks) % HASH:
         raise ValueError("its digest is none")
-    progress = Progress(chunks.tobytes(), np.frombuffer(records.tobytes(), RECORD))
+    progress = Progress(chunks.tobytes(), np.frombuffer(records.tobytes(), record_of(has_spin(provenance.scene))))
     if len(chunks) // HASH * CHUNK + len(progress.records) != data["log"]["rows"] or len(progress.records) >= CHUNK:
         raise ValueError("its digest is that of another number of rows")
     return progress
@@ -275,7 +275,7 @@ def _seconds(value: Any) -> float:
 
 def _last_rows(rows: Rows, provenance: Provenance) -> Rows:
     """The last rows, whose numbers a diagnosis looks up in the scene."""
-    if rows.dtype != ROW or rows.ndim != 1:
+    if rows.dtype != row_of(has_spin(provenance.scene)) or rows.ndim != 1:
         raise ValueError("its last rows are not rows of a log")
     disks, walls = len(provenance.scene.disks), len(provenance.wall_names)
     for name, least, most in (("a", 0, disks), ("b", -1, disks), ("wall", -1, walls), ("kind", 0, len(Kind))):

@@ -5,11 +5,9 @@ from __future__ import annotations
 from os import PathLike
 from pathlib import Path
 
-import numpy as np
-
 from eventsim.engines.base import Session, Stop
 from eventsim.engines.collapse import TAIL
-from eventsim.record.events import Rows, blank_rows
+from eventsim.record.events import Rows, blank_rows, joined
 from eventsim.record.files import open_sink
 from eventsim.record.provenance import Ending, Provenance
 from eventsim.runner.checkpoint import Every, place_for
@@ -39,7 +37,7 @@ class Keeping:
 
     def write(self, rows: Rows, session: Session) -> None:
         """Take the rows that a session has come through, and write a checkpoint where one is due."""
-        self._last_rows = np.concatenate([self._last_rows, rows])[-TAIL:]
+        self._last_rows = joined([self._last_rows, rows])[-TAIL:]
         if self.log is not None and len(rows):
             self.log.write(rows)
         self._save(session, None)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from time import perf_counter
 
-import numpy as np
-
 from eventsim.engines import Engine
 from eventsim.engines.base import BrokenOffError, Session, Stop
 from eventsim.engines.collapse import TAIL
 from eventsim.engines.options import Options
 from eventsim.errors import EventsimError
 from eventsim.formulas.clock import MOST_EPOCHS, clock_time
-from eventsim.record.events import Rows, blank_rows, unchangeable
+from eventsim.record.events import Rows, blank_rows, joined, unchangeable
 from eventsim.runner.checkpoint_writer import CheckpointWriter
 from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions
 from eventsim.runner.outcome import Outcome, diagnosed, provenance_of, state_of
@@ -187,7 +185,7 @@ class Loop:
 
     def _pass_on(self, rows: Rows) -> None:
         if len(rows):
-            self.last_rows = rows[-TAIL:] if len(rows) >= TAIL else np.concatenate([self.last_rows, rows])[-TAIL:]
+            self.last_rows = rows[-TAIL:] if len(rows) >= TAIL else joined([self.last_rows, rows])[-TAIL:]
             self.recording.write(rows)
             if self.on_event is not None:
                 self.on_event(unchangeable(rows))

@@ -98,4 +98,4 @@ def state_of(
             on_scene_axes(motion.y, stage.corner[1], stage.period[1]),
         ]
     )
-    return State(time, position, np.column_stack([motion.vx, motion.vy]), scene)
+    return State(time, position, np.column_stack([motion.vx, motion.vy]), scene, motion.spin)

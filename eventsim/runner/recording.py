@@ -8,12 +8,10 @@ from queue import Queue
 from threading import Thread
 from time import perf_counter
 
-import numpy as np
-
 from eventsim.record.digest import Digester, Progress
-from eventsim.record.events import Rows, blank_rows
+from eventsim.record.events import Rows, joined
 from eventsim.record.files import FileSink, continued_sink, open_log, open_sink
-from eventsim.record.provenance import Ending, Provenance, Recorded, kicks_of
+from eventsim.record.provenance import Ending, Provenance, Recorded, has_spin, kicks_of
 from eventsim.runner.options import RunOptions
 
 
@@ -29,7 +27,7 @@ class Recording:
     def __init__(self, wanted: RunOptions, provenance: Provenance) -> None:
         self.memory = MemorySink(provenance) if wanted.log is True else None
         self.file = _file_sink(wanted, provenance)
-        self._digester = Digester() if wanted.digest or wanted.log is not False else None
+        self._digester = Digester(has_spin(provenance.scene)) if wanted.digest or wanted.log is not False else None
         self._sinks = [sink for sink in (self.memory, self.file) if sink is not None]
         takers = [sink.write for sink in self._sinks]
         self._writer = Writer(takers + ([] if self._digester is None else [self._digester.update]) + wanted.takers)
@@ -108,7 +106,7 @@ class MemorySink:
 
     def recorded(self) -> Recorded:
         """Return the rows so far as a log."""
-        rows = np.concatenate(self._blocks) if self._blocks else blank_rows(0)
+        rows = joined(self._blocks, has_spin(self._provenance.scene))
         self._blocks = [rows]
         finished = self._provenance.finished(self._ending, tuple(kicks_of(rows)), len(rows))
         return Recorded(finished, rows)

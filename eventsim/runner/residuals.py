@@ -18,21 +18,26 @@ class Residuals:
 
     energy: relative change, None where energy is not conserved.  momentum: what is not booked against walls, immovable
     disks, gravity and kicks, divided by sum m |v|.  max_overlap: the deepest overlap of a pair at contact, in reaches.
+    angular_momentum: of places and spins, its change over the sum of the magnitudes of its terms; None where disks have no spin,
+    or something outside turns them: walls, periods, gravity, immovable disks, kicks.
     """
 
     energy: float | None
     momentum: float
     max_overlap: float
+    angular_momentum: float | None = None
 
 
 def residuals_of(session: Session) -> Residuals:
     """The residuals of a run that has come to where its session stands; disks of finite positive mass only."""
     stage = session.stage
-    start = Motion(stage.x, stage.y, stage.vx, stage.vy, np.zeros(stage.n, np.int64), np.zeros(stage.n, np.int64))
+    still = np.zeros(stage.n, np.int64)
+    start = Motion(stage.x, stage.y, stage.vx, stage.vy, still, still, stage.spin)
     return Residuals(
         energy=_energy_change(session, start, session.motion()),
         momentum=_momentum_left(session, start, session.motion()),
         max_overlap=float(session.counters.deepest_overlap),
+        angular_momentum=_angular_momentum_change(session, start, session.motion()),
     )
 
 
@@ -46,7 +51,8 @@ def _masses(stage: Stage) -> Floats:
 def _energy_change(session: Session, start: Motion, end: Motion) -> float | None:
     """The relative change of the energy; None where contacts, kicks or moving obstacles change it."""
     stage = session.stage
-    moved = stage.mass is not None and np.any(np.isinf(stage.mass) & ((stage.vx != 0.0) | (stage.vy != 0.0)))
+    moves = (stage.vx != 0.0) | (stage.vy != 0.0) | (_spin(start) != 0.0)
+    moved = stage.mass is not None and np.any(np.isinf(stage.mass) & moves)
     if not stage.law.keeps_energy() or session.counters.kicks or moved:
         return None
     mass = _masses(stage)
@@ -62,8 +68,30 @@ def _energy(stage: Stage, mass: Floats, motion: Motion) -> tuple[float, float]:
         (gx, gy), (length_x, length_y) = stage.gravity, stage.period
         terms.append(-mass * gx * (motion.x + motion.wraps_x * (length_x or 0.0)))
         terms.append(-mass * gy * (motion.y + motion.wraps_y * (length_y or 0.0)))
+    if motion.spin is not None and stage.moment is not None:
+        terms.append(0.5 * mass * stage.moment * (stage.radius * motion.spin) ** 2)
     every = np.concatenate(terms)
     return math.fsum(every.tolist()), math.fsum(np.abs(every).tolist())
+
+
+def _angular_momentum_change(session: Session, start: Motion, end: Motion) -> float | None:
+    """The change of the angular momentum about the corner, over the sum of the magnitudes of its terms."""
+    stage = session.stage
+    turned = stage.size is not None or stage.features or stage.gravity is not None or session.counters.kicks
+    if stage.moment is None or turned or (stage.mass is not None and np.isinf(stage.mass).any()):
+        return None
+    mass = _masses(stage)
+    before, after = (
+        np.concatenate([mass * m.x * m.vy, -mass * m.y * m.vx, mass * stage.moment * stage.radius**2 * _spin(m)])
+        for m in (start, end)
+    )
+    scale = max(math.fsum(np.abs(terms).tolist()) for terms in (before, after))
+    change = math.fsum([*after.tolist(), *(-before).tolist()])
+    return change / scale if scale > 0.0 else change
+
+
+def _spin(motion: Motion) -> Floats:
+    return np.zeros(len(motion.x)) if motion.spin is None else motion.spin
 
 
 def _momentum_left(session: Session, start: Motion, end: Motion) -> float:

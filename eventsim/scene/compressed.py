@@ -84,7 +84,7 @@ def place_compressed(
             raise SceneError(
                 f'{where}.arrangement = "compressed": the region must be free of walls and of other disks'
             )
-        placed.append(Disks(centre, velocity, own, gas.mass, gas.species))
+        placed.append(Disks(centre, velocity, own, gas.mass, gas.species, gas.spin, gas.moment))
     return placed
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eventsim.formulas.laws import Law, law_of
+from eventsim.formulas.rough import Roughness
 from eventsim.scene.disks import named_species
 from eventsim.scene.domain import Domain, hard_sides
 from eventsim.scene.manner import Manner, Side
@@ -20,12 +21,14 @@ def law_of_scene(scene: Scene) -> Law:
     if any(one.restitution is not None for one in own):
         usual = usual or Restitution()
         walls = tuple(usual.wall if one.restitution is None else one.restitution for one in own)
+    tangential = scene.tangential_restitution
+    rough = None if tangential is None else Roughness(tangential.pair, tangential.wall)
     if usual is None or not usual.pairs:
-        return law_of(usual, scene.contact_duration, walls)
+        return law_of(usual, scene.contact_duration, walls, rough=rough)
     names, _ = named_species(scene.disks)
     given = {pair: share for a, b, share in usual.pairs for pair in ((a, b), (b, a))}
     pairs = tuple(tuple(given.get((a, b), usual.pair) for b in names) for a in names)
-    return law_of(usual, scene.contact_duration, walls, pairs)
+    return law_of(usual, scene.contact_duration, walls, pairs, rough)
 
 
 def manners_of(domain: Domain, walls: Sequence[Wall]) -> tuple[Manner, ...]:

@@ -16,6 +16,9 @@ from eventsim.notebook import few, html_table
 Floats: TypeAlias = NDArray[np.float64]
 Names: TypeAlias = NDArray[np.str_]
 
+USUAL = {"spin": 0.0, "moment": 0.5}
+"""What disks have of these where nobody says."""
+
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Disks:
@@ -27,6 +30,8 @@ class Disks:
         radius: shape (N,), length; 0 is a point.
         mass: shape (N,); inf cannot be deflected (a post or a moving obstacle), 0 deflects nobody (a tracer).
         species: shape (N,), names, "" where a disk has none of its own; None where no disk has one.
+        spin: shape (N,), angular velocities, 1 / time; None where all are 0.
+        moment: shape (N,), moments of inertia I / m r^2; None where all are 1/2.
     """
 
     position: Floats
@@ -34,6 +39,8 @@ class Disks:
     radius: Floats
     mass: Floats
     species: Names | None
+    spin: Floats | None
+    moment: Floats | None
 
     def __init__(
         self,
@@ -42,8 +49,10 @@ class Disks:
         radius: ArrayLike | None = None,
         mass: ArrayLike = 1.0,
         species: str | Sequence[str] | Names | None = None,
+        spin: ArrayLike | None = None,
+        moment: ArrayLike | None = None,
     ) -> None:
-        """Disks at `position` (N, 2); velocity (N, 2) or None for rest; radius, mass and species (N,) or one for all.
+        """Disks at `position` (N, 2); velocity (N, 2) or None for rest; of all others (N,), or one for all.
 
         A radius must be given: points are asked for by radius=0.
 
@@ -62,8 +71,9 @@ class Disks:
             raise SceneError(problems)
         count = len(centres)
         at_rest = np.zeros((count, 2))
-        given = {"velocity": at_rest if velocity is None else velocity, "radius": radius, "mass": mass}
-        wanted = {"velocity": (count, 2), "radius": (count,), "mass": (count,)}
+        given: dict[str, ArrayLike] = {"velocity": at_rest if velocity is None else velocity, "radius": radius, "mass": mass}
+        given |= {key: value for key, value in (("spin", spin), ("moment", moment)) if value is not None}
+        wanted = {**dict.fromkeys(given, (count,)), "velocity": (count, 2)}
         arrays = {"position": centres}
         for key, value in given.items():
             array = _floats(value, key, problems)
@@ -82,6 +92,9 @@ class Disks:
         for key, array in arrays.items():
             array.setflags(write=False)
             object.__setattr__(self, key, array)
+        for key, usual in USUAL.items():
+            if key not in arrays or np.all(arrays[key] == usual):
+                object.__setattr__(self, key, None)
 
     def __len__(self) -> int:
         return len(self.position)
@@ -99,9 +112,18 @@ class Disks:
         """The disks with these numbers, in this order; index: (M,) whole numbers."""
         return Disks(**{key: array[index] for key, array in self._arrays().items()})
 
-    def begun_at(self, position: ArrayLike, velocity: ArrayLike) -> Disks:
-        """The same disks elsewhere, position and velocity (N, 2)."""
-        return Disks(**{**self._arrays(), "position": position, "velocity": velocity})
+    def begun_at(self, position: ArrayLike, velocity: ArrayLike, spin: ArrayLike | None = None) -> Disks:
+        """The same disks elsewhere, position and velocity (N, 2), spin (N,); None: their own."""
+        turning = {} if spin is None else {"spin": spin}
+        return Disks(**{**self._arrays(), "position": position, "velocity": velocity, **turning})
+
+    def spins(self) -> Floats:
+        """The angular velocities (N,)."""
+        return np.zeros(len(self)) if self.spin is None else self.spin
+
+    def moments(self) -> Floats:
+        """The moments I / m r^2 (N,)."""
+        return np.full(len(self), USUAL["moment"]) if self.moment is None else self.moment
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Disks):
@@ -187,6 +209,8 @@ def join(parts: list[Disks]) -> Disks:
         np.concatenate([part.radius for part in parts]),
         np.concatenate([part.mass for part in parts]),
         np.concatenate([_named(part) for part in parts]) if named else None,
+        np.concatenate([part.spins() for part in parts]),
+        np.concatenate([part.moments() for part in parts]),
     )
 
 

@@ -15,7 +15,7 @@ from eventsim.errors import EventsimError, SceneError
 from eventsim.readers import read_start
 from eventsim.reading import Npz, as_floats, reading
 from eventsim.scene.cells import Indices
-from eventsim.scene.disks import Disks
+from eventsim.scene.disks import USUAL, Disks
 from eventsim.scene.domain import Domain
 from eventsim.scene.gas import MOST_DISKS
 
@@ -23,7 +23,10 @@ COLUMNS = ("x", "y", "vx", "vy", "radius", "mass")
 SPECIES = "species"
 """A column of texts that may be there."""
 
-DEFAULTS = {"vx": 0.0, "vy": 0.0, "mass": 1.0}
+TURNING = tuple(USUAL)
+"""Columns that a file of disks with spin has besides."""
+
+DEFAULTS = {"vx": 0.0, "vy": 0.0, "mass": 1.0, **USUAL}
 """What disks have where a file lacks a column, as in [[disk]]."""
 
 MOST_BYTES = 1 << 32
@@ -42,9 +45,9 @@ class DisksFile:
 def read_disks_file(
     path: Path, domain: Domain | None = None, frame: int | None = None, radius: float | None = None, mass: float | None = None
 ) -> DisksFile:
-    """The disks of a file with the columns x, y, vx, vy, radius, mass, species; further columns are ignored.
+    """The disks of a file with the columns x, y, vx, vy, radius, mass, spin, moment, species; further columns are ignored.
 
-    Velocities, species and mass may be missing, as in [[disk]].  A file written by `eventsim state` will do if it holds one time.
+    All but x, y and radius may be missing, as in [[disk]].  A file written by `eventsim state` will do if it holds one time.
 
     Args:
         path: a file that ends as one of `suffixes.STARTS`.
@@ -72,8 +75,9 @@ def read_disks_file(
             raise SceneError(
                 f"{path}: holds the disks at {len(times)} times ({listed}); one start needs one time"
             )
-    x, y, vx, vy, r, m = (columns[key] if key in columns else np.full(len(columns["x"]), given[key]) for key in COLUMNS)
-    disks = Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), r, m, columns.get(SPECIES))
+    every = (*COLUMNS, *TURNING)
+    x, y, vx, vy, r, m, *turning = (columns[key] if key in columns else np.full(len(columns["x"]), given[key]) for key in every)
+    disks = Disks(np.stack([x, y], axis=1), np.stack([vx, vy], axis=1), r, m, columns.get(SPECIES), *turning)
     return DisksFile(disks, row, number)
 
 
@@ -107,8 +111,9 @@ def _read_frame(path: Path, domain: Domain | None, frame: int | None, given: dic
 def write_disks_file(path: Path, disks: Disks) -> None:
     """Write disks as an .npz file; every bit of them is read back."""
     columns = (*disks.position.T, *disks.velocity.T, disks.radius, disks.mass)
-    named: dict[str, Any] = {} if disks.species is None else {SPECIES: disks.species}
-    np.savez(path, **named, **dict(zip(COLUMNS, columns, strict=True)))
+    others = {key: getattr(disks, key) for key in (SPECIES, *TURNING)}
+    there: dict[str, Any] = {key: column for key, column in others.items() if column is not None}
+    np.savez(path, **there, **dict(zip(COLUMNS, columns, strict=True)))
 
 
 def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Any], str, Indices]:
@@ -181,7 +186,7 @@ def _wanted_columns(path: Path, header: list[str], given: dict[str, float]) -> l
         missing.append("vy" if "vx" in header else "vx")
     if missing:
         raise SceneError(f"{path}: lacks {', '.join(missing)}: the columns must be named {', '.join(COLUMNS)}")
-    twice = [name for name in COLUMNS if header.count(name) > 1]
+    twice = [name for name in (*COLUMNS, *TURNING) if header.count(name) > 1]
     if twice:
         raise SceneError(f"{path}: has more than one column {', '.join(twice)}")
-    return [name for name in (*COLUMNS, "time") if name in header]
+    return [name for name in (*COLUMNS, *TURNING, "time") if name in header]

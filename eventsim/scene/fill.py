@@ -58,7 +58,8 @@ def place_gas(
         place = _Place(gas, domain, walls, present, region, where)
         velocity = start_velocity(gas, rng)
     position = place.at_random(rng) if gas.arrangement == "random" else place.on_lattice()
-    return Disks(position, velocity, place.radius if gas.radii is None else gas.radii, gas.mass, gas.species)
+    radius = place.radius if gas.radii is None else gas.radii
+    return Disks(position, velocity, radius, gas.mass, gas.species, gas.spin, gas.moment)
 
 
 def clear_of(

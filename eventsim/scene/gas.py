@@ -32,6 +32,7 @@ class Gas:
         radius: length, or the law of lengths; or else packing_fraction, of the region.
         mass: of each.
         species: its name; None: that of others of its radius and mass.
+        spin, moment: of each; see `Disks`.
         temperature: kT, mass length^2 / time^2; or else speed, the same for all; neither: at rest.
         arrangement: "random", "square", "hexagonal", or "compressed": grown in place, together with the other gases of the
             region that are.
@@ -47,6 +48,8 @@ class Gas:
     packing_fraction: float | None = None
     mass: float = 1.0
     species: str | None = None
+    spin: float = 0.0
+    moment: float = 0.5
     temperature: float | None = None
     speed: float | None = None
     arrangement: str = "random"

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from eventsim.scene import restitution
+from eventsim.scene import restitution, roughness
 
 EXAMPLES = {
     "name": 'name = "ramp"',
@@ -16,6 +16,7 @@ EXAMPLES = {
     "start_time": "start_time = 0.0",
     "gravity": "gravity = [0.0, -9.81]",
     "restitution": "restitution = 0.9",
+    "tangential_restitution": roughness.EXAMPLE,
     "contact_duration": "contact_duration = 1e-6",
     "equilibration": "equilibration = 1.0",
     **restitution.EXAMPLES,
@@ -27,6 +28,8 @@ EXAMPLES = {
     "radius": "radius = 0.05",
     "mass": "mass = 2.0",
     "species": 'species = "a"',
+    "spin": "spin = 1.0",
+    "moment": "moment = 0.5",
     "count": "count = 20",
     "packing_fraction": "packing_fraction = 0.3",
     "temperature": "temperature = 1.0",

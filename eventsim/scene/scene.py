@@ -15,6 +15,7 @@ from eventsim.scene.domain import DOMAINS, Domain
 from eventsim.scene.names import DiskNames, plural
 from eventsim.scene.numbers import Point, number, optional_number, optional_whole, point
 from eventsim.scene.restitution import Restitution, as_restitution
+from eventsim.scene.roughness import TangentialRestitution, as_tangential, roughness_problems
 from eventsim.scene.validate import find_problems, scalar_problems, species_problems, touching_notes
 from eventsim.scene.walls import WALLS, Wall
 
@@ -31,6 +32,7 @@ class Scene:
         walls: walls inside the domain.
         gravity: acceleration (x, y), length / time^2; None without.
         restitution: None where every contact is elastic.
+        tangential_restitution: of rough disks; None where disks have no spin.
         contact_duration: time; a contact within it after a disk's previous one is elastic; None without.
         equilibration: time from the start that measurements leave out; None: they find out.
         until: stop time on the scene's clock, or None.
@@ -49,6 +51,7 @@ class Scene:
     walls: tuple[Wall, ...]
     gravity: Point | None
     restitution: Restitution | None
+    tangential_restitution: TangentialRestitution | None
     contact_duration: float | None
     equilibration: float | None
     until: float | None
@@ -70,6 +73,7 @@ class Scene:
         name: str | None = None,
         equilibration: float | None = None,
         *,
+        tangential_restitution: TangentialRestitution | Mapping[str, float] | float | None = None,
         names: DiskNames | None = None,
     ) -> None:
         """The scene with these parts; a restitution may be one number, a mapping or a Restitution.
@@ -87,6 +91,7 @@ class Scene:
             "walls": tuple(walls),
             "gravity": None if pull == (0.0, 0.0) else pull,
             "restitution": as_restitution(restitution),
+            "tangential_restitution": as_tangential(tangential_restitution),
             "contact_duration": optional_number(contact_duration, "contact_duration"),
             "equilibration": optional_number(equilibration, "equilibration"),
             "until": optional_number(until, "until"),
@@ -98,6 +103,7 @@ class Scene:
             object.__setattr__(self, key, value)
         names = names or DiskNames()
         scalars = [*scalar_problems(given), *species_problems(self.restitution, disks)]
+        scalars += roughness_problems(disks, self.tangential_restitution, names)
         problems = find_problems(disks, domain, self.walls, self.gravity, names, scalars)
         if problems:
             raise SceneError(problems)
@@ -148,7 +154,7 @@ class Scene:
         yield "domain", self.domain.kind if size is None else f"{self.domain.kind} {size[0]:g} x {size[1]:g}"
         if self.walls:
             yield "walls", str(len(self.walls))
-        for key in ("gravity", "restitution", "contact_duration", "equilibration", "until", "events"):
+        for key in ("gravity", "restitution", "tangential_restitution", "contact_duration", "equilibration", "until", "events"):
             value = getattr(self, key)
             if value is not None:
                 yield key, str(value)

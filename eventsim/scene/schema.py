@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 from eventsim.letters import is_name
-from eventsim.scene import manner, restitution
+from eventsim.scene import manner, restitution, roughness
 from eventsim.scene.domain import DOMAINS
 from eventsim.scene.keys import Invalid, Optional, Required, Schema
 from eventsim.scene.numbers import as_number, as_whole
@@ -144,11 +144,13 @@ SCENE = Schema(
         Optional("start_time"): number,
         Optional("gravity"): POINT,
         Optional("restitution"): number,
+        Optional("tangential_restitution"): number,
         Optional("contact_duration"): number,
         Optional("equilibration"): number,
     }
 )
 RESTITUTION = Schema({Optional(key): number if key != restitution.PAIRS else table_of_numbers for key in restitution.KEYS})
+TANGENTIAL = Schema({Optional(key): number for key in roughness.KEYS})
 DOMAIN = {"box": SIZED, "periodic": SIZED, "channel": SIZED, "open": Schema(KIND)}
 DISK = Schema(
     {
@@ -157,9 +159,11 @@ DISK = Schema(
         Required("radius"): number,
         Optional("mass"): mass,
         Optional("species"): species,
+        Optional("spin"): number,
+        Optional("moment"): number,
     }
 )
-PLAIN_KEYS = frozenset(("position", "velocity", "radius", "mass"))
+PLAIN_KEYS = frozenset(("position", "velocity", "radius", "mass", "spin", "moment"))
 GAS = Schema(
     {
         Required("count"): whole(1),
@@ -167,6 +171,8 @@ GAS = Schema(
         Optional("packing_fraction"): number,
         Optional("mass"): mass,
         Optional("species"): species,
+        Optional("spin"): number,
+        Optional("moment"): number,
         Optional("temperature"): number,
         Optional("speed"): number,
         Optional("arrangement"): one_of(*ARRANGEMENTS),
@@ -206,7 +212,7 @@ def is_plain_disk(table: object) -> bool:
     """Whether a [[disk]] table is what reading it would give: long lists of disks are read many times faster."""
     if type(table) is not dict or not table.keys() <= PLAIN_KEYS:
         return False
-    if type(table.get("radius")) is not float or type(table.get("mass", 1.0)) is not float:
+    if not all(type(table.get(key, 1.0)) is float for key in ("radius", "mass", "spin", "moment")) or "radius" not in table:
         return False
     return _is_plain_point(table.get("position")) and _is_plain_point(table.get("velocity", (0.0, 0.0)))
 

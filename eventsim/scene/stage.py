@@ -49,8 +49,9 @@ class Stage:
         radius: (n,).
         mass: (n,), or None where all are equal, finite and positive; then common_mass is that mass.
         mass_ratio: of the heaviest to the lightest disk, tracers and immovable ones apart.
-        low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): nothing falls and
-            masses are very uneven.
+        low_parts: whether velocities carry what their rounding leaves (`formulas/careful_impulse`): nothing falls, masses
+            are very uneven, and disks have no spin.
+        spin, moment: (n,) angular velocities at the start, and I / m r^2; None where disks have no spin.
         gravity: (gx, gy), or None.
         law: the law of its contacts.
         species: (n,) the species of each disk, where the law asks for it; else None.
@@ -58,7 +59,8 @@ class Stage:
         size: (width, height) of the domain, or None.
         boundaries: hard walls of the domain.
         features: shapes of the walls inside it; in a periodic domain with the images that disks can meet.
-        supports: what boundaries and features, in this order, support disks with; None where no disk comes to rest.
+        supports: what boundaries and features, in this order, support disks with; None where no disk comes to rest, or where
+            it would roll on a rough wall, which no law here tells.
         points: whether disks are points to some walls, whose sides they have to remember.
         wall_names: the names that the walls have in an event log.
         corner: what to add to a position to have it on the scene's axes.
@@ -77,6 +79,8 @@ class Stage:
     common_mass: float
     mass_ratio: float
     low_parts: bool
+    spin: Floats | None
+    moment: Floats | None
     gravity: Point | None
     law: Law
     species: NDArray[np.int64] | None
@@ -211,10 +215,13 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         mass_ratio=heaviest / lightest,
         low_parts=(
             scene.gravity is None
+            and law.rough is None
             and heaviest / lightest > UNEVEN
             and lightest > 1.0 / EXTREME
             and heaviest < EXTREME
         ),
+        spin=None if law.rough is None else disks.spins(),
+        moment=None if law.rough is None else disks.moments(),
         gravity=scene.gravity,
         law=law,
         species=None if law.pairs is None else named_species(disks)[1],
@@ -223,7 +230,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         boundaries=boundaries,
         features=features,
         surfaces=(*boundaries, *features),
-        supports=_supports(scene, boundaries, features, law, x, y),
+        supports=None if law.grips[1] else _supports(scene, boundaries, features, law, x, y),
         points=_has_points(features, float(disks.radius.min())),
         wall_names=(*names, *feature_names(scene.walls)),
         corner=corner,

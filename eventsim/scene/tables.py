@@ -12,7 +12,7 @@ import numpy as np
 from eventsim.errors import SceneError
 from eventsim.scene import schema
 from eventsim.scene.compressed import place_compressed
-from eventsim.scene.disks import Disks, join
+from eventsim.scene.disks import USUAL, Disks, join
 from eventsim.scene.disks_file import read_disks_file
 from eventsim.scene.domain import DOMAINS, Domain, Open
 from eventsim.scene.fill import place_gas
@@ -97,9 +97,9 @@ def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str]) ->
     schema.report_unknown(data, list(schema.SCENE_KEYS), "", problems)
     parts = _Parts()
     scalars = {key: value for key, value in data.items() if key in schema.SCALARS}
-    if isinstance(scalars.get("restitution"), Mapping):
-        table = scalars.pop("restitution")
-        parts.values["restitution"] = schema.read_table(schema.RESTITUTION, table, "restitution", problems).values
+    for key, keys in (("restitution", schema.RESTITUTION), ("tangential_restitution", schema.TANGENTIAL)):
+        if isinstance(scalars.get(key), Mapping):
+            parts.values[key] = schema.read_table(keys, scalars.pop(key), key, problems).values
     # One by one: a bad one does not keep the rules from being applied to the others.
     for key, value in scalars.items():
         parts.values |= schema.read_table(schema.SCENE, {key: value}, "", problems).values
@@ -178,6 +178,8 @@ def _disks_of(tables: Collection[dict[str, Any]]) -> Disks:
         [table["radius"] for table in tables],
         [table.get("mass", 1.0) for table in tables],
         [table.get("species", "") for table in tables],
+        [table.get("spin", USUAL["spin"]) for table in tables],
+        [table.get("moment", USUAL["moment"]) for table in tables],
     )
 
 

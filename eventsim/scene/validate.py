@@ -118,6 +118,8 @@ def scalar_problems(given: Mapping[str, Any]) -> Iterator[str]:
         yield f"gravity = {list(gravity)}: must be 0, or at least {SHORTEST} along an axis"
     if restitution is not None:
         yield from restitution.problems()
+    if given["tangential_restitution"] is not None:
+        yield from given["tangential_restitution"].problems()
     for key in ("contact_duration", "equilibration"):
         if given[key] is not None and not 0.0 <= given[key] < math.inf:
             yield f"{key} = {given[key]}: must be a finite time, at least 0"

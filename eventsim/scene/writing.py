@@ -7,13 +7,14 @@ import math
 import os
 import secrets
 from collections.abc import Iterable, Iterator
+from dataclasses import asdict
 from itertools import islice, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eventsim import suffixes
 from eventsim.errors import SceneError
-from eventsim.scene.disks import Disks
+from eventsim.scene.disks import USUAL, Disks
 from eventsim.scene.domain import Domain, Open
 from eventsim.scene.walls.wall import Wall, keys_of
 
@@ -79,6 +80,8 @@ def _tables(scene: Scene) -> dict[str, Any]:
         data["gravity"] = list(scene.gravity)
     if scene.restitution is not None:
         data["restitution"] = scene.restitution.table()
+    if scene.tangential_restitution is not None:
+        data["tangential_restitution"] = asdict(scene.tangential_restitution)
     data["domain"] = _domain_table(scene.domain)
     data["disk"] = []
     if scene.walls:
@@ -110,8 +113,9 @@ def _domain_table(domain: Domain) -> dict[str, Any]:
 
 def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
     tables: list[dict[str, Any]] = []
-    columns = (disks.position.tolist(), disks.velocity.tolist(), disks.radius.tolist(), disks.mass.tolist())
-    for position, velocity, radius, mass, name in zip(*columns, _names(disks), strict=True):
+    columns = (disks.position, disks.velocity, disks.radius, disks.mass, disks.spins(), disks.moments())
+    lists = (column.tolist() for column in columns)
+    for position, velocity, radius, mass, spin, moment, name in zip(*lists, _names(disks), strict=True):
         table = {"position": position, "velocity": velocity, "radius": radius}
         if _is_default(velocity[0], 0.0) and _is_default(velocity[1], 0.0):
             del table["velocity"]
@@ -119,6 +123,10 @@ def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
             table["mass"] = "inf" if math.isinf(mass) else mass
         if name:
             table["species"] = name
+        if not _is_default(spin, 0.0):
+            table["spin"] = spin
+        if moment != USUAL["moment"]:
+            table["moment"] = moment
         tables.append(table)
     return tables
 
@@ -126,17 +134,28 @@ def _disk_tables(disks: Disks) -> list[dict[str, Any]]:
 def _disk_texts(disks: Disks) -> Iterator[str]:
     """The tables of disks as JSON."""
     columns = (*disks.position.T, *disks.velocity.T, disks.radius, disks.mass)
+    turns = iter(_turning_texts(disks))
     for x, y, vx, vy, radius, mass, name in zip(*(column.tolist() for column in columns), _names(disks), strict=True):
         moves = not (_is_default(vx, 0.0) and _is_default(vy, 0.0))
         velocity = f', "velocity": [{vx!r}, {vy!r}]' if moves else ""
         weight = "" if mass == 1.0 else f', "mass": {repr(mass) if mass < math.inf else json.dumps("inf")}'
         species = f', "species": {json.dumps(name)}' if name else ""
-        yield f'{{"position": [{x!r}, {y!r}]{velocity}, "radius": {radius!r}{weight}{species}}}'
+        yield f'{{"position": [{x!r}, {y!r}]{velocity}, "radius": {radius!r}{weight}{species}{next(turns)}}}'
 
 
 def _names(disks: Disks) -> Iterable[str]:
     """The names of the species of disks, "" where they have none of their own."""
     return repeat("", len(disks)) if disks.species is None else disks.species.tolist()
+
+
+def _turning_texts(disks: Disks) -> Iterable[str]:
+    """What those texts say of spin and moment, which is nothing of usual disks."""
+    if disks.spin is None and disks.moment is None:
+        return repeat("")
+    return (
+        ("" if _is_default(spin, 0.0) else f', "spin": {spin!r}') + ("" if moment == 0.5 else f', "moment": {moment!r}')
+        for spin, moment in zip(disks.spins().tolist(), disks.moments().tolist(), strict=True)
+    )
 
 
 def _wall_table(wall: Wall) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
 from eventsim.record.contacts import contacts_of
-from eventsim.record.events import Floats, Rows, State, blank_rows
+from eventsim.record.events import Floats, Rows, State, blank_rows, joined
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Moment, Passage
 
@@ -121,7 +121,7 @@ def frames_at(passage: Passage, times: Floats, glow_time: float) -> Iterator[Fra
             count += len(rows)
             recent = [*recent, rows] if count <= MOST_RECENT else []
         glow = np.maximum(1.0 - (time - latest) / glow_time, 0.0)
-        since = np.concatenate(recent) if recent else None
+        since = joined(recent) if recent else None
         yield Frame(moment, news.count, contacts.copy(), glow, energy_of(log, moment.state), since)
 
 

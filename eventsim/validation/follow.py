@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventsim.engines.base import Counters, Session, Stop
-from eventsim.record.events import Floats, Rows, blank_rows
+from eventsim.record.events import Floats, Rows, blank_rows, joined
 from eventsim.runner.outcome import state_of
 from eventsim.runner.residuals import Residuals, residuals_of
 from eventsim.scene.stage import Stage
@@ -63,7 +63,7 @@ def follow(session: Session, times: Sequence[float], patience_s: float = float("
         times=np.array(times[: len(states)], dtype=np.float64),
         position=np.array([state.position for state in states]) if states else empty,
         velocity=np.array([state.velocity for state in states]) if states else empty,
-        rows=np.concatenate(blocks),
+        rows=joined(blocks),
         counters=session.counters.copy(),
         residuals=residuals_of(session),
         elapsed_s=elapsed,
@@ -97,7 +97,7 @@ def advanced(session: Session, stop: Stop, patience_s: float, most_rows: int) ->
             blocks.append(rows)
             kept += len(rows)
         if reason is not None or spent >= patience_s:
-            return Scouted(reason, np.concatenate(blocks))
+            return Scouted(reason, joined(blocks))
 
 
 def distances(stage: Stage, one: Floats, other: Floats) -> Floats:

@@ -15,7 +15,7 @@ from eventsim.engines.certified.session import Attempt, CertifiedSession
 from eventsim.formulas.clock import clock_time
 from eventsim.formulas.expansion import two_sum
 from eventsim.record.compare import VELOCITIES, agreement, deviations, time_differences
-from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.events import Floats, Rows, joined
 from eventsim.replay.past import PastRun
 from eventsim.runner.loop import run_session
 from eventsim.runner.options import Interrupt, Progress, RunOptions
@@ -64,10 +64,10 @@ def prove(
     """
     stage = stage_of(scene)
     session = CertifiedSession(stage, options=CertifiedOptions(bits, most_bits))
-    blocks: list[Rows] = [np.zeros(0, ROW)]
+    blocks: list[Rows] = []
     wanted = RunOptions(log=log, progress=progress, on_event=blocks.append, command=command, interrupt=interrupt)
     run = PastRun.of(run_session(session, ENGINES["certified"], scene, stop, wanted))
-    certified = np.concatenate(blocks)
+    certified = joined(blocks)
     float64 = rounded(stage, scene.domain.size, certified, stop.until, run.stopped in ("quiet", "until"))
     time = None
     if float64.difference is not None:

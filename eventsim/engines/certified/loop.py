@@ -82,11 +82,16 @@ class CertifiedLoop(ReferenceSession):
         """Where all disks are now, rounded."""
         numbers = np.array([[float(number) for number in flight] for flight in self._flights()])
         wraps = np.array([self.state.wraps_x, self.state.wraps_y], dtype=np.int64)
-        return Motion(numbers[:, 0], numbers[:, 1], numbers[:, 2], numbers[:, 3], wraps[0], wraps[1])
+        spin = None if self.state.spin is None else np.array([float(number) for number in self.state.spin])
+        return Motion(numbers[:, 0], numbers[:, 1], numbers[:, 2], numbers[:, 3], wraps[0], wraps[1], spin)
 
     def radii(self) -> Floats:
         """How far the true x, y, vx, vy may be from the middles of their balls: (n, 4); length, and length / time."""
         return np.array([[radius_of(number) for number in flight] for flight in self._flights()])
+
+    def spin_radius(self) -> float:
+        """How far the true spins may be from the middles of their balls; 1 / time."""
+        return max((radius_of(number) for number in self.state.spin or ()), default=0.0)
 
     def distances(self) -> Floats:
         """How far the true x, y, vx, vy may be from the floats of `motion`: (n, 4); length, and length / time."""

@@ -13,7 +13,7 @@ from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
 from eventsim.engines.certified.traced import traced
 from eventsim.errors import EventsimError
-from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.events import Floats, Rows, blank_rows
 from eventsim.scene.names import plural
 from eventsim.scene.stage import Stage
 
@@ -142,7 +142,7 @@ class CertifiedSession(Session):
         """The proven rows since the last call whose floats are settled, an array of ROW."""
         self._held.append(self._loop.take_rows())
         if self._stopped is None and not self._is_settled():
-            return np.zeros(0, ROW)
+            return blank_rows(0, self.stage.spin is not None)
         rows = np.concatenate(self._held)
         self._held = []
         fresh = rows[rows["event"] >= self._emitted]
@@ -154,7 +154,11 @@ class CertifiedSession(Session):
         motion, radii = self.motion(), self.radii()
         size = max(float(np.abs(motion.x).max()), float(np.abs(motion.y).max()))
         speed = max(float(np.abs(motion.vx).max()), float(np.abs(motion.vy).max()))
-        return bool(radii[:, :2].max() <= SETTLED * size and radii[:, 2:].max() <= SETTLED * speed)
+        settled = radii[:, :2].max() <= SETTLED * size and radii[:, 2:].max() <= SETTLED * speed
+        if motion.spin is not None:
+            with working_precision(self.bits):
+                settled = settled and self._loop.spin_radius() <= SETTLED * float(np.abs(motion.spin).max())
+        return bool(settled)
 
     def motion(self) -> Motion:
         """Where all disks are now, rounded to floats."""

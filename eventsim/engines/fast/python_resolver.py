@@ -134,5 +134,5 @@ class PythonResolver:
         """Take over what the resolver has counted and logged."""
         machine, rows = self._machine, resolver.take_rows()
         if rows:
-            machine.add_rows(rows_from(rows, machine.stage.epoch_length, machine.stage.start_time))
+            machine.add_rows(rows_from(rows, machine.stage))
         machine.take_counters(self._counters)

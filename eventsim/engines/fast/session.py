@@ -16,6 +16,7 @@ from eventsim.engines.fast.python_resolver import PythonResolver
 from eventsim.engines.fast.rules import kind_of
 from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.ahead import meets_again
+from eventsim.errors import EventsimError
 from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import Floats, Rows
 from eventsim.scene.stage import Stage
@@ -42,6 +43,8 @@ class FastSession(ExactSession):
         saved: Snapshot | None = None,
     ) -> None:
         super().__init__(stage)
+        if stage.spin is not None:
+            raise EventsimError("fast cannot simulate this scene yet: its disks spin; the reference engine can")
         options = options or FastOptions()
         self._marked: object = False
         self._open: Snapshot  # the flights of the open window

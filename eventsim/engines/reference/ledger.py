@@ -81,7 +81,10 @@ class Ledger:
             other: tuple[Any, ...] = (MISSING, MISSING, MISSING, MISSING)
             if b >= 0:
                 other = (state.x[b], state.y[b], state.vx[b], state.vy[b])
-            flight = (state.x[a], state.y[a], state.vx[a], state.vy[a])
-            self.rows.append((counters.events, 0.0, kind, a, b, wall, *flight, *other, impulse, joint, state.epoch, t))
+            flight: Row = (state.x[a], state.y[a], state.vx[a], state.vy[a])
+            row = (counters.events, 0.0, kind, a, b, wall, *flight, *other, impulse, joint, state.epoch, t)
+            if state.spin is not None:
+                row = (*row, state.spin[a], state.spin[b] if b >= 0 else MISSING)
+            self.rows.append(row)
         counters.events += 1
         state.window_rows += 1

@@ -236,7 +236,8 @@ class ReferenceSession(ExactSession):
         places = np.array([state.place(i, state.now) for i in range(state.n)])
         speeds = np.array([state.speed(i, state.now) for i in range(state.n)])
         wraps = np.array([state.wraps_x, state.wraps_y], dtype=np.int64)
-        return Motion(places[:, 0], places[:, 1], speeds[:, 0], speeds[:, 1], wraps[0], wraps[1])
+        spin = None if state.spin is None else np.array(list(map(float, state.spin)))
+        return Motion(places[:, 0], places[:, 1], speeds[:, 0], speeds[:, 1], wraps[0], wraps[1], spin)
 
     def _kick(self, i: int, vx: float, vy: float) -> None:
         self._resolver.kick(i, vx, vy)
@@ -244,4 +245,4 @@ class ReferenceSession(ExactSession):
 
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
-        return rows_from(self._resolver.take_rows(), self.stage.epoch_length, self.stage.start_time)
+        return rows_from(self._resolver.take_rows(), self.stage)

@@ -12,11 +12,12 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
-from eventsim.engines.reference.unresolvable import joint_under
+from eventsim.engines.reference.unresolvable import joint_under, rough_joint
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import approach_speed, flat_update, pair_update, wall_update
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
+from eventsim.formulas.rough import SMOOTH, Roughness, grip_strength, gripped, pair_grip, wall_grip
 from eventsim.formulas.simultaneous import JointContact, Outcome, are_apart, resolve_together
 from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Kind
@@ -36,6 +37,8 @@ class Resolver:
         self._counters = counters
         self._radius: list[Real] = [state.number(radius) for radius in stage.radius.tolist()]
         self._masses = Masses(stage)
+        self._moment: list[float] = [] if stage.moment is None else stage.moment.tolist()
+        self._grips, self._rough = stage.law.grips, stage.law.rough or Roughness(SMOOTH, SMOOTH)
         self._ledger = self.ledger(stage, state, self._masses, counters, keep_rows)
         self._instants = Instants(stage, state, self.at_once)
         self._rests = Rests(stage, state, self._radius, self._instants, self._ledger, counters)
@@ -105,6 +108,11 @@ class Resolver:
             ub, wb = state.speed(b, t)
             share_a, share_b = self._shares(a, b)
             ua, wa, ub, wb, q = pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, restitution)
+        k: Real = 0.0
+        if self._grips[0]:
+            before = (*state.speed(a, t), *state.speed(b, t))
+            k = self._turn_pair(a, b, dx, dy, before)
+            ua, wa, ub, wb = gripped(dx, dy, ua, wa, ub, wb, *self._shares(a, b), k)
         self._rests.free(a, t)
         self._rests.free(b, t)
         state.keep_sides(a, t, (xa, ya), (ua, wa))
@@ -118,10 +126,30 @@ class Resolver:
         reduced = self._masses.reduced(a, b)
         distance = sqrt(dx * dx + dy * dy)
         self._ledger.note_overlap(a, b, distance, self._radius[a] + self._radius[b])
-        self._ledger.book_pair(a, b, -(q * reduced) * dx, -(q * reduced) * dy)
+        jx, jy, strength = -(q * reduced) * dx, -(q * reduced) * dy, -(q * reduced) * distance
+        if self._grips[0]:
+            jx, jy = jx + (k * reduced) * dy, jy - (k * reduced) * dx
+            strength = grip_strength(q, k, reduced, distance)
+        self._ledger.book_pair(a, b, jx, jy)
         self._counters.pair_contacts += 1
-        self._ledger.log(t, Kind.PAIR, a, b, -1, -(q * reduced) * distance, -1)
+        self._ledger.log(t, Kind.PAIR, a, b, -1, strength, -1)
         return [a, b]
+
+    def _turn_pair(self, a: int, b: int, dx: Real, dy: Real, before: tuple[Real, Real, Real, Real]) -> Real:
+        """Let two disks, with these velocities before their contact, turn each other; k as from `pair_grip`."""
+        spin, radius, moment = self._state.spin, self._radius, self._moment
+        ua, wa, ub, wb = before
+        about = (*self._shares(a, b), radius[a], radius[b], moment[a], moment[b], self._rough.pair)
+        spin[a], spin[b], k = pair_grip(dx, dy, ua - ub, wa - wb, spin[a], spin[b], *about)
+        return k
+
+    def _turn_at_wall(self, i: int, nx: Real, ny: Real, u: Real, w: Real) -> Real:
+        """Let a wall turn disk i, whose velocity was (u, w); k as from `wall_grip`.  It does not turn what it cannot deflect."""
+        spin = self._state.spin
+        if self._masses.is_immovable(i):
+            return 0.0
+        spin[i], k = wall_grip(nx, ny, u, w, spin[i], self._radius[i], self._moment[i], self._rough.wall)
+        return k
 
     def _shares(self, a: int, b: int) -> tuple[Real, Real]:
         """Of the sum of two masses, in the engine's numbers."""
@@ -165,6 +193,10 @@ class Resolver:
             u, _ = flat_update(u, boundary.side, restitution)
         else:
             w, _ = flat_update(w, boundary.side, restitution)
+        if self._grips[1]:
+            nx, ny = stage.normal(place, side, x, y)
+            k = self._turn_at_wall(i, nx, ny, *before)
+            u, w = u + k * ny, w - k * nx
         x, y = self._place_on(place, side, i, x, y)
         self._rests.free(i, t)
         state.keep_sides(i, t, (x, y), (u, w), ((place, side),))
@@ -231,6 +263,8 @@ class Resolver:
                 contacts.append(JointContact(a, None, nx, ny, e))
         if stage.law.by_speed and not are_apart(contacts):
             raise joint_under(stage.law.name(), disks)
+        if any(self._grips[event.b < 0] for event in component):
+            raise rough_joint(disks)
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
         if not active and stage.gravity is not None:

@@ -54,6 +54,15 @@ def joint_under(law: str, disks: list[int]) -> UnlawfulError:
     )
 
 
+def rough_joint(disks: list[int]) -> UnlawfulError:
+    """Contacts of one instant that share disks, where these turn each other."""
+    have = "has" if len(disks) == 1 else "have"
+    return UnlawfulError(
+        f"{named(disks)} {have} contacts at one instant: the law of rough disks says what single ones do; a start that differs "
+        "by a last bit parts them"
+    )
+
+
 def refused(error: SqueezedError | TwoSupportsError | UnlawfulError, component: list[Event]) -> tuple[str, str]:
     """A cluster that no impulses part, a disk on two walls, or what no law tells: why a run stops, and a sentence on it."""
     if isinstance(error, UnlawfulError):

@@ -84,6 +84,7 @@ class FramesSession(SteppedSession):
 def _demand_known(stage: Stage) -> None:
     """Raise EventsimError for what the course project did not know."""
     reasons = {
+        "it knows no disks that spin": stage.law.rough is not None,
         "it knows no periodic boundaries": stage.periodic,
         "its contacts are elastic, this scene has a restitution": stage.law.loses_energy(),
         "it needs masses that are finite and above 0": stage.mass is not None

@@ -10,16 +10,14 @@ from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
-import numpy as np
-
 from eventsim import suffixes
 from eventsim.errors import LogError
 from eventsim.reading import told_as
-from eventsim.record.events import Rows, blank_rows
+from eventsim.record.events import Rows, joined
 from eventsim.record.files import csv, jsonl, npz
 from eventsim.record.files.sink import FileSink, Format, Mark, Opened, demand_same, part_of
 from eventsim.record.files.table import checked, verified
-from eventsim.record.provenance import Provenance
+from eventsim.record.provenance import Provenance, has_spin
 from eventsim.suffixes import PART
 
 MAGIC = {".csv": b"# {", ".jsonl": b'{"', ".npz": b"PK", ".parquet": b"PAR1"}
@@ -126,7 +124,7 @@ def open_log(path: Path, verify: bool = True) -> Opened:
 def read_log(path: Path) -> tuple[Provenance, Rows]:
     """Return the provenance and all rows of a log file; raises LogError as `open_log` does."""
     provenance, blocks = open_log(path)
-    return provenance, np.concatenate([blank_rows(0), *blocks])
+    return provenance, joined(list(blocks), has_spin(provenance.scene))
 
 
 def _format_of(path: Path) -> Format:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from importlib.util import find_spec
 
-from eventsim.record.events import FIELDS, ROW, Rows
+from eventsim.record.events import FIELDS, SPIN_ROW, Rows
 from eventsim.record.files.sink import Format
 from eventsim.record.files.table import labels_of, rows_from_columns
 from eventsim.record.files.text import TextForm, TextSink, text_format, words_of
@@ -78,7 +78,7 @@ def _columns(lines: list[str], names: tuple[str, ...]) -> dict[str, Sequence[obj
     for name, words in zip(names, zip(*records, strict=True), strict=True):
         if FIELDS[name].labelled:
             columns[name] = words
-        elif ROW[name].kind == "f":
+        elif SPIN_ROW[name].kind == "f":
             columns[name] = [float(word) if word else math.nan for word in words]
         else:
             columns[name] = list(map(int, words))

@@ -19,7 +19,7 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.reading import reading, told_as
-from eventsim.record.events import FIELDS, ROW, Column, Rows, blank_rows
+from eventsim.record.events import FIELDS, SPIN_ROW, SPINS, Column, Rows, blank_rows
 from eventsim.record.files.runs import columns_of_runs, cut_runs, rows_in_runs, runs_of
 from eventsim.record.files.sink import FileSink, Opened, demand_same
 from eventsim.record.provenance import (
@@ -120,7 +120,7 @@ class JournalSink(FileSink):
             raise LogError(f"{self.part}: holds {found} rows of {rows}")
         for name in raw(self.columns):
             _part_from_others(self.part / name)
-            os.truncate(self.part / name, ROOM + rows * ROW[name].itemsize)
+            os.truncate(self.part / name, ROOM + rows * SPIN_ROW[name].itemsize)
         cut_runs(self.part / RUNS, rows)
         self._go_on()
         for columns in columns_of_journal(self.part, self.columns, rows):
@@ -201,7 +201,7 @@ def rows_in_journal(part: Path, columns: tuple[str, ...]) -> int:
     """How many rows are whole; LogError where a file is missing."""
     with told_as(part, LogError, DAMAGED):
         sizes = {name: max((part / name).stat().st_size - ROOM, 0) for name in raw(columns)}
-        counts = [size // ROW[name].itemsize for name, size in sizes.items()]
+        counts = [size // SPIN_ROW[name].itemsize for name, size in sizes.items()]
         return min(*counts, rows_in_runs(part / RUNS))
 
 
@@ -212,8 +212,8 @@ def columns_of_journal(part: Path, names: tuple[str, ...], count: int) -> Iterat
         found: Columns = {NUMBER: np.arange(first, first + here), **columns_of_runs(part / RUNS, first, here)}
         for name in raw(names):
             with open(part / name, "rb") as source:
-                source.seek(ROOM + first * ROW[name].itemsize)
-                found[name] = np.frombuffer(source.read(here * ROW[name].itemsize), ROW[name])
+                source.seek(ROOM + first * SPIN_ROW[name].itemsize)
+                found[name] = np.frombuffer(source.read(here * SPIN_ROW[name].itemsize), SPIN_ROW[name])
         yield found
 
 
@@ -221,7 +221,7 @@ def blocks_of_journal(part: Path, names: tuple[str, ...], count: int) -> Generat
     """The first `count` rows, in blocks."""
     with told_as(part, LogError, DAMAGED):
         for columns in columns_of_journal(part, names, count):
-            rows = blank_rows(len(columns["event"]))
+            rows = blank_rows(len(columns["event"]), SPINS[0] in columns)
             for name, column in columns.items():
                 rows[name] = column
             yield rows

@@ -19,7 +19,7 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.reading import ArrayReader, Npz, reading
-from eventsim.record.events import ROW, Rows
+from eventsim.record.events import SPIN_ROW, Rows
 from eventsim.record.files.archive import Deflated, Entry, Stored, write_archive
 from eventsim.record.files.counting import Counting
 from eventsim.record.files.journal import GROUP, METADATA, NUMBER, ROOM, WHOLE, Columns, JournalSink, open_journal
@@ -54,7 +54,7 @@ class NpzSink(JournalSink):
         self._metadata.finish(_header(np.dtype(np.uint8), self._length))
         for name, entry in self._entries.items():
             labels = labels_of(name, self.provenance.wall_names)
-            entry.finish(_header(ROW[name] if labels is None else labels.dtype, self._count))
+            entry.finish(_header(SPIN_ROW[name] if labels is None else labels.dtype, self._count))
         last = self.part / self.columns[-1]
         write_archive(last, [self._metadata, *self._entries.values()])
         whole = self.part / WHOLE

@@ -11,7 +11,7 @@ import numpy as np
 
 from eventsim.errors import LogError
 from eventsim.reading import reading
-from eventsim.record.events import FIELDS, ROW, Column, Rows
+from eventsim.record.events import FIELDS, SPIN_ROW, Column, Rows
 from eventsim.record.files.journal import METADATA, WHOLE, Columns, JournalSink, open_journal
 from eventsim.record.files.sink import Format, Opened
 from eventsim.record.files.table import labels_of, rows_from_columns
@@ -25,7 +25,7 @@ except ImportError:
     raise LogError("parquet logs need pyarrow: install eventsim-disks[parquet]") from None
 
 TEXTS = tuple(name for name, field in FIELDS.items() if field.labelled)
-NULLABLE = frozenset(name for name, field in FIELDS.items() if ROW[name].kind == "f" and field.missing is not None)
+NULLABLE = frozenset(name for name, field in FIELDS.items() if SPIN_ROW[name].kind == "f" and field.missing is not None)
 NOT_ONE = "not a whole parquet event log"
 
 GROUP = 1 << 15
@@ -42,11 +42,11 @@ class ParquetSink(JournalSink):
     _writer: Any = None
 
     def _begin(self) -> None:
-        whole = {name: "DELTA_BINARY_PACKED" for name in self.columns if name not in TEXTS and ROW[name].kind == "i"}
+        whole = {name: "DELTA_BINARY_PACKED" for name in self.columns if name not in TEXTS and SPIN_ROW[name].kind == "i"}
         schema = _schema(self.columns)
         self._writer = pq.ParquetWriter(self.part / WHOLE, schema, store_schema=False, column_encoding=whole, **LEAN)
         self._metadata: list[str] = []
-        self._group: Columns = {name: np.empty(GROUP, ROW[name]) for name in self.columns}
+        self._group: Columns = {name: np.empty(GROUP, SPIN_ROW[name]) for name in self.columns}
         self._filled = 0
 
     def _put(self, columns: Columns) -> None:
@@ -114,14 +114,14 @@ def columns_of_csv(text: bytes, names: tuple[str, ...]) -> dict[str, Column] | N
     """The columns of lines of CSV without quotation marks, where empty is missing; None for what is not plainly such."""
     if b'"' in text:
         return None
-    kinds = {name: pa.string() if name in TEXTS else pa.from_numpy_dtype(ROW[name]) for name in names}
+    kinds = {name: pa.string() if name in TEXTS else pa.from_numpy_dtype(SPIN_ROW[name]) for name in names}
     read = csv.ReadOptions(column_names=list(names))
     options = csv.ConvertOptions(column_types=kinds, null_values=[""], strings_can_be_null=False)
     try:
         table = csv.read_csv(pa.py_buffer(text), read, csv.ParseOptions(quote_char=False), options)
     except pa.ArrowInvalid:
         return None
-    if any(table.column(name).null_count for name in names if ROW[name].kind == "i" and name not in TEXTS):
+    if any(table.column(name).null_count for name in names if SPIN_ROW[name].kind == "i" and name not in TEXTS):
         return None
     return {name: _column(table.column(name)) for name in names}
 
@@ -129,7 +129,7 @@ def columns_of_csv(text: bytes, names: tuple[str, ...]) -> dict[str, Column] | N
 def _schema(names: tuple[str, ...]) -> Any:
     """The columns of a file; only floats can be null, and what cannot be is written faster."""
     text = pa.dictionary(pa.int32(), pa.string())
-    kinds = {name: text if name in TEXTS else pa.from_numpy_dtype(ROW[name]) for name in names}
+    kinds = {name: text if name in TEXTS else pa.from_numpy_dtype(SPIN_ROW[name]) for name in names}
     return pa.schema([pa.field(name, kind, nullable=name in NULLABLE) for name, kind in kinds.items()])
 
 

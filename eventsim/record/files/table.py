@@ -13,8 +13,8 @@ import numpy as np
 from eventsim.errors import LogError, LogWarning
 from eventsim.reading import as_floats
 from eventsim.record.digest import StoredDigester
-from eventsim.record.events import COLUMNS, FIELDS, LABELS, ROW, Column, Kind, Rows, blank_rows
-from eventsim.record.provenance import UNCHECKED, Provenance, columns_kept
+from eventsim.record.events import FIELDS, LABELS, SPIN_ROW, Column, Kind, Rows, blank_rows, columns_of
+from eventsim.record.provenance import UNCHECKED, Provenance, columns_kept, has_spin
 
 BLOCK = 1 << 12
 """Rows that are filled in, or looked at, at a time: they stay in a core's own cache."""
@@ -33,12 +33,13 @@ def rows_from_columns(columns: Mapping[str, Sequence[object] | Column], provenan
     Raises ValueError, TypeError, OverflowError or KeyError for what does not fit its column.
     """
     values = {name: _values(columns[name], name, provenance) for name in columns_kept(provenance)}
-    missing = blank_rows(1)[0]
-    rows = np.empty(len(columns["event"]), ROW)
+    spin = has_spin(provenance.scene)
+    missing = blank_rows(1, spin)
+    rows = np.empty(len(columns["event"]), missing.dtype)
     for first in range(0, len(rows), BLOCK):
         block = rows[first : first + BLOCK]
-        for name in COLUMNS:
-            block[name] = values[name][first : first + BLOCK] if name in values else missing[name]
+        for name in columns_of(spin):
+            block[name] = values[name][first : first + BLOCK] if name in values else missing[name][0]
     return rows
 
 
@@ -46,7 +47,7 @@ def _values(column: Sequence[object] | Column, name: str, provenance: Provenance
     labels = labels_of(name, provenance.wall_names)
     if labels is not None:
         return codes_of(np.asarray(column, dtype=np.str_), labels, name)
-    return as_floats(column) if ROW[name].kind == "f" else integers_of(column, ROW[name])
+    return as_floats(column) if SPIN_ROW[name].kind == "f" else integers_of(column, SPIN_ROW[name])
 
 
 def codes_of(texts: Column, labels: Column, name: str) -> Column:

@@ -17,7 +17,8 @@ from matplotlib.colors import to_hex
 from eventsim.engines import engine_named
 from eventsim.errors import EventsimError
 from eventsim.measure.trust import UNASKED, TrustLine
-from eventsim.record.events import Column, Rows, blank_rows
+from eventsim.record.events import Column, Rows, joined
+from eventsim.record.provenance import has_spin
 from eventsim.replay.log import AnyLog, EventLog
 from eventsim.replay.motion import Motion
 from eventsim.replay.replay import Replay
@@ -63,7 +64,7 @@ def packed(log: AnyLog, color: str | None = None, seconds: float | None = None) 
         raise EventsimError(
             f"a page plays at most {MOST_PLAYED:,} events and this log has {len(log):,}: write an .mp4 or .gif"
         )
-    replay = Replay(EventLog(log.provenance, np.concatenate([blank_rows(0), *log.blocks()])))
+    replay = Replay(EventLog(log.provenance, joined(list(log.blocks()), has_spin(log.scene))))
     first, last = shown_span(replay.span, None, None)
     columns = [*start_columns(replay), *row_columns(replay.full.rows)]
     description = {
