@@ -145,8 +145,12 @@ class ExactSession(Session):
         return epochs_to_wrap(self.stage, self.state.epoch, self.state.window, self.state.anchors())
 
     def _sunk_speeds(self) -> str | None:
-        """A sentence where speeds have sunk below the digits, so that the run ends with the window."""
-        return sunk_speeds(self.stage, self.state.window_rows, self.state.anchors)
+        """A sentence where speeds have sunk below the digits, by contacts, so that the run ends with the window."""
+        return None if self._pair_contacts() == 0 else sunk_speeds(self.stage, self.state.window_rows, self.state.anchors)
+
+    def _pair_contacts(self) -> int:
+        """How many contacts of disks there have been."""
+        return self.counters.pair_contacts
 
     def _only_wraps(self) -> bool:
         """Whether disks will wrap for ever, and never meet anything again."""

@@ -190,4 +190,5 @@ def any_lies(support: Support, flights: tuple[Floats, ...], radius: Floats, grav
     scale = shape.norm * (np.abs(x) + np.abs(y) + abs(shape.x) + abs(shape.y) + radius)
     touches = (np.abs(gap) <= TOUCHING * scale) & (support.low <= along) & (along <= support.high)
     still = rate * rate <= 8.0 * abs(fall) * np.abs(gap)
-    return bool(np.any(touches & still & (np.sign(distance) * fall < 0.0)))
+    pressed = (np.sign(distance) * fall < 0.0) | (radius * shape.norm <= TOUCHING * scale)  # places tell no side of points
+    return bool(np.any(touches & still & pressed & (fall != 0.0)))

@@ -67,6 +67,16 @@ def test_f24_a_disk_that_lies_on_the_floor_slides_to_the_wall_and_back(engine, r
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("restitution", [None, 0.5])
+def test_so_does_a_point_although_its_place_does_not_tell_its_side(engine, restitution):
+    disks = es.Disks([[9.0, 0.0]], [[1.0, 0.0]], 0.0)
+    scene = es.Scene(disks, es.Box((10.0, 10.0)), gravity=(0.0, -1.0), restitution=restitution)
+    run = es.simulate(scene, until=3.0, engine=engine, log=True)
+    assert kinds(run) == ["rest", "wall", "rest"]
+    assert run.state.position.tolist() == [[10.0 - 2.0 * (restitution or 1.0), 0.0]]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("degrees", [10.0, 37.0, 80.0])
 def test_a_disk_slides_down_a_ramp_at_g_sin_alpha(engine, degrees):
     angle = math.radians(degrees)

@@ -95,3 +95,15 @@ def test_a_clock_that_ends_before_a_contact_that_nobody_can_name_says_so():
     word, sentence = end_of_clock(stage, 5, 0.5, math.inf, ahead=True)
     assert word == "digits"
     assert "a contact may still be ahead; a scene" in sentence
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+def test_kicks_alone_let_no_speeds_sink(engine):
+    """A lone disk that wraps has no speed as others see it; no contact has taken any."""
+    scene = es.Scene(es.Disks([(1.0, 1.0)], [(0.0, 0.0)], 0.25), es.Periodic((2.0, 2.0)), restitution=0.5)
+    sim = es.Simulation(scene, engine=engine)
+    for k in range(1, 5):
+        sim.advance_to(k)
+        sim.set_velocity(0, (0.5 * k, 0.25))
+    sim.advance_to(1e5)
+    assert sim.time == 1e5

@@ -255,6 +255,9 @@ class FastSession(ExactSession):
         if int(self.state.place_of[i]) < (self._machine.grids.posts or 0):  # it moves from now on
             self._predict_afresh()
 
+    def _pair_contacts(self) -> int:
+        return int(self._machine.counts[layout.PAIRS])
+
     def take_rows(self) -> Rows:
         """The rows since the last call, an array of ROW."""
         return self._machine.take_rows()
