@@ -111,7 +111,8 @@ def seeded_task(name: str) -> Task:
     from eventsim.cli.source import draws_at_random, seeded_scene
     from eventsim.validation.chart import SEEDS, task_of
 
-    task = task_of(seeded_scene(name, (), None), name)
+    scene = seeded_scene(name, (), None)
+    task = task_of(scene, scene.called)
     if not draws_at_random(name, ()):
         return task
     return replace(task, others=tuple(seeded_scene(name, (), seed) for seed in SEEDS))

@@ -106,9 +106,18 @@ class Ensemble:
     @property
     def elastic(self) -> bool:
         """Whether contacts keep the energy: those that there can be."""
-        scene, domain = self.scene, self.scene.domain
-        walls = bool(scene.walls) or not (isinstance(domain, Open) or all(domain.periodic))
-        return self.law.keeps_energy(len(scene.disks) > 1, walls)
+        return self.law.keeps_energy(len(self.scene.disks) > 1, self._walled)
+
+    @property
+    def walls_take(self) -> bool:
+        """Whether walls take energy."""
+        return not self.law.keeps_energy(False, self._walled)
+
+    @property
+    def _walled(self) -> bool:
+        """Whether there are walls, or sides of the domain."""
+        domain = self.scene.domain
+        return bool(self.scene.walls) or not (isinstance(domain, Open) or all(domain.periodic))
 
     @property
     def pushed(self) -> bool:
@@ -240,6 +249,21 @@ class Ensemble:
             return math.pi * self.circle.radius**2
         table = self._table(0.0) if self.held else None
         return None if table is None else table.area
+
+    @cached_property
+    def width(self) -> float:
+        """How far apart walls are, length: twice the area over the perimeter, which is an inscribed radius, or the shorter side.
+
+        inf in periodic domains, where displacements have no end.
+        """
+        if self.torus:
+            return math.inf
+        size = self.scene.domain.size
+        shorter = math.inf if size is None else min(size)
+        if not self.scene.walls and self.posts is None:
+            return shorter
+        table = self._table(0.0) if self.held else None
+        return shorter if table is None else min(shorter, 2.0 * table.area / table.perimeter)
 
     @property
     def _smallest(self) -> float:

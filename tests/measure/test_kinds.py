@@ -9,6 +9,7 @@ import eventsim as es
 from eventsim.measure import measure
 from eventsim.measure.ensemble import ensemble_of
 from eventsim.measure.quantities.cooling import flowing
+from eventsim.scene.restitution import Restitution
 from tests.engines.scenes import lattice_gas
 
 
@@ -184,3 +185,34 @@ def test_species_that_began_apart_are_not_called_equilibrated_before_they_mix():
     assert any("began apart" in doubt for doubt in measures.doubts)
     mixed = lattice_gas(36, 0.2, es.Periodic, seed=3, masses=(1.0, 3.0))
     assert not any("began apart" in doubt for doubt in measured(mixed, events=600).doubts)
+
+
+def test_the_width_of_a_region_is_that_between_its_walls():
+    """Below a share of it diffusion is read: in a triangle, beside a wall through the box, in a circle."""
+    disk = es.Disks([[1.0, 1.0]], [[1.0, 0.0]], 0.1)
+    triangle = es.Scene(disk, es.Open(), walls=[es.Polygon([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])])
+    halved = es.Scene(disk, es.Box((10.0, 10.0)), walls=[es.Segment((5.0, 0.0), (5.0, 10.0))])
+    round_one = es.Scene(disk, es.Open(), walls=[es.Circle((1.0, 1.0), 2.0)])
+    expected = ((triangle, 1.0), (halved, 100.0 / 30.0), (round_one, 2.0), (es.Scene(disk, es.Box((10.0, 8.0))), 8.0))
+    for scene, width in expected:
+        assert ensemble_of(scene).width == pytest.approx(width, rel=1e-9)
+    assert ensemble_of(es.Scene(disk, es.Periodic((3.0, 3.0)))).width == math.inf
+
+
+def test_a_gas_in_a_polygon_has_no_diffusion_once_it_has_felt_the_walls():
+    """Its displacements end there: the slope at long lags is that of nothing."""
+    gas = lattice_gas(25, 0.1, es.Box, seed=3)
+    side = gas.domain.size[0]
+    corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)]
+    measures = measured(es.Scene(gas.disks, es.Open(), walls=[es.Polygon(corners)]), events=1500)
+    assert "before walls are felt" in measures["diffusion"].doubt
+
+
+def test_where_walls_take_energy_no_exponent_is_told_by_contacts():
+    """How often disks come to walls depends on the box, and Haff's variable does not know of it."""
+    gas = lattice_gas(25, 0.3, es.Box, seed=3)
+    for shares in ((0.9, 0.9), (1.0, 0.8)):
+        scene = es.Scene(gas.disks, gas.domain, restitution=Restitution(*shares))
+        assert "walls take energy" in measured(scene, events=300)["cooling_exponent"].doubt
+    pairs_only = measured(es.Scene(gas.disks, gas.domain, restitution=Restitution(0.9, 1.0)), events=300)
+    assert pairs_only["cooling_exponent"].value > 0.0

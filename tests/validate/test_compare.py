@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 import struct
 import time
 from dataclasses import replace
@@ -17,7 +18,8 @@ import eventsim as es
 from eventsim.cli.program import main
 from eventsim.engines.stepped.stepped import FixedStepSession
 from eventsim.scene.stage import stage_of
-from eventsim.show.versus.losses import NONE, draw_missed
+from eventsim.scene.writing import scene_to_toml
+from eventsim.show.versus.losses import NONE, draw_energy, draw_missed
 from eventsim.validation.advantages import Advantage, advantages, cell, table
 from eventsim.validation.chart import Chaos, Chart
 from eventsim.validation.compare import compare
@@ -299,6 +301,33 @@ def test_figures_are_drawn(gas, tmp_path):
     assert {row["panel"] for row in chart_rows(chart)} == {"precision", "losses", "chaos", "rate", "advantage"}
 
 
+def test_titles_of_panels_end_before_the_next_panel(gas):
+    """All of them, on the page that is read in a minute."""
+    from eventsim.show.versus.summary import draw_summary
+
+    chart = a_chart()
+    chart.losses = gas
+    words = "100 disks, packing 0.3, after 3 contacts a disk"
+    chart.tasks = [replace(curves, task=replace(curves.task, words=words)) for curves in chart.tasks]
+    figure = Figure(figsize=(16.0, 9.0), layout="constrained")
+    draw_summary(figure, chart)
+    figure.draw_without_rendering()
+    panels = [axes for part in figure.subfigs for axes in part.axes if axes.get_title(loc="left")]
+    titles = [axes._left_title.get_window_extent() for axes in panels]
+    assert len(titles) >= 4
+    for place, box in enumerate(titles):
+        assert not any(box.overlaps(other) for other in titles[place + 1 :])
+        assert box.x1 < figure.bbox.x1
+
+
+def test_notes_lie_above_the_curves_on_a_back_that_hides_them(gas):
+    axes = Figure().subplots()
+    draw_energy(axes, gas)
+    (note,) = axes.texts
+    assert note.zorder > max(line.zorder for line in axes.lines)
+    assert note.get_bbox_patch().get_alpha() in (None, 1.0)
+
+
 def test_runs_that_miss_nothing_are_drawn_below_one_in_a_hundred(gas):
     few = [replace(line, census=replace(line.census, exact=10, missed=0)) for line in gas.lines]
     axes = Figure().subplots()
@@ -365,6 +394,16 @@ def test_chart_of_a_scene_writes_figure_and_table(tmp_path):
     assert done.exit_code == 0, done.output
     assert target.stat().st_size > 10_000
     assert "elapsed_per_time" in (tmp_path / "two.csv").read_text()
+
+
+def test_a_scene_of_ones_own_is_called_by_its_name(tmp_path):
+    from eventsim.cli.chart import seeded_task
+
+    text = scene_to_toml(es.gallery("two-disks"))
+    (tmp_path / "file.toml").write_text(re.sub(r"(?m)^name = .*$", 'name = "a duel"', text))
+    assert seeded_task(str(tmp_path / "file.toml")).name == "a duel"
+    (tmp_path / "file.toml").write_text(re.sub(r"(?m)^name = .*$", "", text))
+    assert seeded_task(str(tmp_path / "file.toml")).name == "file"
 
 
 def test_a_comparison_of_nothing_draws_no_verdict(gas):

@@ -34,6 +34,9 @@ def measures(records: Records) -> Iterator[Measure]:
     ensemble = records.ensemble
     if not ensemble.n or ensemble.elastic or ensemble.kicked or ensemble.pushed or ensemble.scene.gravity is not None:
         return
+    if ensemble.walls_take:
+        yield dash("cooling_exponent", UNIT, "walls take energy as well, as often as disks come to them")
+        return
     count, stride = int(records.sums.counts[sums.POINTS]), int(records.sums.counts[sums.STRIDE])
     energy = np.concatenate([[ensemble.start_energy], records.sums.points[:count, sums.POINT_ENERGY]])
     warm = np.array([ensemble.temperature(float(e)) for e in energy])

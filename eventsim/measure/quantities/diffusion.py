@@ -34,13 +34,10 @@ def measures(records: Records) -> Iterator[Measure]:
         yield dash("diffusion", UNIT, why)
         return
     assert free_time is not None
-    size = ensemble.scene.domain.size
-    if ensemble.circle is not None:
-        size = (ensemble.circle.radius, ensemble.circle.radius)
-    if size is None and not ensemble.n:
+    if not ensemble.torus and ensemble.scene.domain.size is None and not ensemble.n:
         yield dash("diffusion", UNIT, "walls enclose it")
         return
-    widest = math.inf if size is None or ensemble.torus else BOUNDED * min(size)
+    widest = BOUNDED * ensemble.width
     slope = diffusion(records.correlations, free_time, widest)
     if slope is None or not slope.value > 0.0:
         yield dash(

@@ -37,6 +37,12 @@ MOST_MARKS = 40
 def write_judgement(judgement: Judgement, path: str | PathLike[str]) -> None:
     """Draw a judgement to `path`: .png, .svg or .pdf.  Raises EventsimError where it cannot be written."""
     figure = Figure(figsize=SIZE, dpi=110, facecolor="white", layout="constrained")
+    draw_judgement(figure, judgement)
+    save_page(figure, path)
+
+
+def draw_judgement(figure: Figure, judgement: Judgement) -> None:
+    """Draw a judgement onto a figure: panels, marks at what is wrong, the verdict."""
     words = judged_in_words(judgement)
     title = fill(f"{judgement.source} on {judgement.name}: {words[0]}", TITLE_LETTERS)
     figure.suptitle(as_written(title), fontsize=13, x=0.01, ha="left", color=LIGHT.ink)
@@ -49,7 +55,6 @@ def write_judgement(judgement: Judgement, path: str | PathLike[str]) -> None:
         axes.set_xlim(judgement.times[0], judgement.times[-1])
         for place, fault in enumerate(judgement.faults[:MOST_MARKS]):
             axes.axvline(fault.time, color=WRONG, lw=1.6 if place == 0 else 0.5, alpha=1.0 if place == 0 else 0.35, zorder=1)
-    save_page(figure, path)
 
 
 def _draw_positions(axes: Axes, judgement: Judgement) -> None:

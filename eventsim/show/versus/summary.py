@@ -40,8 +40,14 @@ Draw = Callable[[Axes], None]
 
 def write_summary(chart: Chart, path: str | PathLike[str]) -> None:
     """Draw the page to `path`: .png, .svg or .pdf.  Raises EventsimError where it cannot be written."""
-    panels = panels_of(chart)
     figure = Figure(figsize=SIZE, dpi=100, facecolor="white", layout="constrained")
+    draw_summary(figure, chart)
+    save_page(figure, path)
+
+
+def draw_summary(figure: Figure, chart: Chart) -> None:
+    """Draw the page onto a figure."""
+    panels = panels_of(chart)
     text, right = figure.subfigures(1, 2, width_ratios=[TEXT_SHARE, 1.0 - TEXT_SHARE], squeeze=False)[0]
     rows, columns = GRID.get(len(panels), (-(-len(panels) // 3), 3))
     if panels:
@@ -52,7 +58,6 @@ def write_summary(chart: Chart, path: str | PathLike[str]) -> None:
             else:
                 axes.set_axis_off()
     _draw_answers(text.add_axes((0.0, 0.0, 1.0, 1.0)), chart)
-    save_page(figure, path)
 
 
 def panels_of(chart: Chart) -> list[Draw]:

@@ -16,7 +16,7 @@ from eventsim.scene.stage import Stage
 from eventsim.validation.judge.flights import Flights, Gained, Turn
 from eventsim.validation.judge.outcome import named, wrong_outcome
 from eventsim.validation.judge.surroundings import Surroundings
-from eventsim.validation.judge.told import NEAR, Met
+from eventsim.validation.judge.told import NEAR, Met, is_beside_something
 
 GRAZE = 0.02
 """In reaches: a missed contact whose own path overlaps by less is called a graze."""
@@ -140,9 +140,13 @@ class Witness:
         return bool(self._flights.turned[first + 1 : max(last - 2, first + 1), list(disks)].any())
 
     def outcome(self, met: Met) -> Fault | None:
-        """The fault of what a contact did; None where it is right."""
+        """The fault of what a contact did; None where it is right, or where a wall may have had its part in it."""
         said = wrong_outcome(met, self._stage, self._mass, self._flights.least)
         if said is None:
+            return None
+        if met.key[0] == Kind.PAIR and any(
+            turn is not None and is_beside_something(turn, self._flights, self._around, self._mass) for turn in met.turns
+        ):
             return None
         kind = said.split(":")[0]
         disks = tuple(disk for disk in met.key[1:] if disk >= 0) if met.key[0] == Kind.PAIR else met.key[1:2]
@@ -157,7 +161,8 @@ class Witness:
         """The fault of energy that free flights gain or lose, of `energy` at the start."""
         if not energy > 0.0:
             return None
-        share = gained.energy / energy
+        without = np.maximum(np.abs(gained.energy) - gained.largest, 0.0)
+        share = np.copysign(without, gained.energy) / energy
         over = np.flatnonzero(np.abs(share) > np.maximum(DRIFT, SURE * gained.error / energy))
         if not len(over):
             return None

@@ -34,6 +34,10 @@ BLURRED_BY = 6.0**0.5
 WILD = 4.0
 """Of the typical speed: from the first step on in which disks are faster (root mean square) nothing is told of noise."""
 
+SPLIT = 0.1
+"""Of the way that a change of velocity makes from one sample to the next: two flights that miss each other by more have no
+common point, so that there is a third between them."""
+
 UNLIKE = 0.02
 """Of the typical speed: told velocities that differ more from the motion of the positions (the median) are not used."""
 
@@ -42,8 +46,9 @@ UNLIKE = 0.02
 class Turn:
     """A disk flies free until sample `first` and from sample `last` on.
 
-    time: where the two flights cross.  before: the velocity with which it comes there.  change: what it was given, gravity
-    apart.  ends: whether the samples end before the flight after it is known.
+    time: where the two flights cross, to within `slack`.  before: the velocity with which it comes there.  change: what it was
+    given, gravity apart.  ends: whether the samples end before the flight after it is known.  split: whether the two flights do
+    not cross, so that there were several contacts between the samples.
     """
 
     disk: int
@@ -52,12 +57,14 @@ class Turn:
     time: float
     before: Floats
     change: Floats
+    slack: float = 0.0
     ends: bool = False
+    split: bool = False
 
     @property
     def is_sharp(self) -> bool:
-        """Whether it is over within one step, and the flight after it is known."""
-        return self.last - self.first <= 1 and not self.ends
+        """Whether it is over within one step, at one time, and the flight after it is known."""
+        return self.last - self.first <= 1 and not self.ends and not self.split
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,10 +121,14 @@ class Flights:
         change = after - before - pull * lag
         back = self.place[last, disk] - after * lag + 0.5 * pull * lag * lag
         size = float(change @ change)
-        since = float((self.place[first, disk] - back) @ change) / size if size > 0.0 and lag > 0.0 else 0.0
-        time = float(self.times[first]) + min(max(since, 0.0), lag)
+        apart = self.place[first, disk] - back
+        since = float(apart @ change) / size if size > 0.0 and lag > 0.0 else 0.0
+        kept = min(max(since, 0.0), lag)
+        slack = (SPLIT + self.least / math.sqrt(size)) * lag if size > 0.0 else lag
+        split = math.hypot(*(apart - kept * change)) > slack * math.sqrt(size)
+        time = float(self.times[first]) + kept
         ends = not self.told and last >= len(self.times) - 2
-        return Turn(disk, first, last, time, before + pull * (time - float(self.times[first])), change, ends)
+        return Turn(disk, first, last, time, before + pull * (time - float(self.times[first])), change, slack, ends, split)
 
 
 def flights_of(
@@ -172,10 +183,14 @@ def _calm(mean: Floats, speed: float) -> int:
 
 
 class Gained(NamedTuple):
-    """The energy that free flights have been given until each sample, (T,), and the standard error of that, (T,)."""
+    """What free flights have been given until each sample, (T,): energy, and its standard error.
+
+    largest: the size of what one flight alone was given: a contact that samples hide is no drift.
+    """
 
     energy: Floats
     error: Floats
+    largest: Floats
 
 
 def energy_on_the_way(flights: Flights, mass: Floats) -> Gained:
@@ -184,7 +199,7 @@ def energy_on_the_way(flights: Flights, mass: Floats) -> Gained:
     Flights of less than SHORTEST samples are left out.
     """
     count, n = flights.place.shape[:2]
-    energy, variance = np.zeros(count), np.zeros(count)
+    energy, variance, largest = np.zeros(count), np.zeros(count), np.zeros(count)
     blur = flights.blur
     ends: dict[int, list[tuple[int, int]]] = {disk: [] for disk in range(n)}
     for turn in flights.turns():
@@ -200,7 +215,9 @@ def energy_on_the_way(flights: Flights, mass: Floats) -> Gained:
                 one, other = (x1 - x0) / (t1 - t0), (x2 - x1) / (t2 - t1)
                 push = 2.0 * (other - one - 0.5 * flights.pull[disk] * (t2 - t0))
                 speed = 0.5 * (one + other)
-                energy[end] += mass[disk] * float(speed @ push)
+                given = mass[disk] * float(speed @ push)
+                energy[end] += given
+                largest[end] = max(largest[end], abs(given))
                 variance[end] += (mass[disk] * math.hypot(*speed) * 8.0 * blur / (t2 - t0)) ** 2
             begin = last + 1
-    return Gained(np.cumsum(energy), np.sqrt(np.cumsum(variance)))
+    return Gained(np.cumsum(energy), np.sqrt(np.cumsum(variance)), np.maximum.accumulate(largest))

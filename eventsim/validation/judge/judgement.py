@@ -42,7 +42,7 @@ SMALLEST = 1e-9
 SMOOTHED = 5
 """Samples."""
 
-COARSE = 0.3
+COARSE = 0.2
 """Of the typical speed: where the least turn that can be told from noise is larger, contacts cannot be told from positions."""
 
 

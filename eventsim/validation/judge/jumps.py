@@ -9,10 +9,13 @@ import numpy as np
 
 from eventsim.record.events import Floats
 from eventsim.validation.judge.faults import Fault
-from eventsim.validation.judge.flights import Flights, Turn
+from eventsim.validation.judge.flights import Flights, Mask, Turn
 from eventsim.validation.judge.outcome import CLEAR
 from eventsim.validation.judge.surroundings import Surroundings
-from eventsim.validation.judge.told import NEAR
+from eventsim.validation.judge.told import NEAR, flown_at, is_beside_something
+
+BESIDE = 2
+"""Samples before and after turns in which another disk that turns may have been part of them."""
 
 
 def jumps(
@@ -35,7 +38,7 @@ def jumps(
         return  # a moving obstacle gives energy
     weight = np.where(held, 0.0, mass)
     for group in groups:
-        if any(turn.ends for turn in group) or _is_known(group, flights, known):
+        if any(turn.ends for turn in group) or _is_known(group, flights, known) or _may_lack_some(group, flights, around, held):
             continue
         fault = _energy(group, flights, around, weight) or _momentum(group, flights, around, mass)
         if fault is not None:
@@ -48,6 +51,22 @@ def _is_known(group: Sequence[Turn], flights: Flights, known: Sequence[Fault]) -
     begin, end = flights.times[max(first - 1, 0)], flights.times[min(last + 1, len(flights.times) - 1)]
     disks = {turn.disk for turn in group}
     return any(begin <= fault.time <= end and not disks.isdisjoint(fault.disks) for fault in known)
+
+
+def _may_lack_some(group: Sequence[Turn], flights: Flights, around: Surroundings, held: Mask) -> bool:
+    """Whether a disk that turns right before or after them is so near that it may have met one of them unseen."""
+    first, last = _span(group)
+    span = slice(max(first - 1, 0), last + 2)
+    others = flights.turned[max(first - BESIDE, 0) : last + 1 + BESIDE].any(axis=0) & ~held
+    others[[turn.disk for turn in group]] = False
+    radius = around.stage.radius
+    for other in np.flatnonzero(others).tolist():
+        way = np.hypot(*np.diff(flights.place[span, other], axis=0).T).max(initial=0.0)
+        for turn in group:
+            margin = NEAR * float(radius[other] + radius[turn.disk]) + float(way) + flown_at(flights, turn)
+            if around.gap(turn.disk, other, flights.place[span, turn.disk], flights.place[span, other]) < margin:
+                return True
+    return False
 
 
 def _span(group: Sequence[Turn]) -> tuple[int, int]:
@@ -91,7 +110,7 @@ def _where(group: Sequence[Turn], flights: Flights, weight: Floats) -> tuple[int
 
 
 def _momentum(group: Sequence[Turn], flights: Flights, around: Surroundings, mass: Floats) -> Fault | None:
-    if len(group) < 2 or any(_is_beside_something(turn, flights, around, mass) for turn in group):
+    if len(group) < 2 or any(is_beside_something(turn, flights, around, mass) for turn in group):
         return None
     given = [float(mass[turn.disk]) * turn.change for turn in group]
     whole = sum(math.hypot(*one) for one in given)
@@ -109,20 +128,6 @@ def _momentum(group: Sequence[Turn], flights: Flights, around: Surroundings, mas
         "no contact gives any"
     )
     return Fault(end, "momentum", said, disks)
-
-
-def _is_beside_something(turn: Turn, flights: Flights, around: Surroundings, mass: Floats) -> bool:
-    """Whether a wall, or an immovable disk, may have given a disk momentum."""
-    span = slice(max(turn.first - 1, 0), turn.last + 2)
-    lag = float(np.diff(flights.times[span]).sum())
-    flown = lag * max(math.hypot(*turn.before), math.hypot(*(turn.before + turn.change)))
-    radius = around.stage.radius
-    margin = float(radius[turn.disk]) * (1.0 + NEAR) + flown
-    places = flights.place[span, turn.disk]
-    if any(around.to_wall(surface, place)[1] < margin for surface in around.surfaces for place in places):
-        return True
-    away = np.hypot(*around.apart(places[0], flights.place[span.start]).T) - radius * (1.0 + NEAR) - margin
-    return bool(np.any(away[~np.isfinite(mass)] < 0.0))
 
 
 def _named(disks: tuple[int, ...]) -> str:

@@ -88,7 +88,21 @@ def _span(turn: Turn, count: int) -> slice:
     return slice(max(turn.first - 1, 0), min(turn.last + 2, count))
 
 
-def _reach_of(flights: Flights, turn: Turn) -> float:
+def is_beside_something(turn: Turn, flights: Flights, around: Surroundings, mass: Floats) -> bool:
+    """Whether a disk may have met a wall, or an immovable disk, in a turn, besides what it has met."""
+    span = slice(max(turn.first - 1, 0), turn.last + 2)
+    lag = float(np.diff(flights.times[span]).sum())
+    flown = lag * max(math.hypot(*turn.before), math.hypot(*(turn.before + turn.change)))
+    radius = around.stage.radius
+    margin = float(radius[turn.disk]) * (1.0 + NEAR) + flown
+    places = flights.place[span, turn.disk]
+    if any(around.to_wall(surface, place)[1] < margin for surface in around.surfaces for place in places):
+        return True
+    away = np.hypot(*around.apart(places[0], flights.place[span.start]).T) - radius * (1.0 + NEAR) - margin
+    return bool(np.any(away[~np.isfinite(mass)] < 0.0))
+
+
+def flown_at(flights: Flights, turn: Turn) -> float:
     """How far a disk flies from one sample to the next at a turn."""
     around = slice(max(turn.first - 1, 0), turn.last + 2)
     step = float(np.diff(flights.times[around]).max(initial=0.0))
@@ -110,7 +124,7 @@ def _close(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Ed
             span = slice(max(one.first, turn.first) - 1, min(max(one.last, turn.last) + 2, count))
             span = slice(max(span.start, 0), span.stop)
             reach = float(around.stage.radius[a] + around.stage.radius[b])
-            margin = NEAR * reach + _reach_of(flights, one) + _reach_of(flights, turn)
+            margin = NEAR * reach + flown_at(flights, one) + flown_at(flights, turn)
             if around.gap(a, b, flights.place[span, a], flights.place[span, b]) > margin:
                 continue
             middle = (span.start + span.stop - 1) // 2
@@ -134,7 +148,7 @@ def _walls(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Ed
     edges, count = [], len(flights.times)
     for place, turn in enumerate(turns):
         radius = float(around.stage.radius[turn.disk])
-        margin = radius * (1.0 + NEAR) + _reach_of(flights, turn)
+        margin = radius * (1.0 + NEAR) + flown_at(flights, turn)
         best: dict[int, tuple[float, tuple[float, float]]] = {}
         for surface in around.surfaces:
             for sample in range(*_span(turn, count).indices(count)):
@@ -158,12 +172,12 @@ def _still(flights: Flights, around: Surroundings, turns: list[Turn], place: int
     d = around.apart(flights.place[middle, turn.disk], flights.place[middle])
     distance = np.hypot(d[:, 0], d[:, 1])
     away = -(d @ turn.change) / np.maximum(distance, 1e-300)
-    near = distance < (radius + radius[turn.disk]) * (1.0 + NEAR) + 2.0 * _reach_of(flights, turn)
+    near = distance < (radius + radius[turn.disk]) * (1.0 + NEAR) + 2.0 * flown_at(flights, turn)
     near &= away > 0.5 * math.hypot(*turn.change)
     near[turn.disk] = False
     for other in np.flatnonzero(near)[np.argsort(-away[near])].tolist():
         reach = float(radius[other] + radius[turn.disk])
-        if around.gap(turn.disk, other, mine, flights.place[span, other]) < NEAR * reach + _reach_of(flights, turn):
+        if around.gap(turn.disk, other, mine, flights.place[span, other]) < NEAR * reach + flown_at(flights, turn):
             a, b = min(turn.disk, other), max(turn.disk, other)
             normal = (float(d[other, 0] / distance[other]), float(d[other, 1] / distance[other]))
             return [Edge((place, None), (int(Kind.PAIR), a, b), normal, swapped=turn.disk != a)]
@@ -249,8 +263,9 @@ def _met(edge: Edge, turns: list[Turn], alone: bool) -> Met:
     pair = (other, one) if edge.swapped else (one, other)
     time = sum(turn.time for turn in both) / len(both)
     along = all(_is_along(turn, edge.normal) and turn.is_sharp for turn in both)
+    at_once = other is None or abs(one.time - other.time) <= one.slack + other.slack
     first, last = min(turn.first for turn in both), max(turn.last for turn in both)
-    return Met(edge.key, time, first, last, pair, alone and along)
+    return Met(edge.key, time, first, last, pair, alone and along and at_once)
 
 
 def _is_along(turn: Turn, normal: tuple[float, float]) -> bool:

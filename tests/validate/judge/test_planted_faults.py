@@ -213,3 +213,34 @@ def test_few_contacts_that_could_be_compared_are_no_acquittal():
     said = judged_in_words(found)[0]
     assert said.startswith("Cannot tell after t = ")
     assert f"({found.charge.ahead} of {len(found.charge.all_at)} contacts compared)" in said
+
+
+def crowd(seed):
+    """Nine disks of three masses that fill a third of their box."""
+    rng = np.random.default_rng(seed)
+    sites = np.array([(x, y) for x in (0.5, 1.5, 2.5) for y in (0.5, 1.5, 2.5)])
+    mass = rng.choice([1.0, 2.0, 5.0], 9)
+    disks = es.Disks(sites + rng.uniform(-0.1, 0.1, (9, 2)), rng.normal(size=(9, 2)), 0.3, mass)
+    return es.Scene(disks, es.Box((3.0, 3.0)), until=3.0)
+
+
+@pytest.mark.parametrize(("seed", "frame", "told"), [(7, 0.02, True), (24, 0.05, True), (13, 0.05, False), (20, 0.05, False)])
+def test_an_exact_run_of_a_crowd_is_blamed_for_nothing(seed, frame, told):
+    """Contacts that samples hide are no masses, no drift and no energy from nowhere."""
+    scene = crowd(seed)
+    run = es.simulate(scene, engine="reference", log=True, trust=False)
+    times = np.arange(0.0, 3.0, frame)
+    states = [run.state_at(float(time)) for time in times]
+    place, speeds = (np.array([getattr(state, name) for state in states]) for name in ("position", "velocity"))
+    assert judge(scene, checked(Samples("exact", times, place, speeds if told else None))).first_fault is None
+
+
+def test_contacts_and_paths_that_disagree_are_told():
+    """The contacts that are told hold one that the paths do not show."""
+    times, places, _, contacts = motion(SCENE)
+    rows = sorted([*contacts, (1.0005, 0, 1, "")])
+    remarks = judge(SCENE, checked(Samples("motion", times, places)), contacts_of(rows, len(SCENE.disks))).remarks
+    assert any(text.startswith("Contacts and paths disagree. The contacts that are told say: false: ") for text in remarks)
+    assert any(text.endswith("The paths alone say: no wrong event.") for text in remarks)
+    alike = judge(SCENE, checked(Samples("motion", times, places)), contacts_of(contacts, len(SCENE.disks))).remarks
+    assert not any("disagree" in text for text in alike)

@@ -187,3 +187,23 @@ def test_an_engine_that_tells_no_contact_has_missed_what_it_flies_through(missed
     assert judged.judgement.charge.found == 0
     with pytest.raises(es.EventsimError, match=r"contacts: the shape \(3, 4\): must be rows"):
         es.validate(SCENE, trajectory=(times, places), contacts=np.zeros((3, 4)))
+
+
+def test_the_figure_marks_the_first_wrong_event_and_what_was_missed(missed):
+    """A line at its time in each panel, its kind beside it, and a cross among the times of contacts."""
+    from matplotlib.figure import Figure
+
+    from eventsim.show.versus.judgement import WRONG, draw_judgement
+
+    times, places, _, _ = missed
+    judgement = es.validate(SCENE, trajectory=(times, places)).judgement
+    fault = judgement.first_fault
+    figure = Figure()
+    draw_judgement(figure, judgement)
+    panels = [axes for axes in figure.axes if axes.axison]
+    for axes in panels:
+        marks = [line for line in axes.lines if line.get_color() == WRONG and list(line.get_xdata()) == [fault.time, fault.time]]
+        assert len(marks) == 1
+    assert any(text.get_text() == "first wrong event:\nmissed" for axes in panels for text in axes.texts)
+    (crosses,) = (line for axes in panels for line in axes.lines if line.get_gid() == "missed")
+    assert crosses.get_xdata().tolist() == [one.time for one in judgement.faults if one.kind == "missed"]
