@@ -154,7 +154,8 @@ def resume(
     until, events: replace both parts of the stop that the run had; events count from its beginning.  engine: another one.
     log: where its log is now, if it was moved; rows behind the checkpoint are written anew.  digest: refused where there is no
     log.  progress, on_event, interrupt: as in `simulate`, of what comes now.  checkpoint, every: where and how often the next
-    checkpoints are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of another scene.
+    checkpoints are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of another scene;
+    a law of contacts of your own is taken from here.
 
     Returns a Run, whose counters and times include what was before.  Raises CheckpointError for a file that is no checkpoint,
     of another version or of another scene, or that is past the stop, LogError where its log is lost.
@@ -183,7 +184,7 @@ def resume(
         interrupt=interrupt,
     )
     chosen = engine_named(provenance.engine if engine is None else engine)
-    return Run.of(run_scene(chosen, provenance.scene, stop, wanted))
+    return Run.of(run_scene(chosen, provenance.scene if scene is None else scene, stop, wanted))
 
 
 def _demand_ahead(stop: Stop, saved: Checkpoint, path: str | PathLike[str]) -> None:

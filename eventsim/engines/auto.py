@@ -18,7 +18,9 @@ from eventsim.engines.base import BrokenOffError, Motion, Session, Snapshot, Sto
 from eventsim.engines.reference import AutoOptions, ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.engines.warming import Warming, may_warm
+from eventsim.errors import EventsimError
 from eventsim.formulas.clock import clock_time
+from eventsim.formulas.laws import Own
 from eventsim.record.events import Rows
 from eventsim.scene.stage import Stage
 
@@ -81,6 +83,8 @@ class AutoSession(Session):
         began = perf_counter()
         if self._may_change:
             self.at_work = first_engine(self.stage, stop, self._keep_rows)
+            if self.at_work == "fast" and self._is_bound_to_python():
+                self.at_work = "reference"
         if self.at_work == "fast":
             try:
                 self._opened = self._opened_fast(began)
@@ -152,7 +156,7 @@ class AutoSession(Session):
             note = f"the engine fast needs numba, which {why}: this run goes on with the reference engine"
             print(f"note: {note}", file=sys.stderr)
             return
-        if self._is_warming():
+        if self._is_warming() or self._is_bound_to_python():
             return
         left = self._sampled * self._share_left(stop)
         if left < WARM or (self._is_cold and left < COLD):
@@ -162,6 +166,18 @@ class AutoSession(Session):
         self._loading += perf_counter() - began
         if left > (COLD if self._is_cold else WARM) and not (self._is_cold and self._begin_warming()):
             self._hand_over()
+
+    def _is_bound_to_python(self) -> bool:
+        """Whether a law of the user's own cannot be compiled; it is said once."""
+        if isinstance(self.stage.law, Own):
+            from eventsim.engines.fast.rules import law_in_kernels
+
+            try:
+                law_in_kernels(self.stage.law)
+            except EventsimError as error:
+                print(f"note: {error}: so does this run", file=sys.stderr)
+                self._may_change = False
+        return not self._may_change
 
     def _is_warming(self) -> bool:
         """Whether another process compiles just now."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.trajectory import Trajectory
+from eventsim.errors import EventsimError
 from eventsim.record.events import Floats, Rows, row_of
 from eventsim.record.times import clock_times
 from eventsim.scene.stage import Stage
@@ -135,6 +136,9 @@ class Session(ABC):
     trajectory: Trajectory | None = None
 
     def __init__(self, stage: Stage) -> None:
+        """Begin a run; raises EventsimError where nobody can run under the law of the stage."""
+        if stage.law.refusal is not None:
+            raise EventsimError(stage.law.refusal)
         self.stage = stage
         self.counters = Counters()
         self.at_work = self.name

@@ -77,7 +77,7 @@ def flat_update(v: Real, side: float, restitution: Real) -> tuple[Real, Real]:
     return after, after - v
 
 
-def contact_restitution(usual: Real, law: Any, since_a: Real, since_b: Real, approach: Real) -> Real:
+def contact_restitution(usual: Real, law: Any, since_a: Real, since_b: Real, approach: Real, mass: Real) -> Real:
     """The restitution of a contact: what the numbers of a law make of the usual one.
 
     Args:
@@ -85,10 +85,24 @@ def contact_restitution(usual: Real, law: Any, since_a: Real, since_b: Real, app
         law: `Numbers` of a law; None where every contact has its usual one.
         since_a, since_b: the times since the previous contacts of its disks; at a wall twice the same.
         approach: the speed along the normal; 0 where no law of the scene looks at it.
+        mass: the reduced mass, at a wall that of the disk; 0 as well.
     """
     if law is None:
         return usual
-    return _kept_if_soon(_yielding(usual, approach, law.yield_speed), since_a, since_b, law.duration)
+    share = _users(usual, approach, since_a, since_b, mass, law.own)
+    return _kept_if_soon(_yielding(share, approach, law.yield_speed), since_a, since_b, law.duration)
+
+
+def _users(restitution: Real, approach: Real, since_a: Real, since_b: Real, mass: Real, own: Any) -> Real:
+    """What a law of the user's own makes of the usual restitution."""
+    if own is None:
+        return restitution
+    return own_restitution(own, restitution, approach, since_a if since_a < since_b else since_b, mass)
+
+
+def own_restitution(own: Any, restitution: Real, approach: Real, since: Real, mass: Real) -> Real:
+    """A law of the user's own, called; kernels call the machine code that it is compiled to."""
+    return own(restitution, approach, since, mass)
 
 
 def _kept_if_soon(restitution: Real, since_a: Real, since_b: Real, duration: float | None) -> Real:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 from eventsim.formulas.impulse import contact_restitution
 from eventsim.formulas.real import Real
@@ -20,10 +20,12 @@ class Numbers(NamedTuple):
     """What `impulse.contact_restitution` looks at besides the contact; None: the scene's law has no such number.
 
     duration: how long a contact matters to the next one of its disks.  yield_speed: from which on contacts take more.
+    own: a law of the user's own, of (restitution, approach, since, mass).
     """
 
     duration: float | None = None
     yield_speed: float | None = None
+    own: Any = None
 
 
 class Shares(Protocol):
@@ -40,6 +42,25 @@ class Shares(Protocol):
     @property
     def yield_speed(self) -> float | None:
         """From which on contacts take more."""
+
+
+class UsersLaw(Protocol):
+    """A law of the user's own."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+
+    @property
+    def file(self) -> str:
+        """Where its lines are."""
+
+    @property
+    def refusal(self) -> str | None:
+        """Why it cannot be run, a sentence; None where it can."""
+
+    def __call__(self, restitution: Real, approach: Real, since: Real, mass: Real) -> Real:
+        """The restitution of a contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,13 +102,13 @@ class Law:
         """What makes its contacts other than usual ones; None where nothing does."""
         return None if self.duration is None else Numbers(self.duration)
 
-    def restitution(self, usual: Real, since_a: Real, since_b: Real, approach: Real) -> Real:
+    def restitution(self, usual: Real, since_a: Real, since_b: Real, approach: Real, mass: Real) -> Real:
         """The restitution of a contact whose usual one is given; see `impulse.contact_restitution`."""
-        return contact_restitution(usual, self.numbers(), since_a, since_b, approach)
+        return contact_restitution(usual, self.numbers(), since_a, since_b, approach, mass)
 
-    def possible(self, usual: float, approach: float) -> tuple[float, ...]:
-        """The restitutions that a contact with a speed of approach may have, whatever went before."""
-        long, soon = (self.restitution(usual, since, since, approach) for since in (float("inf"), 0.0))
+    def possible(self, usual: float, approach: float) -> tuple[float, ...] | None:
+        """The restitutions that a contact with a speed of approach may have, whatever went before; None: nobody knows."""
+        long, soon = (self.restitution(usual, since, since, approach, 1.0) for since in (float("inf"), 0.0))
         return (long,) if long == soon else (long, soon)
 
     def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
@@ -110,6 +131,11 @@ class Law:
     def series(self, usual: float) -> float:
         """The restitution of bounces that follow each other ever faster, at a wall with this usual one."""
         return usual
+
+    @property
+    def refusal(self) -> str | None:
+        """Why no engine can run under it, a sentence; None where engines can."""
+        return None
 
     @property
     def beyond_steps(self) -> str | None:
@@ -243,7 +269,66 @@ class Yielding(Law):
         return f"{Law.words(self, number)}; of an approach v above {speed}, ({speed} / v)^(1/4) of that comes back"
 
 
-LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact, Yielding)
+@dataclass(frozen=True, slots=True)
+class Own(Law):
+    """A law of the user's own says what comes back.
+
+    Attributes:
+        own: the function, with a name.
+    """
+
+    own: UsersLaw
+    by_speed: ClassVar[bool] = True
+
+    def numbers(self) -> Numbers:
+        """The function, and the duration if there is one."""
+        return Numbers(self.duration, own=self.own)
+
+    def possible(self, usual: float, approach: float) -> tuple[float, ...] | None:
+        """Nobody but the function knows."""
+        return None
+
+    def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
+        """Nobody knows."""
+        return not (pairs or walls)
+
+    def loses_energy(self) -> bool:
+        """It may."""
+        return True
+
+    def comes_to_rest(self) -> bool:
+        """What slow bounces do, nobody knows: disks go on bouncing."""
+        return False
+
+    def series(self, usual: float) -> float:
+        """As if they kept their height."""
+        return 1.0
+
+    @property
+    def refusal(self) -> str | None:
+        """Why the function cannot be called."""
+        return self.own.refusal
+
+    def name(self) -> str:
+        """What a sentence calls it."""
+        return f"the law {self.own.name}"
+
+    def words(self, number: Callable[[float], str]) -> str:
+        """What a page on a scene says of its contacts."""
+        soon = "" if self.duration is None else f"; within {number(self.duration)} of a disk's previous contact elastic"
+        return f"by {self.name()}, of your own: nobody else knows whether energy is kept{soon}"
+
+
+def wrong_share(share: Real) -> str | None:
+    """Why a law of the user's own cannot have meant what it returns, a clause; None where it can."""
+    if not share < float("inf"):
+        return "is no number that a contact can have"
+    if share < -1.0:
+        return "is an impulse that pulls"
+    return "leaves disks approaching" if share < 0.0 else None
+
+
+LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact, Yielding, Own)
 """The table of laws."""
 
 
@@ -253,9 +338,18 @@ def law_of(
     walls: tuple[float, ...] | None = None,
     pairs: tuple[tuple[float, ...], ...] | None = None,
     rough: Roughness | None = None,
+    own: UsersLaw | None = None,
 ) -> Law:
-    """The law of a scene: its restitution, None if it is elastic; a contact duration; shares of walls, of species; roughness."""
-    law = _smooth_law_of(restitution, duration, walls, pairs)
+    """The law of a scene.
+
+    Args:
+        restitution: of the scene, None where it is elastic.
+        duration: a contact duration.
+        walls, pairs: the shares of walls, and of species.
+        rough: what turns disks; None where they are smooth.
+        own: a law of the user's own.
+    """
+    law = _smooth_law_of(restitution, duration, walls, pairs, own)
     return law if rough is None else replace(law, rough=rough)
 
 
@@ -264,7 +358,11 @@ def _smooth_law_of(
     duration: float | None,
     walls: tuple[float, ...] | None,
     pairs: tuple[tuple[float, ...], ...] | None,
+    own: UsersLaw | None,
 ) -> Law:
+    if own is not None:
+        pair, wall = (1.0, 1.0) if restitution is None else (restitution.pair, restitution.wall)
+        return Own(pair, wall, duration, own, walls=walls, pairs=pairs)
     if restitution is None:
         return Elastic(1.0, 1.0, None)
     if restitution.yield_speed is not None:

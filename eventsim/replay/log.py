@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, overload
 
+from eventsim.errors import LogError
 from eventsim.record.digest import digest_of
 from eventsim.record.events import Rows
 from eventsim.record.files import open_log, open_sink, read_log
@@ -148,14 +149,22 @@ class EventLog(Excerpt):
         sink.close(ending)
 
 
-def load_log(path: str | PathLike[str]) -> EventLog:
+def load_log(path: str | PathLike[str], law: Callable[..., float] | None = None) -> EventLog:
     """Read a log file of any format; raise LogError with a sentence where it is not one.
 
     A text log that still grows (NAME.csv.part, NAME.jsonl.part) is read up to its last whole line.  Warns (LogWarning) where
     its numbers were changed since it was written.
+
+    law: the law of contacts of your own that the run had; a compact log needs it, since nothing is run from a log.
     """
     file = Path(path)
-    log = EventLog(*read_log(file))
+    provenance, rows = read_log(file)
+    if law is not None:
+        scene = provenance.scene
+        if scene.law is None:
+            raise LogError(f"{file}: its run had no law of contacts of the user's own")
+        provenance = replace(provenance, scene=replace(scene, law=scene.law.run_by(law)))
+    log = EventLog(provenance, rows)
     log.path = file
     return log
 

@@ -24,11 +24,11 @@ def law_of_scene(scene: Scene) -> Law:
     tangential = scene.tangential_restitution
     rough = None if tangential is None else Roughness(tangential.pair, tangential.wall)
     if usual is None or not usual.pairs:
-        return law_of(usual, scene.contact_duration, walls, rough=rough)
+        return law_of(usual, scene.contact_duration, walls, rough=rough, own=scene.law)
     names, _ = named_species(scene.disks)
     given = {pair: share for a, b, share in usual.pairs for pair in ((a, b), (b, a))}
     pairs = tuple(tuple(given.get((a, b), usual.pair) for b in names) for a in names)
-    return law_of(usual, scene.contact_duration, walls, pairs, rough)
+    return law_of(usual, scene.contact_duration, walls, pairs, rough, scene.law)
 
 
 def manners_of(domain: Domain, walls: Sequence[Wall]) -> tuple[Manner, ...]:

@@ -75,6 +75,8 @@ def scene_from_dict(
     base_dir: str | Path | None = None,
     source: str | None = None,
     seed: int | None = None,
+    *,
+    runs: bool = True,
 ) -> Scene:
     """The scene that the tables of a scene file describe.
 
@@ -85,6 +87,7 @@ def scene_from_dict(
         base_dir: where a disks_file is looked for; the current directory if None.
         source: what messages call the file.
         seed: seeds the i-th gas from (seed, i) instead of its own seed.
+        runs: whether the file of a law of contacts is run.
 
     Raises:
         SceneError: with all problems.
@@ -95,7 +98,7 @@ def scene_from_dict(
     try:
         if not is_shallow(data):
             raise SceneError("is nested too deeply for a scene")
-        return read_scene(data, Path(base_dir or "."), seed)
+        return read_scene(data, Path(base_dir or "."), seed, runs)
     except SceneError as error:
         if source is None:
             raise
@@ -118,4 +121,7 @@ def listed_scene(data: Mapping[str, Any], folder: Path | None = None) -> Scene:
     for table in ("gas", *(() if beside else ("disks_file",))):
         if table in data:
             raise SceneError(f"{table}: a log lists its disks; it makes none and reads no other file")
-    return scene_from_dict(data, folder)
+    law = data.get("contact_law")
+    if law is not None and not isinstance(law, Mapping):
+        raise SceneError("contact_law: a log holds the text of a law; it runs no other file")
+    return scene_from_dict(data, folder, runs=False)

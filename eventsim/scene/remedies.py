@@ -18,6 +18,7 @@ EXAMPLES = {
     "restitution": "restitution = 0.9",
     "tangential_restitution": roughness.EXAMPLE,
     "contact_duration": "contact_duration = 1e-6",
+    "contact_law": 'contact_law = "my_laws.py:sticky"',
     "equilibration": "equilibration = 1.0",
     **restitution.EXAMPLES,
     "kind": 'kind = "box"',
@@ -51,7 +52,7 @@ EXAMPLES = {
 }
 """A line for each key that a table may have."""
 
-TEXTS = ("name", "kind", "arrangement", "path", "inside", "species")
+TEXTS = ("name", "kind", "arrangement", "path", "inside", "species", "contact_law")
 WHOLES = ("events", "count", "seed", "frame")
 PAIRS = tuple(key for key, line in EXAMPLES.items() if re.fullmatch(r"\w+ = \[[^,]+, [^,]+\]", line))
 

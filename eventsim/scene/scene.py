@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from os import PathLike
 from pathlib import Path
@@ -14,6 +14,7 @@ from eventsim.scene.disks import Disks
 from eventsim.scene.domain import DOMAINS, Domain
 from eventsim.scene.names import DiskNames, plural
 from eventsim.scene.numbers import Point, number, optional_number, optional_whole, point
+from eventsim.scene.own_law import OwnLaw, own_law
 from eventsim.scene.restitution import Restitution, as_restitution
 from eventsim.scene.roughness import TangentialRestitution, as_tangential, roughness_problems
 from eventsim.scene.validate import find_problems, scalar_problems, species_problems, touching_notes
@@ -33,6 +34,7 @@ class Scene:
         gravity: acceleration (x, y), length / time^2; None without.
         restitution: None where every contact is elastic.
         tangential_restitution: of rough disks; None where disks have no spin.
+        law: a law of contacts of the user's own; None without.
         contact_duration: time; a contact within it after a disk's previous one is elastic; None without.
         equilibration: time from the start that measurements leave out; None: they find out.
         until: stop time on the scene's clock, or None.
@@ -58,6 +60,7 @@ class Scene:
     events: int | None
     start_time: float
     name: str | None
+    law: OwnLaw | None
 
     def __init__(
         self,
@@ -72,11 +75,12 @@ class Scene:
         start_time: float = 0.0,
         name: str | None = None,
         equilibration: float | None = None,
+        law: Callable[..., float] | OwnLaw | None = None,
         *,
         tangential_restitution: TangentialRestitution | Mapping[str, float] | float | None = None,
         names: DiskNames | None = None,
     ) -> None:
-        """The scene with these parts; a restitution may be one number, a mapping or a Restitution.
+        """The scene with these parts; a restitution may be one number, a mapping or a Restitution, a law a function.
 
         `names` says how messages call the disks, by index if None; it is not kept.
 
@@ -98,6 +102,7 @@ class Scene:
             "events": optional_whole(events, "events"),
             "start_time": number(start_time, "start_time"),
             "name": name,
+            "law": own_law(law),
         }
         for key, value in given.items():
             object.__setattr__(self, key, value)
@@ -158,6 +163,8 @@ class Scene:
             value = getattr(self, key)
             if value is not None:
                 yield key, str(value)
+        if self.law is not None:
+            yield "law", self.law.name
 
 
 def _demand_types(disks: object, domain: object, walls: Sequence[object], name: object) -> None:

@@ -94,6 +94,13 @@ def text(value: object) -> str:
     return value
 
 
+def text_or_table(value: object) -> str | dict[str, str]:
+    """A text; or texts by name, as logs and saved scenes have."""
+    if not isinstance(value, Mapping):
+        return text(value)
+    return {str(key): text(entry) for key, entry in value.items()}
+
+
 def one_of(*words: str) -> Callable[[object], str]:
     """One of several words."""
 
@@ -146,6 +153,7 @@ SCENE = Schema(
         Optional("restitution"): number,
         Optional("tangential_restitution"): number,
         Optional("contact_duration"): number,
+        Optional("contact_law"): text_or_table,
         Optional("equilibration"): number,
     }
 )

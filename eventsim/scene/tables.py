@@ -18,6 +18,7 @@ from eventsim.scene.domain import DOMAINS, Domain, Open
 from eventsim.scene.fill import place_gas
 from eventsim.scene.gas import MOST_DISKS, Gas, gas_problems, inside_of, region_of
 from eventsim.scene.names import BlockNames
+from eventsim.scene.own_law import own_law_from, own_law_in
 from eventsim.scene.scene import Scene
 from eventsim.scene.validate import NO_DISKS, NO_SPECIES, domain_problems, number_problems
 from eventsim.scene.walls import WALLS, Wall, wall_names
@@ -28,8 +29,10 @@ GAS_STAND_IN = {"count": 1, "radius": 1.0, "packing_fraction": 0.1}
 """What is put in the place of a value that cannot be read, so that the rules can be applied to the others of its table."""
 
 
-def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Scene:
+def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None, runs: bool = True) -> Scene:
     """The scene of these tables; see files.scene_from_dict.
+
+    runs: whether the file of a law of contacts is run.
 
     Raises:
         SceneError: with all problems. Gases are placed only when nothing else is wrong.
@@ -37,7 +40,7 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None) -> Sce
     problems: list[str] = []
     if seed is not None and seed < 0:
         problems.append(f"seed = {seed}: must be at least 0")
-    found = _read_parts(data, base_dir, problems)
+    found = _read_parts(data, base_dir, problems, runs)
     gases = _read_gases(data, found.domain, found.walls, seed, problems)
     disks = join(found.disks)
     try:
@@ -92,7 +95,7 @@ class _Parts:
         return Scene(disks, domain, self.walls, **self.values, names=self.names)
 
 
-def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str]) -> _Parts:
+def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str], runs: bool) -> _Parts:
     """Everything but the gases."""
     schema.report_unknown(data, list(schema.SCENE_KEYS), "", problems)
     parts = _Parts()
@@ -103,6 +106,11 @@ def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str]) ->
     # One by one: a bad one does not keep the rules from being applied to the others.
     for key, value in scalars.items():
         parts.values |= schema.read_table(schema.SCENE, {key: value}, "", problems).values
+    if (named := parts.values.pop("contact_law", None)) is not None:
+        try:
+            parts.values["law"] = own_law_in(named, base_dir) if isinstance(named, str) else own_law_from(named, runs)
+        except SceneError as error:
+            problems += error.problems
     if "domain" not in data:
         problems.append("domain is missing: a table with kind and size, as in the scene file's description")
     else:

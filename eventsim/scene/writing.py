@@ -82,6 +82,8 @@ def _tables(scene: Scene) -> dict[str, Any]:
         data["restitution"] = scene.restitution.table()
     if scene.tangential_restitution is not None:
         data["tangential_restitution"] = asdict(scene.tangential_restitution)
+    if scene.law is not None:
+        data["contact_law"] = scene.law.table()
     data["domain"] = _domain_table(scene.domain)
     data["disk"] = []
     if scene.walls:

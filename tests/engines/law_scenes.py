@@ -15,6 +15,11 @@ from tests.engines.scenes import lattice_gas
 Keys = Callable[[np.random.Generator], dict[str, Any]]
 
 
+def own(restitution: float, approach: float, since: float, mass: float) -> float:
+    """A law that looks at all that it may."""
+    return restitution / (1.0 + 0.25 * approach) if since > 0.125 or mass > 2.0 else 1.0
+
+
 def _shares(rng: np.random.Generator) -> dict[str, float]:
     return {"pair": float(rng.choice([1.0, 0.9, 0.5])), "wall": float(rng.choice([1.0, 0.8]))}
 
@@ -31,6 +36,7 @@ LAWS: dict[str, Keys] = {
         "restitution": Restitution(0.9, 1.0, pairs={"a-a": float(rng.choice([0.5, 1.0])), "a-b": 0.75}),
         "species": ["a", "b", "b", "c"] * 3,
     },
+    "of the user's own": lambda rng: {"restitution": Restitution(**_shares(rng)), "law": own},
     "yielding": lambda rng: {"restitution": Restitution(**_shares(rng), yield_speed=float(rng.choice([0.25, 1.0])))},
     "yielding, kept if soon": lambda rng: {
         "restitution": Restitution(0.9, 0.8, yield_speed=0.5),

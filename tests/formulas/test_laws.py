@@ -3,20 +3,27 @@
 import pytest
 
 import eventsim as es
-from eventsim.formulas.laws import LAWS, Elastic, Inelastic, TimeOfContact, Yielding, law_of
+from eventsim.formulas.laws import LAWS, Elastic, Inelastic, Own, TimeOfContact, Yielding, law_of
 from eventsim.record.events import State
 from eventsim.replay.states import write_states
 from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.disks import named_species
 from eventsim.scene.disks_file import read_disks_file, write_disks_file
 from eventsim.scene.files import scene_from_dict
+from eventsim.scene.own_law import own_law
 from eventsim.scene.restitution import Restitution, as_restitution
+
+
+def half(restitution):
+    return restitution
+
 
 EXAMPLES = {
     Elastic: Elastic(1.0, 1.0, None),
     Inelastic: Inelastic(0.5, 0.75, None),
     TimeOfContact: TimeOfContact(0.5, 0.75, 0.125),
     Yielding: Yielding(0.5, 0.75, None, 0.25),
+    Own: Own(0.5, 0.75, None, own_law(half)),
 }
 
 
@@ -36,12 +43,12 @@ def test_the_keys_of_a_scene_choose_the_law():
 
 @pytest.mark.parametrize("law", EXAMPLES.values(), ids=lambda law: type(law).__name__)
 def test_only_a_duration_makes_a_contact_depend_on_the_one_before(law):
-    soon, late = law.restitution(0.5, 0.0625, 4.0, 0.125), law.restitution(0.5, 4.0, 0.25, 0.125)
+    soon, late = law.restitution(0.5, 0.0625, 4.0, 0.125, 1.0), law.restitution(0.5, 4.0, 0.25, 0.125, 1.0)
     assert (soon, late) == ((0.5, 0.5) if law.duration is None else (1.0, 0.5))
 
 
 def test_the_loss_is_that_of_the_least_inelastic_contacts():
-    assert [law.loss() for law in EXAMPLES.values()] == [0.0, 0.25, 0.25, 0.25]
+    assert [law.loss() for law in EXAMPLES.values()] == [0.0, 0.25, 0.25, 0.25, 0.25]
     assert [Inelastic(*shares, None).loss() for shares in ((1.0, 0.75), (0.75, 1.0), (1.0, 1.0))] == [0.25, 0.25, 0.0]
 
 
@@ -51,12 +58,13 @@ def test_disks_come_to_rest_where_energy_is_lost_at_every_bounce():
         (True, True, 0.75),
         (True, False, 1.0),
         (True, True, 0.75),
+        (True, False, 1.0),
     ]
 
 
 def test_above_the_speed_at_which_they_yield_less_comes_back():
     law = EXAMPLES[Yielding]
-    assert [law.restitution(0.5, 1.0, 1.0, speed) for speed in (0.0, 0.25, 4.0, 64.0)] == [0.5, 0.5, 0.25, 0.125]
+    assert [law.restitution(0.5, 1.0, 1.0, speed, 1.0) for speed in (0.0, 0.25, 4.0, 64.0)] == [0.5, 0.5, 0.25, 0.125]
     assert law.possible(0.5, 4.0) == (0.25,)
     assert Yielding(1.0, 1.0, None, 0.25).comes_to_rest() is False  # slow bounces keep their height
     assert Yielding(1.0, 1.0, None, 0.25).keeps_energy() is False

@@ -191,7 +191,7 @@ def test_walls_reflect():
     [(None, 0.0, 0.0, 0.5), (1.0, 2.0, 3.0, 0.5), (1.0, 0.5, 3.0, 1.0), (1.0, 3.0, 0.5, 1.0), (1.0, 1.0, 1.0, 0.5)],
 )
 def test_contacts_in_quick_succession_are_elastic(duration, since_a, since_b, expected):
-    assert impulse.contact_restitution(0.5, Numbers(duration), since_a, since_b, 1.0) == expected
+    assert impulse.contact_restitution(0.5, Numbers(duration), since_a, since_b, 1.0, 1.0) == expected
 
 
 class Ball:

@@ -13,6 +13,7 @@ from eventsim.engines.certified.doubt import cause, in_words
 from eventsim.engines.certified.loop import CertifiedLoop
 from eventsim.engines.certified.traced import traced
 from eventsim.errors import EventsimError
+from eventsim.formulas.laws import Own
 from eventsim.record.events import Floats, Rows, blank_rows
 from eventsim.scene.names import plural
 from eventsim.scene.stage import Stage
@@ -50,6 +51,7 @@ class CertifiedSession(Session):
     name = "certified"
 
     def __init__(self, stage: Stage, keep_rows: bool = True, options: CertifiedOptions | None = None) -> None:
+        _refuse_laws(stage)
         _refuse_falling_points(stage)
         super().__init__(stage)
         options = options or CertifiedOptions()
@@ -195,6 +197,12 @@ class CertifiedSession(Session):
         Raises EventsimError.
         """
         raise EventsimError("the certified engine proves a run from its start: it has no snapshots")
+
+
+def _refuse_laws(stage: Stage) -> None:
+    """Raise EventsimError under a law of the user's own: it computes with floats."""
+    if isinstance(stage.law, Own):
+        raise EventsimError(f"the certified engine cannot prove this scene: {stage.law.name()} computes with floats")
 
 
 def _refuse_falling_points(stage: Stage) -> None:

@@ -19,6 +19,7 @@ else:
     from eventsim.engines.fast import numba_compiler as chosen
     from eventsim.engines.fast import numba_memory as memory
 
+compiled_law = chosen.compiled_law
 inline, part, kernel, link = chosen.inline, chosen.part, chosen.kernel, chosen.link
 timed_compiling, compiling_alone, mark_warm = chosen.timed_compiling, chosen.compiling_alone, chosen.mark_warm
 pointer, either, real, word, store = memory.pointer, memory.either, memory.real, memory.word, memory.store

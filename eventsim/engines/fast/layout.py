@@ -94,11 +94,10 @@ class Rules(NamedTuple):
     """What the scene says; None: it does not have that.
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  series_restitution: see `Law.series`.  law: its
-    `numbers`; by_speed: it looks at the speed of approach.  classes: there are immovable disks or tracers.  features: number
-    of wall shapes; shapes: of each of the kinds of `shapes` whether there is one; first_feature: the place of the first.
-    instant, at_once_limit: see `instant_of`.  still: see
-    `stillness_of`, None where disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.  sinks: gaps can
-    sink below the digits.
+    `numbers`; by_speed: it looks at the speed of approach; own: it is the user's.  classes: there are immovable disks or
+    tracers.  features: number of wall shapes; shapes: of each of the kinds of `shapes` whether there is one; first_feature:
+    the place of the first.  instant, at_once_limit: see `instant_of`.  still: see `stillness_of`, None where disks do not
+    settle.  tie_screen: see `formulas.doubt`, in the present window.  sinks: gaps can sink below the digits.
     """
 
     gx: object
@@ -114,6 +113,7 @@ class Rules(NamedTuple):
     series_restitution: float
     law: object
     by_speed: object
+    own: object
     classes: object
     common_mass: float
     features: object

@@ -68,7 +68,7 @@ from eventsim.engines.fast.layout import (
     Arrays,
 )
 from eventsim.engines.fast.predict import predict, predict_post
-from eventsim.engines.fast.resolve import resolve_pair, resolve_wall
+from eventsim.engines.fast.resolve import is_unlawful, resolve_pair, resolve_wall
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.engines.fast.sunk import pair_may_be_sunk, wall_may_be_sunk
 
@@ -167,8 +167,10 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 stale += 1
                 take(m, i)
                 floor = earliest_floor(grid, now, rules.tie_screen, grid.posts)
-            elif word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS or pair_may_be_sunk(
-                m, rules, i, code, now, rules.sinks
+            elif (
+                word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
+                or pair_may_be_sunk(m, rules, i, code, now, rules.sinks)
+                or is_unlawful(m, rules, i, code, now, rules.own)
             ):
                 status = STATUS_TIE
                 break
@@ -180,8 +182,10 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 events += 1
                 room, deadline = _predict_partner(m, grid, rules, code, now, day, room, deadline, grid.posts)
         elif code <= WALL:
-            if word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS or wall_may_be_sunk(
-                m, rules, i, code, now, rules.gx, rules.sinks
+            if (
+                word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
+                or wall_may_be_sunk(m, rules, i, code, now, rules.gx, rules.sinks)
+                or is_unlawful(m, rules, i, code, now, rules.own)
             ):
                 status = STATUS_TIE
                 break

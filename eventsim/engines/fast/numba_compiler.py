@@ -205,8 +205,18 @@ _THIS_PROCESS = uuid4().hex[:8]
 
 _careful = types.ExternalFunction("eventsim_careful_pair_delay", types.float64(*[types.float64] * 15))
 _hand = types.ExternalFunction("eventsim_exact_hand", types.float64(*[types.float64] * 8))
-LINKED = digits.careful_pair_delay, point.exact_hand
+LINKED = digits.careful_pair_delay, point.exact_hand, impulse.own_restitution
 """Formulas that kernels call by their names."""
+
+
+def compiled_law(own: Any) -> int:
+    """The address of a law of the user's own.
+
+    Raises EventsimError where it cannot be compiled.
+    """
+    from eventsim.engines.fast.numba_law import law_address
+
+    return law_address(own.function, own.asks, own.name)
 
 
 def link(has_walls: bool) -> None:

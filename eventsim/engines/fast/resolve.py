@@ -69,11 +69,11 @@ def _reduced(a, b, mass, common):
 
 
 @inline
-def _restitution(m, a, b, t, usual, law, approach):
+def _restitution(m, a, b, t, usual, law, approach, mass):
     if law is None:
         return usual
     since_a, since_b = t - real(m.disks, a * REALS + CONTACT_TIME), t - real(m.disks, b * REALS + CONTACT_TIME)
-    return contact_restitution(usual, law, since_a, since_b, approach)
+    return contact_restitution(usual, law, since_a, since_b, approach, mass)
 
 
 @inline
@@ -103,6 +103,46 @@ def _approach_to_wall(m, rules, i, place_, side, x, y, u, w, by_speed, features)
         return approach_speed(-u, -w, u, w)
     nx, ny = wall_normal(m, rules, place_, side, x, y, rules.wall_x, rules.wall_y, features)
     return approach_speed(nx, ny, u, w)
+
+
+@inline
+def _restitution_of_pair(m, rules, a, b, t, dx, dy, mass):
+    """The restitution of two disks (dx, dy) apart."""
+    approach = _approach_of_pair(m, rules, a, b, t, dx, dy, rules.by_speed)
+    reduced = _reduced(a, b, mass, rules.common_mass)
+    return _restitution(m, a, b, t, _share_of_pair(m, rules, a, b, m.species), rules.law, approach, reduced)
+
+
+@inline
+def _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w):
+    """The restitution of a disk at a wall."""
+    approach = _approach_to_wall(m, rules, i, place_, side, x, y, u, w, rules.by_speed, m.features)
+    usual = share_at_wall(m, rules, place_, m.shares)
+    return _restitution(m, i, i, t, usual, rules.law, approach, mass_of(i, m.mass, rules.common_mass))
+
+
+@inline
+def is_unlawful(m, rules, i, code, t, own):
+    """Whether a law of the user's own has no restitution for a contact: then the reference engine's rules tell why."""
+    return False if own is None else _is_unlawful(m, rules, i, code, t)
+
+
+@part
+def _is_unlawful(m, rules, i, code, t):
+    if code <= WALL:
+        wall_code = WALL - code
+        x, y = place(m, rules, i, t)
+        u, w = speed(m, rules, i, t)
+        e = _restitution_at_wall(m, rules, i, t, wall_code // 2, -1 if wall_code % 2 else 1, x, y, u, w)
+    else:
+        a, b = _in_order(m, i, code, m.mass)
+        xa, ya = place(m, rules, a, t)
+        xb, yb = place(m, rules, b, t)
+        dx, dy = xa - xb, ya - yb
+        kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
+        dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
+        e = _restitution_of_pair(m, rules, a, b, t, dx, dy, m.mass)
+    return not 0.0 <= e < math.inf
 
 
 @inline
@@ -255,8 +295,7 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot, posts):
 @inline
 def _parted(m, rules, a, b, t, dx, dy, mass, low):
     """The velocities of a pair after contact, and q; low parts are set."""
-    approach = _approach_of_pair(m, rules, a, b, t, dx, dy, rules.by_speed)
-    e = _restitution(m, a, b, t, _share_of_pair(m, rules, a, b, m.species), rules.law, approach)
+    e = _restitution_of_pair(m, rules, a, b, t, dx, dy, mass)
     if low is not None:
         return _carefully_parted(m, a, b, dx, dy, e)
     ua, wa = speed(m, rules, a, t)
@@ -290,9 +329,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     series = _is_series(m, i, place_, m.supports, rules.still)
     still = _is_still(m, rules, i, t, rules.still) and not series
     ends = series and _ends(m, place_, m.supports)
-    approach = _approach_to_wall(m, rules, i, place_, side, x, y, u, w, rules.by_speed, m.features)
-    usual = share_at_wall(m, rules, place_, m.shares)
-    e = _restitution(m, i, i, t, usual, rules.law, approach)
+    e = _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w)
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r

@@ -7,11 +7,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.engines.fast.compiled import compiled_law
 from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
 from eventsim.engines.fast.plan import Grids
 from eventsim.engines.fast.shapes import CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
 from eventsim.engines.reference.sunk import can_creep, can_sink
+from eventsim.formulas.laws import Law, Numbers, Own
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 from eventsim.scene.surfaces import moved_on
@@ -39,8 +41,9 @@ def rules_of(stage: Stage) -> Rules:
         stage.law.pair,
         max(stage.law.shares(pairs=False)),
         stage.law.series(stage.law.wall),
-        stage.law.numbers(),
+        law_in_kernels(stage.law),
         1 if stage.law.by_speed else None,
+        1 if isinstance(stage.law, Own) else None,
         1 if classes else None,
         stage.common_mass,
         len(stage.features) or None,
@@ -51,6 +54,15 @@ def rules_of(stage: Stage) -> Rules:
         stage.tie_screen,
         1 if can_sink(stage) or can_creep(stage) else None,
     )
+
+
+def law_in_kernels(law: Law) -> Numbers | None:
+    """The numbers of a law; that of a user by the address of its machine code.
+
+    Raises EventsimError where it cannot be compiled.
+    """
+    numbers = law.numbers()
+    return numbers._replace(own=compiled_law(law.own)) if isinstance(law, Own) and numbers is not None else numbers
 
 
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:

@@ -12,9 +12,10 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
-from eventsim.engines.reference.unresolvable import joint_under, rough_joint
+from eventsim.engines.reference.unresolvable import joint_under, lawful, rough_joint
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.impulse import approach_speed, flat_update, pair_update, wall_update
+from eventsim.formulas.laws import Own
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
 from eventsim.formulas.rough import SMOOTH, Roughness, grip_strength, gripped, pair_grip, wall_grip
@@ -345,8 +346,12 @@ class Resolver:
         usual = self._stage.usual(event.a, event.b)
         if law.numbers() is None:
             return usual
-        approach = 0.0
+        approach = mass = 0.0
         if law.by_speed:
             (u, w), (ub, wb) = speeds[0], speeds[-1] if event.b >= 0 else (0.0, 0.0)
             approach = approach_speed(dx, dy, u - ub, w - wb)
-        return law.restitution(usual, t - state.contact_time[event.a], t - state.contact_time[b], approach)
+            mass = self._masses.of(event.a) if event.b < 0 else self._masses.reduced(event.a, event.b)
+        since_a, since_b = t - state.contact_time[event.a], t - state.contact_time[b]
+        if not isinstance(law, Own):
+            return law.restitution(usual, since_a, since_b, approach, mass)
+        return lawful(law, event, usual, since_a, since_b, approach, mass)

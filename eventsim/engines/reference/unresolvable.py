@@ -5,8 +5,12 @@ from __future__ import annotations
 from eventsim.engines.collapse import LIES_STILL, named
 from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
+from eventsim.engines.reference.generation import disks_of
 from eventsim.engines.reference.rests import TwoSupportsError
+from eventsim.formulas.laws import Own, wrong_share
+from eventsim.formulas.real import Real
 from eventsim.formulas.simultaneous import SqueezedError
+from eventsim.scene.own_law import told
 from eventsim.scene.stage import Stage
 
 
@@ -61,6 +65,23 @@ def rough_joint(disks: list[int]) -> UnlawfulError:
         f"{named(disks)} {have} contacts at one instant: the law of rough disks says what single ones do; a start that differs "
         "by a last bit parts them"
     )
+
+
+def lawful(law: Own, event: Event, usual: float, since_a: Real, since_b: Real, approach: Real, mass: Real) -> Real:
+    """The restitution of a contact under a law of the user's own.
+
+    Raises UnlawfulError where that fails, or returns what no contact can have.
+    """
+    who = named(disks_of(event)) if event.b >= 0 else f"disk {event.a} and a wall"
+    at = f"{law.name()}, at the contact of {who} with the approach {float(approach):.6g},"
+    try:
+        share = law.restitution(usual, since_a, since_b, approach, mass)
+        wrong = wrong_share(share)
+    except Exception as error:
+        raise UnlawfulError(f"{at} fails: {told(error, law.own.file)}") from None
+    if wrong is not None:
+        raise UnlawfulError(f"{at} returns {share!r}: that {wrong}")
+    return share
 
 
 def refused(error: SqueezedError | TwoSupportsError | UnlawfulError, component: list[Event]) -> tuple[str, str]:

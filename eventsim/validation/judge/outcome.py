@@ -83,12 +83,12 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float) -> str | N
     who = named(met.key, stage)
     usual = _usual(met.key, stage)
     possible = stage.law.possible(usual, found.approach)
-    right = possible[0]
+    right = math.nan if possible is None else possible[0]
     if found.unbalanced > CLEAR:
         a, b = met.key[1:]
         true = mass[a] / mass[b]
         return f"masses: after the contact of {who} they move as if m{a}/m{b} were {found.ratio:.4g}, not {true:.4g}"
-    if any(abs(found.restitution - one) <= CLEAR for one in possible):
+    if possible is None or any(abs(found.restitution - one) <= CLEAR for one in possible):
         return None
     twice = 1.0 + 2.0 * right
     if abs(found.restitution - twice) <= CLEAR * (1.0 + twice):
