@@ -58,7 +58,7 @@ class ExactState(ABC):
     low_parts: bool
     low_vx: MutableSequence[float]
     low_vy: MutableSequence[float]
-    spin: Any
+    spin: Any = None
     gravity_x: Any
     gravity_y: Any
     supports: Any

@@ -46,18 +46,23 @@ LAWS: dict[str, Keys] = {
 """The keys of a scene that ask for a law, from a generator; sides, own: those of the domain's sides, and of walls; species."""
 
 
-def random_scene(seed: int, law: str) -> es.Scene:
-    """Return twelve disks on a lattice, with masses, walls, gravity and a domain that the seed chooses."""
-    rng = np.random.default_rng(seed)
-    domain = (es.Box, es.Channel, es.Periodic)[seed % 3]
-    masses = ((1.0,), (1.0, 3.0), (1.0, 2.0, np.inf, 0.0))[int(rng.integers(3))]
-    gravity = (0.0, -0.5) if rng.random() < 0.3 else None
+def random_scene(seed: int, law: str, kinds: int | None = None) -> es.Scene:
+    """Return twelve disks on a lattice, with masses, walls, gravity and a domain that the seed chooses.
+
+    kinds: of how many kinds, each of which is compiled, scenes with other seeds are; None: of any.
+    """
+    rng, kind = np.random.default_rng(seed), seed if kinds is None else seed % kinds
+    choice = np.random.default_rng(kind)
+    domain = (es.Box, es.Channel, es.Periodic)[kind % 3]
+    masses = ((1.0,), (1.0, 3.0), (1.0, 2.0, np.inf, 0.0))[int(choice.integers(3))]
+    gravity = (0.0, -0.5) if choice.random() < 0.3 else None
     gas = lattice_gas(12, 0.1, domain, seed=seed, radii=(0.5, 0.25), masses=masses)
     pitch = gas.domain.size[0] / 4.0
     corners = [(pitch, pitch), (1.2 * pitch, 1.1 * pitch), (1.0 * pitch, 1.25 * pitch)]
     keys = LAWS[law](rng)
     own, sides, species = keys.pop("own", {}), keys.pop("sides", {}), keys.pop("species", None)
     disks = es.Disks(gas.disks.position, gas.disks.velocity, gas.disks.radius, gas.disks.mass, species)
-    walls = [es.Arc(*corners, **own)] if rng.random() < 0.3 else [es.Segment(*corners[:2], **own)] if rng.random() < 0.5 else []
+    walls: list[es.Segment | es.Arc] = [es.Segment(*corners[:2], **own)] if choice.random() < 0.5 else []
+    walls = [es.Arc(*corners, **own)] if choice.random() < 0.3 else walls
     hard = {name: side for name, side in sides.items() if name in hard_sides(gas.domain)}
     return es.Scene(disks, domain(gas.domain.size, walls=hard), walls, gravity=gravity, **keys)
