@@ -39,6 +39,12 @@ def no_process_is_left(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
             process.wait()
 
 
+@pytest.fixture(autouse=True)
+def lines_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let tests read what is said as it is; that it is broken to fit a terminal has a test of its own."""
+    monkeypatch.setattr("eventsim.cli.output.WIDTH", 1 << 20)
+
+
 @pytest.fixture(scope="module")
 def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """A browser for the tests of a module."""

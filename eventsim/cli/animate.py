@@ -8,7 +8,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options, writable
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 from eventsim.cli.source import stop_options
 
 COLORS = ("mass", "speed", "species", "contacts", "index")
@@ -122,7 +122,7 @@ def command(
     elapsed = perf_counter() - began
     if as_json:
         data = {"scene": scene, "out": str(target), "format": target.suffix[1:].lower(), "events": len(log)}
-        say(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
+        say_data(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
     elif not quiet:
         if len(log) == 0:
             say("this log is empty: no event happens, the disks only fly on", err=True)

@@ -9,7 +9,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import Whole, json_option, quiet_option, scene_options, writable
-from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say
+from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say, say_data
 
 if TYPE_CHECKING:
     from eventsim.validation.proof import Proof, Rounded
@@ -105,7 +105,7 @@ def command(
     with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
         proof = prove(chosen, stop, False if path is None else path, bits, most_bits, progress, typed, interrupt)
     if as_json:
-        say(as_json_text(_data(scene, proof, path)))
+        say_data(as_json_text(_data(scene, proof, path)))
     elif not quiet:
         say(_text(scene, proof, path))
     if proof.run.stopped == "interrupted":

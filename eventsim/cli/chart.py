@@ -8,7 +8,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, writable
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 
 if TYPE_CHECKING:
     from eventsim.validation.chart import Chart
@@ -98,7 +98,7 @@ def command(
             "left_out": chart.left_out,
             "conclusions": [answer._asdict() for answer in conclusions(chart)],
         }
-        say(as_json_text(data))
+        say_data(as_json_text(data))
     elif not quiet:
         say(_text(chart))
         say(f"\ncharted in {figure}, numbers in {table}")

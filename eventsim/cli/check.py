@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 from eventsim.cli.source import chosen_scene, is_log
 
 
@@ -100,7 +100,7 @@ def command(
         told = None if estimate is None else asdict(estimate)
         words = dict(explanation(needs))
         data = {"scene": scene, "name": chosen.name, **asdict(needs), "horizon": told, "explanation": words}
-        say(as_json_text(data))
+        say_data(as_json_text(data))
     elif not quiet:
         say(page(scene, chosen.name, needs))
         if estimate is not None:
@@ -119,7 +119,7 @@ def check_log(path: str, as_json: bool, quiet: bool) -> None:
 
     found = audit(path)
     if as_json:
-        say(as_json_text({"log": path, **asdict(found)}))
+        say_data(as_json_text({"log": path, **asdict(found)}))
     elif not quiet:
         form = "compact, run again and the same" if found.compact else "as its run stored them"
         ended = "not closed" if found.stopped is None else f"stopped: {found.stopped}"

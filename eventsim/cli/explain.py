@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from eventsim.cli.words import paragraphs, point, short, title
+from eventsim.cli.words import aligned, point, short, title
 from eventsim.engines.reference.cells import ENOUGH_DISKS
 from eventsim.scene.names import plural
 from eventsim.scene.walls import SHAPES
@@ -37,7 +37,7 @@ POINTS = (
 
 def page(asked: str, name: str | None, needs: Needs) -> str:
     """Return the whole page that `eventsim check` prints."""
-    return f"{title(asked, name)}: a valid scene\n{paragraphs(list(explanation(needs)))}"
+    return f"{title(asked, name)}: a valid scene\n{aligned(list(explanation(needs)))}"
 
 
 def explanation(needs: Needs) -> Iterator[tuple[str, str]]:

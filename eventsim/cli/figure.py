@@ -6,7 +6,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options, writable
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 from eventsim.cli.source import stop_options
 from eventsim.show.figures import TITLES
 
@@ -34,7 +34,7 @@ Exit codes: 0 done; 2 bad usage, scene or file, or a log without what the figure
 
 @click.command(help=HELP)
 @scene_options(required=True, metavar="LOG|SCENE")
-@click.option("--kind", type=click.Choice(tuple(TITLES)), required=True, help="Which figure.")
+@click.option("--kind", type=click.Choice(tuple(TITLES)), required=True, metavar="KIND", help="Which figure, one of these.")
 @click.option("--out", required=True, metavar="FILE", help="FILE.png, .svg or .pdf.")
 @stop_options
 @json_option
@@ -66,6 +66,6 @@ def command(
     elapsed = perf_counter() - began
     if as_json:
         data = {"scene": scene, "kind": kind, "out": str(target), "events": len(log)}
-        say(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
+        say_data(as_json_text({**data, "bytes": target.stat().st_size, "elapsed_s": elapsed}))
     elif not quiet:
         say(f"{kind} drawn to {target} ({file_size(target)}) in {elapsed:.2g} s")

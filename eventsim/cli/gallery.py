@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
 
 from eventsim import suffixes
 from eventsim.cli.options import SEED_HELP, SET_HELP, json_option, quiet_option, writable
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
@@ -67,7 +66,7 @@ def _list(as_json: bool, quiet: bool) -> None:
 
     titles = [(each, describe(each).title) for each in names()]
     if as_json:
-        say(as_json_text({"scenes": [{"name": each, "title": title} for each, title in titles]}))
+        say_data(as_json_text({"scenes": [{"name": each, "title": title} for each, title in titles]}))
     elif not quiet:
         say(aligned(titles))
         say("\neventsim gallery NAME tells the story of one, eventsim run NAME runs it")
@@ -75,6 +74,7 @@ def _list(as_json: bool, quiet: bool) -> None:
 
 def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | None, as_json: bool, quiet: bool) -> None:
     """Print the story of one scene, or copy it into a file."""
+    from eventsim.cli.folding import reflowed
     from eventsim.cli.source import chosen_scene
     from eventsim.cli.words import aligned, as_json_text
     from eventsim.scene.gallery import describe
@@ -93,15 +93,15 @@ def _tell(name: str, copy: str | None, settings: tuple[str, ...], seed: int | No
             "about": entry.about,
             "parameters": entry.parameters,
         }
-        say(as_json_text({**data, "copied": None if target is None else str(target)}))
+        say_data(as_json_text({**data, "copied": None if target is None else str(target)}))
     elif not quiet and target is not None:
         say(f"{name} copied to {target}; eventsim run {target} runs it")
     elif not quiet:
-        say(f"{name}: {entry.title}\n\n{entry.text}")
+        say(f"{name}: {entry.title}\n\n{reflowed(entry.text)}")
         if entry.parameters:
             rows = [(key, repr(value)) for key, value in entry.parameters.items()]
             say(f"\nParameters and their defaults (--set NAME=VALUE):\n{aligned(rows)}")
-            say(fill(entry.about, 100, initial_indent="  ", subsequent_indent="  "))
+            say(f"  {entry.about}")
 
 
 def _write_scene(target: Path, scene: Scene) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 from eventsim.cli.words import as_json_text
 from eventsim.judged import validate
 from eventsim.scene import Scene
@@ -36,6 +36,6 @@ def say_judged(
     if figure is not None:
         judged.save_figure(figure)
     if as_json:
-        say(as_json_text(data))
+        say_data(as_json_text(data))
     elif not quiet:
         say(f"{trajectory} on {data['scene']}: {data['told']}\n\n{judged}")

@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from eventsim.cli.options import json_option, quiet_option, scene_options
-from eventsim.cli.output import DONE, say
+from eventsim.cli.output import DONE, say, say_data
 from eventsim.errors import EventsimError
 
 HOST, PORT = "127.0.0.1", 8642
@@ -90,7 +90,7 @@ def command(
 
     def tell(address: str) -> None:
         if as_json:
-            say(as_json_text({"scene": scene, "address": address}))
+            say_data(as_json_text({"scene": scene, "address": address}))
         elif not quiet:
             say(f"the live view is at {address} (Ctrl-C ends it)")
         if not no_browser:

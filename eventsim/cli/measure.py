@@ -17,7 +17,7 @@ from eventsim.cli.columns import (
     write_columns,
 )
 from eventsim.cli.options import Verb, json_option, quiet_option, scene_options, writable
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 from eventsim.cli.source import chosen_scene, demand_no_scene_options, is_log, log_of, run_of, stop_options
 from eventsim.cli.words import as_json_text, short
 from eventsim.measure.quantities import FAMILIES
@@ -125,7 +125,7 @@ def command(
         write_columns(columns, target)
     if as_json:
         made = {one.name: found[one.name].to_dict() if one.name in found else None for one in STUDIES}
-        say(as_json_text({"scene": scene, **measures.to_dict(), **made}))
+        say_data(as_json_text({"scene": scene, **measures.to_dict(), **made}))
     elif not quiet:
         say(measures_text(scene, measures))
         for one in found.values():

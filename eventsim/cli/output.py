@@ -12,6 +12,9 @@ from eventsim.letters import is_letter
 
 LINE = "\n"
 
+WIDTH = 80
+"""Columns of a terminal: what is printed for people fits them; names and numbers that are longer stay whole."""
+
 
 _broken: list[str] = []
 
@@ -23,8 +26,18 @@ def keep_in_line(arguments: Sequence[str]) -> None:
 
 
 def say(text: str, err: bool = False) -> None:
-    """Print lines to stdout, or to stderr."""
-    click.echo(visible(text), err=err)
+    """Print lines for people to stdout, or to stderr."""
+    text = visible(text)
+    if any(len(line) > WIDTH for line in text.split(LINE)):
+        from eventsim.cli.folding import folded  # most lines are short
+
+        text = folded(text)
+    click.echo(text, err=err)
+
+
+def say_data(text: str) -> None:
+    """Print data for programs: no line is broken."""
+    click.echo(visible(text))
 
 
 def visible(text: str) -> str:

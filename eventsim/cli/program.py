@@ -11,7 +11,16 @@ from importlib import import_module
 import click
 
 from eventsim import __version__
-from eventsim.cli.output import BAD_INPUT, DONE, INTERRUPTED, keep_in_line, say, visible, write_what_is_known
+from eventsim.cli.output import (
+    BAD_INPUT,
+    DONE,
+    INTERRUPTED,
+    WIDTH,
+    keep_in_line,
+    say,
+    visible,
+    write_what_is_known,
+)
 from eventsim.cli.signals import terminable
 from eventsim.errors import EventsimError, LogWarning, SceneError, did_you_mean
 
@@ -34,19 +43,37 @@ VERBS = {
 }
 
 BEGIN = """\
-eventsim: event-driven hard disks in two dimensions.  Three commands to begin with:
+eventsim: event-driven hard disks in two dimensions. Three commands to begin:
 
-  eventsim run break --log break.csv    simulate a built-in scene, keep every event
-  eventsim gallery                      see which other scenes are built in
-  eventsim check break                  read what a scene needs and what will be used
+  eventsim run break --log break.csv   simulate a built-in scene, keep a log
+  eventsim gallery                     see which other scenes are built in
+  eventsim check break                 read what a scene needs and will get
 
 eventsim --help lists all verbs, eventsim VERB --help explains one."""
 
-DISPLAY = {"help_option_names": ["-h", "--help"], "max_content_width": 110}
+DISPLAY = {"help_option_names": ["-h", "--help"], "max_content_width": WIDTH}
+
+
+class Help(click.HelpFormatter):
+    """Help whose lines fit a terminal, tables and examples too."""
+
+    def getvalue(self) -> str:
+        """The whole text."""
+        from eventsim.cli.folding import folded
+
+        return folded(super().getvalue())
+
+
+class Context(click.Context):
+    """The context of every verb."""
+
+    formatter_class = Help
 
 
 class Program(click.Group):
     """The verbs, each imported when it is called: `eventsim --help` loads none of them."""
+
+    context_class = Context
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Name the verbs in the order in which a user meets them."""
@@ -57,6 +84,7 @@ class Program(click.Group):
         if cmd_name in VERBS:
             verb = import_module(f"eventsim.cli.{cmd_name}").command
             assert isinstance(verb, click.Command)
+            verb.context_class = Context
             return verb
         if not cmd_name.startswith("-"):
             near = did_you_mean(cmd_name, VERBS)

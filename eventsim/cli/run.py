@@ -20,7 +20,7 @@ from eventsim.cli.options import (
     scene_options,
     writable,
 )
-from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say
+from eventsim.cli.output import INTERRUPTED, STOPPED_EARLY, say, say_data
 from eventsim.engines import STEPPED
 
 FIRST_SCENE = "break"
@@ -188,7 +188,7 @@ def command(
 
         write_states(files.state, run.scene, [run.state])
     if as_json:
-        say(as_json_text(summary_data(asked, run, files, estimate)))
+        say_data(as_json_text(summary_data(asked, run, files, estimate)))
     elif not quiet:
         say(summary_text(asked, run, files, estimate))
     if run.stopped in EXITS:

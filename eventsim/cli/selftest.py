@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from eventsim.cli.options import json_option, quiet_option
-from eventsim.cli.output import FAILED, say
+from eventsim.cli.output import FAILED, say, say_data
 
 
 @click.command()
@@ -43,7 +43,7 @@ def command(as_json: bool, quiet: bool) -> None:
     wrong, about = count["wrong"] > 0, bug_report()
     if as_json:
         told = [{"question": one.question, "answer": one.answer, "words": one.words} for one in findings]
-        say(as_json_text({"verdict": "wrong" if wrong else "well", "findings": told, "versions": about}))
+        say_data(as_json_text({"verdict": "wrong" if wrong else "well", "findings": told, "versions": about}))
     else:
         if not quiet:
             say("\n".join(f"{name}: {value}" for name, value in about.items()))

@@ -8,7 +8,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, writable
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 
 
 class ManyTimes(click.Command):
@@ -108,7 +108,7 @@ def command(
             data["states"] = [
                 {"time": s.time, "position": s.position.tolist(), "velocity": s.velocity.tolist()} for s in states
             ]
-        say(as_json_text({**data, "out": None if target is None else str(target)}))
+        say_data(as_json_text({**data, "out": None if target is None else str(target)}))
     elif target is None:
         write_csv(sys.stdout.buffer, state_columns(events.scene, states))
     elif not quiet:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from eventsim import suffixes
 from eventsim.cli.options import Whole, json_option, quiet_option, writable
-from eventsim.cli.output import FAILED, INTERRUPTED, say
+from eventsim.cli.output import FAILED, INTERRUPTED, say, say_data
 from eventsim.validation.stress.catalogue import CASES
 from eventsim.validation.stress.verdict import Word
 
@@ -136,7 +135,7 @@ def command(
 
         write_atlas(verdicts, figure_path)
     if as_json:
-        say(as_json_text(as_data(verdicts, figure_path, table_path)))
+        say_data(as_json_text(as_data(verdicts, figure_path, table_path)))
     elif not quiet:
         say(as_text(verdicts))
     if any(verdict.fault for verdict in verdicts):
@@ -161,7 +160,7 @@ def _soak(seeds: range, engines: tuple[str, ...], workers: int, as_json: bool, q
         interrupted = True
     seeds = seeds[:done]
     if as_json:
-        say(as_json_text(soak_data(seeds, engines, findings)))
+        say_data(as_json_text(soak_data(seeds, engines, findings)))
     elif not quiet:
         say(soak_text(seeds, engines, findings))
     if interrupted:
@@ -170,17 +169,13 @@ def _soak(seeds: range, engines: tuple[str, ...], workers: int, as_json: bool, q
         click.get_current_context().exit(FAILED)
 
 
-WIDTH = 110
-
-
 def as_listing(cases: Sequence[Case]) -> str:
     """Each case: its name, what happens, why methods fail, what is true."""
     parts = []
     for case in cases:
         lines = [f"{case.name}: {case.title}", f"fails: {case.why}", f"true: {case.oracle}"]
         lines.append(f"allowed: {case.tolerance:.2g}. {case.because}")
-        told = [fill(line, WIDTH, initial_indent="    ", subsequent_indent="      ") for line in lines[1:]]
-        parts.append("\n".join([lines[0], *told]))
+        parts.append("\n    ".join(lines))
     return "\n\n".join(parts)
 
 

@@ -8,7 +8,7 @@ import click
 
 from eventsim import suffixes
 from eventsim.cli.options import Whole, json_option, quiet_option, writable
-from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say
+from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say, say_data
 from eventsim.processes import cores
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def command(
     if as_json:
         data = {"scene": scene, "out": str(target), "figure": None if drawn is None else str(drawn)}
         counts = {"runs": len(rows), "failed": failed, "equilibrated": settled}
-        say(as_json_text({**data, **counts, "elapsed_s": perf_counter() - began}))
+        say_data(as_json_text({**data, **counts, "elapsed_s": perf_counter() - began}))
     elif not quiet:
         why = next((f" (the first: {row['failed']})" for row in rows if row["failed"] is not None), "")
         say(

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import click
 
 from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options, writable
-from eventsim.cli.output import FAILED, say
+from eventsim.cli.output import FAILED, say, say_data
 
 if TYPE_CHECKING:
     from eventsim.validation.compare import Comparison, Line
 
 PATIENCE_HELP = "CPU seconds for one run at most; ten times that for the event-driven one, whose end all others then share."
-
-HEAD = (
-    "engine           radii/step  found missed doubled spurious  angle   overlap   stuck   position    energy"
-    "     rate  pressure    s/time  +-"
-)
-
 
 @click.command()
 @scene_options(required=True)
@@ -165,7 +161,7 @@ def command(
             "left_out": comparison.left_out,
             "verdict": verdict(comparison),
         }
-        say(as_json_text(data))
+        say_data(as_json_text(data))
     elif not quiet:
         say(_text(scene, comparison, verdict(comparison)))
     if not comparison.agrees:
@@ -182,30 +178,45 @@ def _text(scene: str, comparison: Comparison, sentences: list[str]) -> str:
         f"{scene}: event-driven ({comparison.engine}) to t = {comparison.truth.times[-1]:g}: "
         f"{run.counters.pair_contacts:,} pair and {run.counters.wall_contacts:,} wall contacts, "
         f"{comparison.exact.elapsed:.2g} s per time unit; believed until t = {comparison.truth.horizon:.4g}",
-        "",
-        HEAD,
     ]
-    before = None
-    for line in comparison.lines:
-        if before not in (None, line.label):
-            lines.append("")
-        before = line.label
-        lines.append(_row(line))
+    lines += ["", CONTACTS_HEAD, *_by_engine(comparison.lines, _contacts_row)]
+    lines += ["", MOTION_HEAD, *_by_engine(comparison.lines, _motion_row)]
     lines += ["", *comparison.left_out, *([""] if comparison.left_out else []), *sentences, ""]
     lines.append("; ".join(f"{label}: {told}" for label, told in comparison.settings.items()))
     lines.append(", ".join(f"{name} {number}" for name, number in versions().items()))
     return "\n".join(lines)
 
 
-def _row(line: Line) -> str:
+def _by_engine(lines: Sequence[Line], row: Callable[[Line], str]) -> Iterator[str]:
+    """The rows of a table, those of each engine apart."""
+    for number, (_, group) in enumerate(groupby(lines, lambda line: line.label)):
+        if number:
+            yield ""
+        yield from map(row, group)
+
+
+CONTACTS_HEAD = "engine           radii/dt  found missed doubled spurious  angle  overlap   stuck"
+
+
+def _contacts_row(line: Line) -> str:
     census = line.census
     shares = (census.share(count) for count in (census.found, census.missed, census.doubled, census.spurious))
     found, missed, doubled, spurious = (f"{100.0 * share:.1f}" if not math.isnan(share) else "-" for share in shares)
+    angle = "-" if math.isnan(census.angle) else f"{census.angle:.2f}"
+    return (
+        f"{line.label:<16} {line.step:>8.3g} {found:>6} {missed:>6} {doubled:>7} {spurious:>8} "
+        f"{angle:>6} {line.overlap:>8.1e} {line.stuck:>7.3g}"
+    )
+
+
+MOTION_HEAD = "engine           radii/dt   position    energy     rate  pressure    s/time   +-"
+
+
+def _motion_row(line: Line) -> str:
     energy = "-" if line.energy is None else f"{line.energy:.0e}"
     error = line.errors[min(1, len(line.errors) - 1)]
     spread = 0.5 * (line.timing.most - line.timing.least) / line.timing.median if line.timing.median else 0.0
     return (
-        f"{line.label:<16} {line.step:>10.3g} {found:>6} {missed:>6} {doubled:>7} {spurious:>8} "
-        f"{line.census.angle:>6.2f} {line.overlap:>9.1e} {line.stuck:>7.3g} {error:>10.1e} {energy:>9} "
-        f"{line.rate:>+8.1%} {line.pressure:>+9.1%} {line.elapsed:>9.1e} {spread:>3.0%}"
+        f"{line.label:<16} {line.step:>8.3g} {error:>10.1e} {energy:>9} {line.rate:>+8.1%} {line.pressure:>+9.1%} "
+        f"{line.elapsed:>9.1e} {spread:>4.0%}"
     )

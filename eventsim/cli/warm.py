@@ -7,7 +7,7 @@ import sys
 import click
 
 from eventsim.cli.options import json_option, quiet_option
-from eventsim.cli.output import say
+from eventsim.cli.output import say, say_data
 
 USUAL = ("gas", "mixture", "sinai", "jar")
 """Built-in scenes whose kernels serve many others: disks alone, of several sizes, at posts, under gravity between walls."""
@@ -61,4 +61,4 @@ def command(scenes: tuple[str, ...], as_json: bool, quiet: bool, job: bool) -> N
     if as_json:
         from eventsim.cli.words import as_json_text
 
-        say(as_json_text(found))
+        say_data(as_json_text(found))

@@ -6,7 +6,6 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 from eventsim.scene.names import plural
@@ -51,22 +50,6 @@ def aligned(rows: Sequence[tuple[str, str]]) -> str:
     """Return lines "  label  text" with the texts one below the other."""
     width = max(len(label) for label, _ in rows)
     return "\n".join(f"  {label:<{width}}  {text}".rstrip() for label, text in rows)
-
-
-def paragraphs(rows: Sequence[tuple[str, str]], width: int = 100) -> str:
-    """Return aligned rows whose long texts are broken into lines of at most `width` characters."""
-    label_width = max(len(label) for label, _ in rows)
-    return "\n".join(
-        fill(
-            text,
-            width,
-            initial_indent=f"  {label:<{label_width}}  ",
-            subsequent_indent=" " * (label_width + 4),
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-        for label, text in rows
-    )
 
 
 def as_json_text(data: Mapping[str, object]) -> str:

@@ -1,0 +1,46 @@
+"""Folding: long lines broken so that they fit a terminal."""
+
+from __future__ import annotations
+
+import re
+from itertools import groupby
+from textwrap import fill
+
+from eventsim.cli.output import WIDTH
+
+LAST_COLUMN = 60
+"""Text that begins behind it has too little room to go on below."""
+
+COLUMN = re.compile(r"(?<=[^ .;:]) {2,}(?=\S)")
+"""What parts columns; two blanks behind a full stop part sentences."""
+
+
+def folded(text: str) -> str:
+    """Return a text whose lines fit a terminal: the rest of a long one goes on below its last column."""
+    return "\n".join(_folded(line) for line in text.split("\n"))
+
+
+def _folded(line: str) -> str:
+    if len(line) <= WIDTH:
+        return line
+    indent = len(line) - len(line.lstrip(" "))
+    columns = [gap.end() for gap in COLUMN.finditer(line, indent) if gap.end() <= LAST_COLUMN]
+    below = columns[-1] if columns else indent + 2
+    return fill(
+        line,
+        WIDTH,
+        subsequent_indent=" " * below,
+        break_long_words=False,
+        break_on_hyphens=False,
+        replace_whitespace=False,
+    )
+
+
+def reflowed(text: str) -> str:
+    """Return a text whose paragraphs, lines of one indent, are broken anew to fit a terminal."""
+    found = []
+    for (empty, indent), lines in groupby(text.split("\n"), lambda line: (not line.strip(), len(line) - len(line.lstrip(" ")))):
+        words, left = " ".join(line.strip() for line in lines), " " * indent
+        broken = fill(words, WIDTH, initial_indent=left, subsequent_indent=left, break_long_words=False, break_on_hyphens=False)
+        found.append("" if empty else broken)
+    return "\n".join(found)
