@@ -42,7 +42,7 @@ def no_process_is_left(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def lines_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let tests read what is said as it is; that it is broken to fit a terminal has a test of its own."""
-    monkeypatch.setattr("eventsim.cli.output.WIDTH", 1 << 20)
+    monkeypatch.setattr("eventsim.cli.output.folded", str)
 
 
 @pytest.fixture(scope="module")

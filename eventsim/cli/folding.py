@@ -6,7 +6,8 @@ import re
 from itertools import groupby
 from textwrap import fill
 
-from eventsim.cli.output import WIDTH
+WIDTH = 80
+"""Columns of a terminal: what is printed for people fits them; names and numbers that are longer stay whole."""
 
 LAST_COLUMN = 60
 """Text that begins behind it has too little room to go on below."""

@@ -8,12 +8,10 @@ from collections.abc import Sequence
 
 import click
 
+from eventsim.cli.folding import folded
 from eventsim.letters import is_letter
 
 LINE = "\n"
-
-WIDTH = 80
-"""Columns of a terminal: what is printed for people fits them; names and numbers that are longer stay whole."""
 
 
 _broken: list[str] = []
@@ -27,12 +25,7 @@ def keep_in_line(arguments: Sequence[str]) -> None:
 
 def say(text: str, err: bool = False) -> None:
     """Print lines for people to stdout, or to stderr."""
-    text = visible(text)
-    if any(len(line) > WIDTH for line in text.split(LINE)):
-        from eventsim.cli.folding import folded  # most lines are short
-
-        text = folded(text)
-    click.echo(text, err=err)
+    click.echo(folded(visible(text)), err=err)
 
 
 def say_data(text: str) -> None:

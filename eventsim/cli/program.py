@@ -11,11 +11,11 @@ from importlib import import_module
 import click
 
 from eventsim import __version__
+from eventsim.cli.folding import WIDTH, folded
 from eventsim.cli.output import (
     BAD_INPUT,
     DONE,
     INTERRUPTED,
-    WIDTH,
     keep_in_line,
     say,
     visible,
@@ -59,8 +59,6 @@ class Help(click.HelpFormatter):
 
     def getvalue(self) -> str:
         """The whole text."""
-        from eventsim.cli.folding import folded
-
         return folded(super().getvalue())
 
 
