@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Source: TypeAlias = "str | PathLike[str] | Sequence[Any]"
-"""A file; or arrays: (times, positions) or (times, positions, velocities); of contacts rows (time, a, b)."""
+"""A file; or arrays: (times, positions) or (times, positions, velocities); of contacts rows (time, a, b[, wall])."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +108,8 @@ def validate(
         scene: what is simulated.
         trajectory: a file of positions at times (.csv, .npz, .parquet, .xyz, .gsd), or arrays: times (T,), positions (T, n, 2)
             and, if you like, velocities (T, n, 2).
-        contacts: those that the engine tells: a file with the columns time, a, b (-1: a wall), or rows (time, a, b). None: they
-            are read from the paths.
+        contacts: those that the engine tells: a file with the columns time, a, b (-1: a wall), or rows (time, a, b[, wall]).
+            None: they are read from the paths.
         step: a function step(position, velocity, dt) that returns both after dt, or changes them in place and returns None.
         dt: the step; of a trajectory the time between frames that tell none; without both, one or several steps to compare.
         until: when to stop; None: when the scene, or the trajectory, does.
@@ -158,8 +158,9 @@ def _contacts(contacts: Source | ArrayLike, n: int) -> ToldContacts:
     """Contacts from a file or from rows."""
     if isinstance(contacts, str | PathLike):
         return read_contacts(Path(contacts), n)
-    rows = np.asarray(contacts, dtype=np.float64)
-    rows = rows.reshape(0, 3) if not rows.size else rows
-    if rows.ndim != 2 or rows.shape[1] != 3:
-        raise EventsimError(f"contacts: the shape {rows.shape}: must be rows (time, a, b), b = -1 at a wall")
-    return told_from(rows[:, 0], rows[:, 1], rows[:, 2], [""] * len(rows), n, "the contacts")
+    try:
+        rows = [(float(time), float(a), float(b), str(*wall)) for time, a, b, *wall in contacts]
+    except (TypeError, ValueError):
+        raise EventsimError('contacts: must be rows (time, a, b) or (time, a, b, "wall"), b = -1 at a wall') from None
+    numbers = np.array([row[:3] for row in rows]).reshape(-1, 3)
+    return told_from(numbers[:, 0], numbers[:, 1], numbers[:, 2], [row[3] for row in rows], n, "the contacts")

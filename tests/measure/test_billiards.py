@@ -204,7 +204,7 @@ def test_the_rate_of_escape_from_a_hexagon():
     """The way through the necks takes 11 units of time (from the rate at 0.12), so the opening has to be as small as this."""
     values, errors = [], []
     for seed in range(15):
-        found = escape_from_hexagon(0.006, 2_000, 150.0, seed, engine="auto")["escape_rate"]
+        found = escape_from_hexagon(0.004, 2_000, 225.0, seed, engine="auto")["escape_rate"]
         values.append(found.value)
         errors.append(found.error)
     rate, error = float(np.mean(values)), math.sqrt(sum(e * e for e in errors)) / len(errors)

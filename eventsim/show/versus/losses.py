@@ -7,7 +7,7 @@ from collections.abc import Callable
 from textwrap import fill
 
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator, NullLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter, NullLocator
 
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
@@ -66,8 +66,9 @@ def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) ->
 
 
 def scale_steps(axes: Axes, comparison: Comparison) -> None:
-    """Make the axis of steps logarithmic; within a decade with few and plain numbers, which do not run into each other."""
+    """Make the axis of steps logarithmic, with labels that do not run into each other; within a decade few and plain numbers."""
     axes.set_xscale("log")
+    axes.xaxis.set_minor_formatter(NullFormatter())
     steps = [line.step for line in comparison.lines]
     if steps and max(steps) < 10.0 * min(steps):
         axes.xaxis.set_major_locator(MaxNLocator(4))

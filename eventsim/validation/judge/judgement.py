@@ -18,7 +18,7 @@ from eventsim.validation.follow import distances
 from eventsim.validation.judge.beginning import begins_late, demand_same_pace, placed, scene_at
 from eventsim.validation.judge.charge import Charge, Window, charged, in_our_form
 from eventsim.validation.judge.faults import Fault, Witness
-from eventsim.validation.judge.flights import Flights, energy_on_the_way, flights_of
+from eventsim.validation.judge.flights import Flights, Turn, energy_on_the_way, flights_of
 from eventsim.validation.judge.jumps import jumps
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import Read, contacts_from
@@ -164,9 +164,14 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
     weight, velocity = np.where(np.isfinite(mass), mass, 0.0), flights.velocity()
     energy = _energy(flights, velocity, weight)
     drift = None if blind else witness.drift(energy_on_the_way(flights, weight), float(energy[0]))
-    seen_here = [*map(witness.outcome, read.met), drift, *map(witness.turn, read.unexplained), *charge.faults]
+    at_start = [turn for turn in read.unexplained if turn.last == 0]
+    unexplained = [turn for turn in read.unexplained if turn.last > 0]
+    if at_start:
+        remarks.append(_other_velocities(at_start))
+    seen_here = [*map(witness.outcome, read.met), drift, *map(witness.turn, unexplained), *charge.faults]
     faults = [fault for fault in seen_here if fault is not None]
-    faults += jumps(read.groups, flights, around, mass, faults)
+    groups = [group for group in read.groups if any(turn.last > 0 for turn in group)]
+    faults += jumps(groups, flights, around, mass, faults)
     return Judgement(
         name=scene.called,
         source=samples.source,
@@ -190,6 +195,15 @@ def _what_is_told(samples: Samples, flights: Flights, contacts: ToldContacts | N
     """In words."""
     told = ["positions", *(["velocities"] if flights.told else []), *(["contacts"] if contacts is not None else [])]
     return f"{', '.join(told)} of {samples.n} disks at {len(samples.times)} times"
+
+
+def _other_velocities(turns: list[Turn]) -> str:
+    """A sentence on disks that begin with other velocities than the scene says: no event, but all that follows is off."""
+    off = max(math.hypot(*turn.change) for turn in turns)
+    return (
+        f"{len(turns)} {'disk begins' if len(turns) == 1 else 'disks begin'} with velocities that differ from those of the scene, "
+        f"by up to {off:.3g}: a clock of another pace, or steps that add gravity before they move?"
+    )
 
 
 def _where_they_disagree(told: Charge, by_paths: Charge) -> list[str]:

@@ -185,8 +185,8 @@ def test_an_engine_that_tells_no_contact_has_missed_what_it_flies_through(missed
     times, places, _, _ = missed
     judged = es.validate(SCENE, trajectory=(times, places), contacts=[])
     assert judged.judgement.charge.found == 0
-    with pytest.raises(es.EventsimError, match=r"contacts: the shape \(3, 4\): must be rows"):
-        es.validate(SCENE, trajectory=(times, places), contacts=np.zeros((3, 4)))
+    with pytest.raises(es.EventsimError, match=r"contacts: must be rows \(time, a, b\) or"):
+        es.validate(SCENE, trajectory=(times, places), contacts=np.zeros((3, 2)))
 
 
 def test_the_figure_marks_the_first_wrong_event_and_what_was_missed(missed):
@@ -207,3 +207,21 @@ def test_the_figure_marks_the_first_wrong_event_and_what_was_missed(missed):
     assert any(text.get_text() == "first wrong event:\nmissed" for axes in panels for text in axes.texts)
     (crosses,) = (line for axes in panels for line in axes.lines if line.get_gid() == "missed")
     assert crosses.get_xdata().tolist() == [one.time for one in judgement.faults if one.kind == "missed"]
+
+
+def test_contacts_may_name_their_walls():
+    times, places, _, contacts = motion(SCENE)
+    named, plain = (
+        es.validate(SCENE, trajectory=(times, places), contacts=[row[:width] for row in contacts]).judgement.charge.found
+        for width in (4, 3)
+    )
+    assert named == plain > 30
+
+
+@pytest.mark.parametrize("pace", [1.01, 0.99])
+def test_disks_that_begin_with_other_velocities_turn_nowhere(pace):
+    """A clock that runs one per cent fast is told, and is no turn of every disk at the start."""
+    times, places, _, _ = motion(SCENE)
+    judged = es.validate(SCENE, trajectory=(pace * times, places), until=3.9)
+    assert "turn" not in {fault.kind for fault in judged.judgement.faults}
+    assert any("begin with velocities that differ from those of the scene" in text for text in judged.verdict)
