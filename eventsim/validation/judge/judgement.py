@@ -201,7 +201,7 @@ def _other_velocities(turns: list[Turn]) -> str:
     """A sentence on disks that begin with other velocities than the scene says: no event, but all that follows is off."""
     off = max(math.hypot(*turn.change) for turn in turns)
     return (
-        f"{len(turns)} {'disk begins' if len(turns) == 1 else 'disks begin'} with velocities that differ from those of the scene, "
+        f"{len(turns)} {'disk begins' if len(turns) == 1 else 'disks begin'} with velocities that differ from those of the scene "
         f"by up to {off:.3g}: a clock of another pace, or steps that add gravity before they move?"
     )
 
