@@ -159,7 +159,8 @@ def _contacts(contacts: Source | ArrayLike, n: int) -> ToldContacts:
     if isinstance(contacts, str | PathLike):
         return read_contacts(Path(contacts), n)
     try:
-        rows = [(float(time), float(a), float(b), str(*wall)) for time, a, b, *wall in contacts]
+        given: Any = contacts
+        rows = [(float(time), float(a), float(b), str(*wall)) for time, a, b, *wall in given]
     except (TypeError, ValueError):
         raise EventsimError('contacts: must be rows (time, a, b) or (time, a, b, "wall"), b = -1 at a wall') from None
     numbers = np.array([row[:3] for row in rows]).reshape(-1, 3)
