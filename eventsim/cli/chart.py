@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option, writable
+from eventsim.cli.options import complete_scene, json_option, quiet_option, writable
 from eventsim.cli.output import say, say_data
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ TABLE = (
 
 
 @click.command()
-@click.argument("scenes", nargs=-1, metavar="[SCENE...]")
+@click.argument("scenes", nargs=-1, metavar="[SCENE...]", shell_complete=complete_scene)
 @click.option("--out", default="chart.png", show_default=True, metavar="FILE", help="The figure: .png, .svg or .pdf.")
 @click.option("--details", metavar="FILE", help="All panels and the table of advantages, on a longer page.")
 @click.option("--csv", metavar="FILE.csv", help="The numbers; without it, beside the figure.")

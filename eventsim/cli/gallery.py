@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import SEED_HELP, SET_HELP, json_option, quiet_option, writable
+from eventsim.cli.options import SEED_HELP, SET_HELP, complete_scene, json_option, quiet_option, writable
 from eventsim.cli.output import say, say_data
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=complete_scene)
 @click.option("--copy", metavar="FILE", help="Write the scene as a file of your own, .toml or .json.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=f"With --copy. {SET_HELP}")
 @click.option("--seed", type=click.IntRange(min=0), metavar="S", help=f"With --copy. {SEED_HELP}")

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
 
 from eventsim.engines import ENGINES, STEPPED, TABLE, engine_named
 from eventsim.engines.options import read_option, words_of
@@ -33,8 +34,41 @@ class Whole(click.IntRange):
         return super().convert(value, param, ctx)
 
 
-json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout instead of text.")
+def _tell_schema(context: click.Context, option: click.Parameter, asked: bool) -> None:
+    """Print the schema of the verb and end."""
+    if not asked or context.resilient_parsing:
+        return
+    from eventsim.cli.output import say_data
+    from eventsim.cli.schemas import schema_of
+    from eventsim.cli.words import as_json_text
+
+    assert context.info_name is not None
+    say_data(as_json_text(schema_of(context.info_name)))
+    context.exit()
+
+
+def json_option(verb: Verb) -> Verb:
+    """Add --json, and --json-schema, which tells what that prints."""
+    schema = click.option(
+        "--json-schema",
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=_tell_schema,
+        help="Print the JSON Schema of that, and nothing else.",
+    )
+    return click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout instead of text.")(schema(verb))
+
+
 quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print no summary and no progress.")
+
+
+def complete_scene(context: click.Context, argument: click.Parameter, begun: str) -> list[CompletionItem]:
+    """Complete the name of a built-in scene; else a file."""
+    from eventsim.scene.gallery import names
+
+    found = [CompletionItem(name) for name in names() if name.startswith(begun)]
+    return [*found, CompletionItem(begun, type="file")]
 
 
 def scene_options(required: bool, metavar: str = "SCENE") -> Callable[[Verb], Verb]:
@@ -44,7 +78,12 @@ def scene_options(required: bool, metavar: str = "SCENE") -> Callable[[Verb], Ve
         for add in (
             click.option("--seed", type=click.IntRange(min=0), metavar="S", help=SEED_HELP),
             click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=SET_HELP),
-            click.argument("scene", required=required, metavar=metavar if required else f"[{metavar}]"),
+            click.argument(
+                "scene",
+                required=required,
+                metavar=metavar if required else f"[{metavar}]",
+                shell_complete=complete_scene,
+            ),
         ):
             verb = add(verb)
         return verb

@@ -68,6 +68,14 @@ class Context(click.Context):
     formatter_class = Help
 
 
+def complete_files(verb: click.Command) -> None:
+    """Let shells complete the names of files, where a parameter is one."""
+    for parameter in verb.params:
+        shown = parameter.metavar or (parameter.name or "").upper()
+        if parameter.type is click.STRING and ("FILE" in shown or shown == "LOG"):
+            parameter.type = click.Path(readable=False)
+
+
 class Program(click.Group):
     """The verbs, each imported when it is called: `eventsim --help` loads none of them."""
 
@@ -83,6 +91,7 @@ class Program(click.Group):
             verb = import_module(f"eventsim.cli.{cmd_name}").command
             assert isinstance(verb, click.Command)
             verb.context_class = Context
+            complete_files(verb)
             return verb
         if not cmd_name.startswith("-"):
             near = did_you_mean(cmd_name, VERBS)

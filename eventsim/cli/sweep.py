@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import Whole, json_option, quiet_option, writable
+from eventsim.cli.options import Whole, complete_scene, json_option, quiet_option, writable
 from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say, say_data
 from eventsim.processes import cores
 
@@ -19,7 +19,7 @@ SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given sever
 
 
 @click.command()
-@click.argument("scene")
+@click.argument("scene", shell_complete=complete_scene)
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUES", help=SETTINGS_HELP)
 @click.option("--replicas", type=click.IntRange(min=1), default=1, show_default=True, help="Runs of each combination.")
 @click.option("--seed", type=click.IntRange(min=0), default=1, metavar="S", help="Every run's seed is derived from it.")

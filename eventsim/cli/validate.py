@@ -99,7 +99,8 @@ def command(
       orders                   engine -> measured order of convergence (null: not measurable)
       settings, versions       what each engine was told; of what is compared
       left_out, verdict        sentences
-    With --trajectory: first_fault {kind, time, disks, sentence}, faults, contacts {found, missed, doubled, false, ...},
+    With --trajectory: source, told (the file; what it holds), first_fault {kind, time, disks, sentence}, faults, parting (of
+    the contacts: time, sentence), elapsed_per_time (of a step function), contacts {found, missed, doubled, false, ...},
     late, positions, lost, believed, energy, momentum, deepest_overlap, tolerance, remarks, verdict, versions.
 
     Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from eventsim.cli.options import json_option, quiet_option
+from eventsim.cli.options import complete_scene, json_option, quiet_option
 from eventsim.cli.output import say, say_data
 
 USUAL = ("gas", "mixture", "sinai", "jar")
@@ -14,7 +14,7 @@ USUAL = ("gas", "mixture", "sinai", "jar")
 
 
 @click.command()
-@click.argument("scenes", nargs=-1, metavar="[SCENE ...]")
+@click.argument("scenes", nargs=-1, metavar="[SCENE ...]", shell_complete=complete_scene)
 @json_option
 @quiet_option
 @click.option("--job", is_flag=True, hidden=True, help="Read from stdin what a run of this package wants.")
