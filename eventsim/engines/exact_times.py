@@ -42,7 +42,7 @@ class ExactTimes:
 
     def _of_pair(self, image: tuple[int, int], reach: Fraction, a: int, b: int) -> Moment | None:
         apart: list[Line] = []
-        for one, other, k, length in zip(self._lines(a), self._lines(b), image, self._stage.period, strict=True):
+        for one, other, k, length in zip(self.lines(a), self.lines(b), image, self._stage.period, strict=True):
             line = _less(one, other)
             apart.append(less_number(line, k * length) if k and length is not None else line)
         return reaches(apart[0], apart[1], reach, -1)
@@ -51,13 +51,13 @@ class ExactTimes:
         stage, (side, how) = self._stage, image
         if how != STRUCK:
             return None
-        lines = self._lines(i)
+        lines = self.lines(i)
         surface = stage.surfaces[number]
         if not isinstance(surface, Boundary):
             return surface.shape.moment(*lines, side, radius)
         return falls_to(lines[surface.axis], surface.target(radius), side)
 
-    def _lines(self, i: int) -> tuple[Line, Line]:
+    def lines(self, i: int) -> tuple[Line, Line]:
         """The flight of disk i in the present epoch."""
         state, stage = self._state, self._stage
         gx, gy = state.gravity_x[i], state.gravity_y[i]

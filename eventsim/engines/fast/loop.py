@@ -70,7 +70,7 @@ from eventsim.engines.fast.layout import (
 from eventsim.engines.fast.predict import predict, predict_post
 from eventsim.engines.fast.resolve import is_unlawful, resolve_pair, resolve_wall
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
-from eventsim.engines.fast.sunk import pair_may_be_sunk, wall_may_be_sunk
+from eventsim.engines.fast.sunk import may_be_astray, pair_may_be_sunk, wall_may_be_sunk
 
 
 @inline
@@ -171,6 +171,8 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
                 or pair_may_be_sunk(m, rules, i, code, now, rules.sinks)
                 or is_unlawful(m, rules, i, code, now, rules.own)
+                or may_be_astray(m, i, clock[0], m.sides)
+                or may_be_astray(m, code, clock[0], m.sides)
             ):
                 status = STATUS_TIE
                 break
@@ -186,6 +188,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
                 or wall_may_be_sunk(m, rules, i, code, now, rules.gx, rules.sinks)
                 or is_unlawful(m, rules, i, code, now, rules.own)
+                or may_be_astray(m, i, clock[0], m.sides)
             ):
                 status = STATUS_TIE
                 break

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from eventsim.engines.base import Counters, rows_from
 from eventsim.engines.fast.instant import contacts_between, due_at
 from eventsim.engines.fast.machine import Machine
+from eventsim.engines.reference.aimed import Aimed
 from eventsim.engines.reference.calendar import CONTACT, Event
 from eventsim.engines.reference.generation import Ties, components, disks_of, row_order
 from eventsim.engines.reference.resolve import Resolver
@@ -35,6 +36,7 @@ class PythonResolver:
         self.refused = self.sunk = False
         self._ties = Ties(machine.stage, machine.state)
         self._sunk = Sunk(machine.stage, machine.state)
+        self._aimed = Aimed(machine.stage, machine.state)
         self._spent: set[Event] = set()
         self._found, self._times = np.empty((64, 4), np.int64), np.empty(64)
         self._resolver: Resolver | None = None
@@ -48,6 +50,9 @@ class PythonResolver:
         generation = self._ties.settle(near) if any(event.time == now for event in near) else []
         if (sunk := self._sunk.reason(generation)) is not None:
             self.reason, self.sunk = sunk, machine.stage.law.loses_energy()
+            return "digits"
+        if (doubtful := self._aimed.reason(generation)) is not None:
+            self.reason = doubtful
             return "digits"
         resolver = self._opened_resolver()
         waiting = [int(state.labels[i]) for i in self._find(due_at, machine.counts, now)[:, 0]]

@@ -1,10 +1,13 @@
-"""Contacts that may close a gap below the digits: a screen, behind which the reference engine's rule decides."""
+"""Contacts that may close a gap below the digits, or be those of points that rounding has led astray: screens, behind which the
+reference engine's rules decide."""
 
 from __future__ import annotations
 
+import math
+
 from eventsim.engines.fast.advance import place, speed
-from eventsim.engines.fast.compiled import inline, part, real
-from eventsim.engines.fast.layout import RADIUS, REALS, WALL, T
+from eventsim.engines.fast.compiled import inline, part, real, word
+from eventsim.engines.fast.layout import CONTACT_TIME, RADIUS, REALS, WALL, WORDS, WRAPS_X, WRAPS_Y, T
 from eventsim.engines.fast.pairs import images, shifts
 from eventsim.engines.fast.shapes import is_hollow, wall_normal
 from eventsim.formulas.doubt import is_sunk
@@ -23,6 +26,19 @@ def pair_may_be_sunk(m, rules, i, j, now, sinks):
 def wall_may_be_sunk(m, rules, i, code, now, gx, sinks):
     """The same of a disk and the wall that the code of its event stands for; under gravity only of one that is round."""
     return False if sinks is None else _wall_may_be_sunk(m, rules, i, code, now, gx)
+
+
+@inline
+def may_be_astray(m, i, epoch, sides):
+    """Whether disk i, in a scene with points, has met nothing since the start, but was written anew by a wrap or a turnover."""
+    return False if sides is None else _has_met_nothing(m, i, epoch)
+
+
+@part
+def _has_met_nothing(m, i, epoch):
+    if real(m.disks, i * REALS + CONTACT_TIME) != -math.inf:
+        return False
+    return epoch > 0 or word(m.disks, i * WORDS + WRAPS_X) != 0 or word(m.disks, i * WORDS + WRAPS_Y) != 0
 
 
 @part

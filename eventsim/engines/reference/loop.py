@@ -11,6 +11,7 @@ from eventsim.engines.exact_session import ExactSession
 from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.advance import cross, refill, wrap
 from eventsim.engines.reference.ahead import meets_again
+from eventsim.engines.reference.aimed import Aimed
 from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calendar, Event
 from eventsim.engines.reference.cells import Cells, Grid, plan
 from eventsim.engines.reference.generation import Ties, components
@@ -58,6 +59,7 @@ class ReferenceSession(ExactSession):
         self._resolver = self.resolver(stage, self.state, self.counters, keep_rows)
         self._ties = Ties(stage, self.state)
         self._sunk = Sunk(stage, self.state) if number is float else None
+        self._aimed = Aimed(stage, self.state) if number is float else None
         self._predict_afresh()
 
     def _new_calendar(self) -> Calendar:
@@ -132,6 +134,9 @@ class ReferenceSession(ExactSession):
         generation = self._pop_generation()
         if self._sunk is not None and (sunk := self._sunk.reason(generation)) is not None:
             self.reason, self.sunk = sunk, self.stage.law.loses_energy()
+            return "digits"
+        if self._aimed is not None and (doubtful := self._aimed.reason(generation)) is not None:
+            self.reason = doubtful
             return "digits"
         changed: list[int] = []
         for component in components(generation):
