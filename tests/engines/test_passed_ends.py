@@ -68,3 +68,15 @@ def test_a_point_whose_bounces_in_a_bowl_are_over_does_not_fall_through_it(engin
     assert run.stopped == "collapse"
     assert run.time == pytest.approx(3.527322967, abs=1e-7)
     assert math.hypot(*run.state.position[0]) == pytest.approx(1.0, abs=1e-14)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("beside", "told"), [(0.0, ("digits", 0)), (1e-12, ("until", 1)), (-1e-12, ("until", 1))])
+def test_a_point_that_hits_the_tip_of_two_walls_behind_a_wrap_is_refused(engine, beside, told):
+    """Exactly, in the starting floats: k (11, 9) / 16 away, at velocity s (11, 9); the wrap rounds its place."""
+    walls = [es.Polyline(((32.7118396316418, 1.5703349343344906), (32.0, 0.25), (33.35441137562694, 0.8946470550404634)))]
+    disks = es.Disks([(27.1875, 60.3125)], [(0.0722094947398952, 0.05908049569627788 + beside)], 0.0)
+    scene = es.Scene(disks, es.Periodic((64.0, 64.0)), walls)
+    run = es.simulate(scene, until=67.0, engine=engine, log=True)
+    assert (run.stopped, len(run.log)) == told
+    assert (run.reason is None) == (told[0] == "until")
