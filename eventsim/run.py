@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -74,10 +75,12 @@ class Run(PastRun):
         return plot(self.log, kind, ax)
 
     def _repr_html_(self) -> str | None:
-        """Return the player for a notebook; None, and so the plain text, without a log or with too large a one."""
+        """Return the player for a notebook; None, so plain text, without a log, with too large a one, or without matplotlib."""
+        if self.log is None or find_spec("matplotlib") is None:
+            return None
         from eventsim.show.player.page import notebook_frame
 
-        return None if self.log is None else notebook_frame(self.log)
+        return notebook_frame(self.log)
 
 
 @dataclass(frozen=True, slots=True)

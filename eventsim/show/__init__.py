@@ -9,3 +9,10 @@ Matplotlib lives here and nowhere else; it draws with Agg, without pyplot and wi
     animate    a log to a file, by its suffix       figures/             one module a kind
     player/    an html page that plays a log by itself
 """
+
+from importlib.util import find_spec
+
+from eventsim.errors import EventsimError
+
+if find_spec("matplotlib") is None:
+    raise EventsimError("pictures need matplotlib: pip install 'eventsim-disks[figures]'")

@@ -54,7 +54,7 @@ def main() -> int:
     parser.add_argument("--python", default=sys.executable)
     parser.add_argument("--lowest", action="store_true")
     parser.add_argument("--locked", action="store_true")
-    parser.add_argument("--extras", default="fast,certify,live,parquet,pymunk")
+    parser.add_argument("--extras", default="fast,figures,certify,live,parquet,pymunk")
     parser.add_argument("--tests", nargs="*", default=list(TESTS))
     parser.add_argument("--freeze", action="store_true")
     asked = parser.parse_args()

@@ -26,7 +26,7 @@ def test_the_lowest_versions_are_those_that_are_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
     chosen = [needs for name, needs in extras.items() if name not in ("all", "test")]
-    declared = [need for needs in (project["dependencies"], *chosen) for need in needs]
+    declared = sorted({need for needs in (project["dependencies"], *chosen) for need in needs})
     parts = [re.fullmatch(r"([A-Za-z0-9_.-]+)>=([0-9.]+)", need) for need in declared]
     assert all(parts), declared
     found = versions_in("lowest.txt")
