@@ -25,14 +25,15 @@ joint contact."""
 class ExactState(ABC):
     """The flights of n disks, by their numbers in the scene; only advance and resolve change them.
 
-    t, x, y, vx, vy: the anchor of each flight, t a remainder in the present epoch.  count: the invalidation counts.
-    wraps_x, wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was
-    (a remainder; -inf: never, LONG_AGO: never, but it was kicked).  at_once: its contacts at that very time, to see that an
-    instant does not end.  number: makes a number of the engine's type from a float.  low_parts: whether velocities carry what
-    their rounding at a contact left, in low_vx and low_vy, which are empty otherwise; numbers of another type than float need
-    none.  spin: angular velocities, None where disks have none; contacts change them.  gravity_x, gravity_y: the acceleration of
-    each disk, None without gravity.  sides: of walls that points are on, None where no disk is one.  window: the exponent of its
-    length; window_end: where the window ends, later where it stayed open because it had no row (opened).
+    t, x, y, vx, vy: the anchor of each flight, t a remainder in the present epoch.  count: the invalidation counts. wraps_x,
+    wraps_y: how often a disk passed a periodic boundary.  met: whom it met last.  contact_time: when that was (a remainder;
+    -inf: never, LONG_AGO: never, but it was kicked).  at_once: its contacts at that very time, to see that an instant does
+    not end.  number: makes a number of the engine's type from a float.  low_parts: whether velocities carry what their
+    rounding at a contact left, in low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.
+    spin: angular velocities, None where disks have none; contacts change them.  draws: how often each asked chance.
+    gravity_x, gravity_y: the acceleration of each disk, None without gravity.  sides: of walls that points are on, None where
+    no disk is one.  window: the exponent of its length; window_end: where the window ends, later where it stayed open because
+    it had no row (opened).
     """
 
     n: int
@@ -59,6 +60,7 @@ class ExactState(ABC):
     low_vx: MutableSequence[float]
     low_vy: MutableSequence[float]
     spin: Any = None
+    draws: Any = None
     gravity_x: Any
     gravity_y: Any
     supports: Any

@@ -131,6 +131,21 @@ def approach_speed(dx: Real, dy: Real, u: Real, w: Real) -> Real:
     return -(dx * u + dy * w) / length if length > 0.0 else 0.0
 
 
+def along(nx: Real, ny: Real, speed: Real) -> tuple[Real, Real]:
+    """A velocity of this speed along a direction (nx, ny) of any length; none where there is no direction."""
+    length = sqrt(nx * nx + ny * ny)
+    if not length > 0.0:
+        return 0.0, 0.0
+    return speed * (nx / length), speed * (ny / length)
+
+
+def heated(nx: Real, ny: Real, out: Real, sideways: Real) -> tuple[Real, Real]:
+    """The velocity that leaves a wall with the normal (nx, ny), of any length, and sideways to the right of that."""
+    u, w = along(nx, ny, out)
+    right, down = along(ny, -nx, sideways)
+    return u + right, w + down
+
+
 def wall_impulse(mass: float, du: Real, dw: Real) -> Real:
     """The magnitude of the momentum that a wall gave a disk by changing its velocity by (du, dw); nan for an immovable one.
 

@@ -28,6 +28,18 @@ class Numbers(NamedTuple):
     own: Any = None
 
 
+class Treatment(NamedTuple):
+    """What a wall does to disks besides throwing them back.
+
+    temperature: kT of what it draws their velocities from, None where it does not; velocity: along itself; shaking: away from
+    itself, a saw-tooth of vanishing amplitude.
+    """
+
+    temperature: float | None = None
+    velocity: float = 0.0
+    shaking: float = 0.0
+
+
 class Shares(Protocol):
     """The restitution of a scene: its shares, and further numbers of laws."""
 
@@ -72,6 +84,7 @@ class Law:
         duration: how long a contact matters to the next one of its disks; None where it does not.
         walls: the usual restitution of each wall, by its number in the log; None where `wall` is that of all.
         pairs: that of each two species, by their numbers; None where `pair` is that of all.
+        treatments: what walls do besides, by their numbers in the log; None where none does anything.
         by_speed: whether it looks at the speed of approach.  Then contacts of one instant that share disks are resolved only
             where each is what it would be alone, and stepped engines do not know it.
         rough: the tangential restitution, where disks spin; None where they have no spin.
@@ -82,12 +95,27 @@ class Law:
     duration: float | None
     walls: tuple[float, ...] | None = field(default=None, kw_only=True)
     pairs: tuple[tuple[float, ...], ...] | None = field(default=None, kw_only=True)
+    treatments: tuple[Treatment, ...] | None = field(default=None, kw_only=True)
     by_speed: ClassVar[bool] = False
     rough: Roughness | None = field(default=None, kw_only=True)
 
     def of_wall(self, wall: int) -> float:
         """The usual restitution at a wall, by its number in the log."""
         return self.wall if self.walls is None else self.walls[wall]
+
+    def treatment(self, wall: int) -> Treatment:
+        """What a wall does besides throwing back, by its number in the log."""
+        return Treatment() if self.treatments is None else self.treatments[wall]
+
+    @property
+    def heats(self) -> bool:
+        """Whether a wall draws velocities by chance."""
+        return any(one.temperature is not None for one in self.treatments or ())
+
+    @property
+    def drives(self) -> bool:
+        """Whether a wall heats or shakes, or drags rough disks along: energy comes and goes there."""
+        return self.treatments is not None
 
     def of_pair(self, one: int, other: int) -> float:
         """The usual restitution between disks of two species."""
@@ -113,7 +141,7 @@ class Law:
 
     def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
         """Whether contacts conserve energy: those between disks, those at walls."""
-        normal = all(share == 1.0 for share in self.shares(pairs, walls))
+        normal = all(share == 1.0 for share in self.shares(pairs, walls)) and not (walls and self.drives)
         return normal and (self.rough is None or self.rough.keeps_energy(pairs, walls))
 
     def loses_energy(self) -> bool:
@@ -142,6 +170,8 @@ class Law:
         """What of it stepped engines do not know; None where they do: `pair` and `wall` are all."""
         if self.rough is not None:
             return "disks that spin"
+        if self.drives:
+            return "walls that heat, shake or slide"
         if self.by_speed:
             return self.name()
         return "restitution of single walls or species" if self.walls or self.pairs else None
@@ -151,6 +181,8 @@ class Law:
         """Why it is not known how neighbouring runs part at its contacts, a clause; None where it is."""
         if self.rough is not None:
             return "rough disks turn each other: no tangent map of that is known here"
+        if self.drives:
+            return "walls heat, shake or slide: no tangent map of that is known here"
         return f"{self.name()} hangs on how fast disks meet: no tangent map of it is known here" if self.by_speed else None
 
     @property
@@ -167,12 +199,23 @@ class Law:
         pairs, walls = (" or ".join(map(number, dict.fromkeys(self.shares(*kind)))) for kind in ((True, False), (False, True)))
         return f"restitution {pairs} between disks, {walls} at walls: energy is lost"
 
+    def driven_words(self, number: Callable[[float], str]) -> str:
+        """What it says of walls that heat, shake or slide; nothing where none does."""
+        done = self.treatments or ()
+        told = (
+            ("; walls heat, by chance, at kT = ", [one.temperature for one in done if one.temperature is not None]),
+            ("; walls shake at ", [one.shaking for one in done if one.shaking]),
+            ("; walls slide at ", [one.velocity for one in done if one.velocity]),
+        )
+        return "".join(words + " or ".join(map(number, dict.fromkeys(values))) for words, values in told if values)
+
     def rough_words(self, number: Callable[[float], str]) -> str:
-        """What it says of spins; nothing where there are none."""
+        """What it says of walls that do more than throw back, and of spins; nothing where there are none."""
         if self.rough is None:
-            return ""
+            return self.driven_words(number)
         pair, wall = number(self.rough.pair), number(self.rough.wall)
-        return f"; tangential restitution {pair} between disks, {wall} at walls (-1: smooth, 1: perfectly rough)"
+        rough = f"; tangential restitution {pair} between disks, {wall} at walls (-1: smooth, 1: perfectly rough)"
+        return rough + self.driven_words(number)
 
     def remedy(self) -> str:
         """What is left to do about contacts that pile up."""

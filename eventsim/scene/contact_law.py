@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from eventsim.formulas.laws import Law, law_of
+from eventsim.formulas.laws import Law, Treatment, law_of
 from eventsim.formulas.rough import Roughness
 from eventsim.scene.disks import named_species
 from eventsim.scene.domain import Domain, hard_sides
@@ -16,6 +17,18 @@ from eventsim.scene.walls import Wall
 
 def law_of_scene(scene: Scene) -> Law:
     """Return the law of a scene's contacts."""
+    done = tuple(treatment_of(one) for one in manners_of(scene.domain, scene.walls))
+    law = _law_without(scene)
+    return replace(law, treatments=done) if any(one != Treatment() for one in done) else law
+
+
+def treatment_of(manner: Manner) -> Treatment:
+    """Return what a wall does besides throwing back."""
+    return Treatment(manner.temperature, manner.velocity or 0.0, manner.shaking or 0.0)
+
+
+def _law_without(scene: Scene) -> Law:
+    """Return the law of contacts as if no wall did anything but throw back."""
     own, usual = manners_of(scene.domain, scene.walls), scene.restitution
     walls = None
     if any(one.restitution is not None for one in own):

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from eventsim.scene.numbers import number
+from eventsim.scene.numbers import FASTEST, LONGEST, SHORTEST, SLOWEST, SPEEDS, number
 from eventsim.scene.restitution import line
 
 
@@ -14,10 +14,16 @@ from eventsim.scene.restitution import line
 class Manner:
     """What becomes of the velocity of a disk at a wall; None: as the scene says.
 
-    restitution: the share (0 to 1) of the normal approach velocity that comes back.
+    restitution: the share (0 to 1) of the normal approach velocity that comes back.  shaking: a saw-tooth of vanishing amplitude
+    with this speed, length / time.  temperature: kT, mass length^2 / time^2, of a Maxwell flux that replaces the velocity.
+    velocity: of the wall along itself, from start to end, along +x or +y, around a circle or ellipse counter-clockwise; its ends
+    and vertices are at rest.
     """
 
     restitution: float | None = field(default=None, metadata=line("0.5"))
+    shaking: float | None = field(default=None, metadata=line("0.3"))
+    temperature: float | None = field(default=None, metadata=line("2.0"))
+    velocity: float | None = field(default=None, metadata=line("1.0"))
 
     def __post_init__(self) -> None:
         """Store numbers as floats.
@@ -53,3 +59,13 @@ def manner_problems(values: Mapping[str, Any]) -> Iterator[str]:
     share = values.get("restitution")
     if share is not None and not 0.0 <= share <= 1.0:
         yield f".restitution = {share}: must be from 0 to 1"
+    shaking, warm, along = (values.get(key) for key in ("shaking", "temperature", "velocity"))
+    if shaking is not None and shaking != 0.0 and not SLOWEST <= shaking <= FASTEST:
+        yield f".shaking = {shaking}: {SPEEDS}, and not below 0"
+    if warm is not None and not SHORTEST <= warm <= LONGEST:
+        yield f".temperature = {warm}: must be from {SHORTEST} to {LONGEST}"
+    if along is not None and along != 0.0 and not SLOWEST <= abs(along) <= FASTEST:
+        yield f".velocity = {along}: {SPEEDS}"
+    for key in ("restitution", "shaking"):
+        if warm is not None and values.get(key) is not None:
+            yield f".{key} stands beside temperature: a wall that heats takes no account of how a disk came"

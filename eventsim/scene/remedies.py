@@ -48,6 +48,7 @@ EXAMPLES = {
     "points": "points = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.8]]",
     "semi_axes": "semi_axes = [2.0, 1.0]",
     "direction": "direction = [1.0, 0.0]",
+    "shaking": "shaking = 0.3",
     "walls": "walls = {bottom = {restitution = 0.5}}",
 }
 """A line for each key that a table may have."""

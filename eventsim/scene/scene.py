@@ -17,7 +17,7 @@ from eventsim.scene.numbers import Point, number, optional_number, optional_whol
 from eventsim.scene.own_law import OwnLaw, own_law
 from eventsim.scene.restitution import Restitution, as_restitution
 from eventsim.scene.roughness import TangentialRestitution, as_tangential, roughness_problems
-from eventsim.scene.validate import find_problems, scalar_problems, species_problems, touching_notes
+from eventsim.scene.validate import chance_problems, find_problems, scalar_problems, species_problems, touching_notes
 from eventsim.scene.walls import WALLS, Wall
 
 UNNAMED = "a scene without a name"
@@ -35,6 +35,7 @@ class Scene:
         restitution: None where every contact is elastic.
         tangential_restitution: of rough disks; None where disks have no spin.
         law: a law of contacts of the user's own; None without.
+        seed: of the chance at walls that heat; None without.
         contact_duration: time; a contact within it after a disk's previous one is elastic; None without.
         equilibration: time from the start that measurements leave out; None: they find out.
         until: stop time on the scene's clock, or None.
@@ -61,6 +62,7 @@ class Scene:
     start_time: float
     name: str | None
     law: OwnLaw | None
+    seed: int | None
 
     def __init__(
         self,
@@ -76,6 +78,7 @@ class Scene:
         name: str | None = None,
         equilibration: float | None = None,
         law: Callable[..., float] | OwnLaw | None = None,
+        seed: int | None = None,
         *,
         tangential_restitution: TangentialRestitution | Mapping[str, float] | float | None = None,
         names: DiskNames | None = None,
@@ -103,11 +106,13 @@ class Scene:
             "start_time": number(start_time, "start_time"),
             "name": name,
             "law": own_law(law),
+            "seed": optional_whole(seed, "seed"),
         }
         for key, value in given.items():
             object.__setattr__(self, key, value)
         names = names or DiskNames()
         scalars = [*scalar_problems(given), *species_problems(self.restitution, disks)]
+        scalars += chance_problems(domain, self.walls, self.seed)
         scalars += roughness_problems(disks, self.tangential_restitution, names)
         problems = find_problems(disks, domain, self.walls, self.gravity, names, scalars)
         if problems:

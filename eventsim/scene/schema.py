@@ -154,6 +154,7 @@ SCENE = Schema(
         Optional("tangential_restitution"): number,
         Optional("contact_duration"): number,
         Optional("contact_law"): text_or_table,
+        Optional("seed"): whole(0),
         Optional("equilibration"): number,
     }
 )

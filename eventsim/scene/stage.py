@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.formulas.doubt import tie_screen
-from eventsim.formulas.laws import Law
+from eventsim.formulas.laws import Law, Treatment
 from eventsim.formulas.motion import periods
 from eventsim.formulas.real import Real, is_float
 from eventsim.formulas.rest import Support
@@ -28,7 +28,7 @@ from eventsim.scene.corner import corner_of
 from eventsim.scene.disks import Floats, named_species
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
-from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of
+from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of, turn_of
 from eventsim.scene.walls import feature_names, parts_of
 
 UNEVEN = 2.0**16
@@ -54,6 +54,8 @@ class Stage:
         spin, moment: (n,) angular velocities at the start, and I / m r^2; None where disks have no spin.
         gravity: (gx, gy), or None.
         law: the law of its contacts.
+        seed: of chance at walls; None where there is none.
+        turns: of each surface, 1 or -1: its direction is that, times the side, times its normal turned to the right; 0: a post.
         species: (n,) the species of each disk, where the law asks for it; else None.
         period: the period along x and y; None along an axis without one.
         size: (width, height) of the domain, or None.
@@ -83,6 +85,8 @@ class Stage:
     moment: Floats | None
     gravity: Point | None
     law: Law
+    seed: int | None
+    turns: tuple[int, ...]
     species: NDArray[np.int64] | None
     period: tuple[float | None, float | None]
     size: Point | None
@@ -214,7 +218,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         common_mass=float(disks.mass[0]),
         mass_ratio=heaviest / lightest,
         low_parts=(
-            scene.gravity is None
+            scene.gravity is None and not law.drives
             and law.rough is None
             and heaviest / lightest > UNEVEN
             and lightest > 1.0 / EXTREME
@@ -224,6 +228,8 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         moment=None if law.rough is None else disks.moments(),
         gravity=scene.gravity,
         law=law,
+        seed=scene.seed if law.heats else None,
+        turns=(*map(turn_of, boundaries), *map(turn_of, features)),
         species=None if law.pairs is None else named_species(disks)[1],
         period=domain.period,
         size=size,
@@ -284,10 +290,12 @@ def _supports(
         return None
     faces = [None if item.imaged else item.shape.line() for item in features]
     shares = [law.series(law.of_wall(one.wall)) for one in features]
+    bare = [law.treatment(wall) == Treatment() for wall in (*(b.wall for b in boundaries), *(f.wall for f in features))]
     supports = supports_of([(one.axis, one.position) for one in boundaries], faces, gravity, shares)
     if all(law.series(share) == 1.0 for share in law.shares(pairs=False)):
         falls = np.isfinite(disks.mass)
         flights = x[falls], y[falls], disks.velocity[falls, 0], disks.velocity[falls, 1]
         if not any(one is not None and any_lies(one, flights, disks.radius[falls], gravity) for one in supports):
             return None
+    supports = tuple(one if holds else None for one, holds in zip(supports, bare, strict=True))
     return supports if any(supports) else None

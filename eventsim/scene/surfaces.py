@@ -10,6 +10,7 @@ import numpy as np
 
 from eventsim.formulas.doubt import TOUCHING
 from eventsim.formulas.rest import Support
+from eventsim.formulas.walls.arc import Arc
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.container import Container
 from eventsim.formulas.walls.face import Face, face, is_in_line, slope
@@ -87,6 +88,18 @@ def features_of(
         number += len(wall.parts(""))
         rough = max(rough, *(piece.scale() for piece in wall.parts("") if not piece.curvature_radius()), 0.0)
     return _joined(found, boundaries, rough)
+
+
+def turn_of(surface: Boundary | Feature) -> int:
+    """How the direction of a wall follows from its normal: see `Stage.turns`."""
+    if isinstance(surface, Boundary):
+        return -1 if surface.axis == 0 else 1
+    shape = surface.shape
+    if isinstance(shape, Face):
+        return 1
+    if isinstance(shape, Arc):
+        return 1 if shape.sign > 0.0 else -1
+    return 0 if isinstance(shape, Post) else -1
 
 
 def moved_on(features: Sequence[Feature], step: tuple[int, int]) -> tuple[int, ...]:

@@ -40,7 +40,7 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None, runs: 
     problems: list[str] = []
     if seed is not None and seed < 0:
         problems.append(f"seed = {seed}: must be at least 0")
-    found = _read_parts(data, base_dir, problems, runs)
+    found = _read_parts(data, base_dir, problems, runs, seed)
     gases = _read_gases(data, found.domain, found.walls, seed, problems)
     disks = join(found.disks)
     try:
@@ -95,7 +95,7 @@ class _Parts:
         return Scene(disks, domain, self.walls, **self.values, names=self.names)
 
 
-def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str], runs: bool) -> _Parts:
+def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str], runs: bool, seed: int | None) -> _Parts:
     """Everything but the gases."""
     schema.report_unknown(data, list(schema.SCENE_KEYS), "", problems)
     parts = _Parts()
@@ -106,6 +106,8 @@ def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str], ru
     # One by one: a bad one does not keep the rules from being applied to the others.
     for key, value in scalars.items():
         parts.values |= schema.read_table(schema.SCENE, {key: value}, "", problems).values
+    if seed is not None and "seed" in parts.values:
+        parts.values["seed"] = seed
     if (named := parts.values.pop("contact_law", None)) is not None:
         try:
             parts.values["law"] = own_law_in(named, base_dir) if isinstance(named, str) else own_law_from(named, runs)

@@ -43,6 +43,8 @@ from eventsim.scene.walls import Wall, parts_of, wall_names
 WRITTEN_OUT: ContextVar[int] = ContextVar("WRITTEN_OUT", default=3)
 """Of many problems of one kind so many are written out; the rest are counted."""
 
+LARGEST_SEED = 2**63 - 1
+
 LIGHTEST = 1e-320
 """A mass that has a half."""
 
@@ -67,6 +69,7 @@ def find_problems(
     sound = np.ones(len(disks), dtype=np.bool_)
     problems += number_problems(disks, names, sound)
     problems += _point_wall_problems(disks, walls, gravity, names)
+    problems += heat_problems(disks, domain, walls, names)
     problems += [] if problems else list(scale_problems(disks, domain, walls, gravity))
     # In a domain that is none, among walls that are none, a place would mean nothing.
     if not shapes:
@@ -142,6 +145,24 @@ def species_problems(restitution: Restitution | None, disks: Disks) -> Iterator[
         for name in dict.fromkeys((a, b)):
             if name not in names:
                 yield f"restitution.pairs.{a}-{b}: {NO_SPECIES} {name} (there are {', '.join(names)})"
+
+
+def chance_problems(domain: Domain, walls: Sequence[Wall], seed: int | None) -> Iterator[str]:
+    """The rule that chance has a seed."""
+    warm = any(one.temperature is not None for one in (*(side for _, side in domain.walls), *walls))
+    if warm and seed is None:
+        yield "seed is missing: where chance is used, a seed makes the run the same every time"
+    if seed is not None and not 0 <= seed <= LARGEST_SEED:
+        yield f"seed = {seed}: must be a whole number from 0 to {LARGEST_SEED}"
+
+
+def heat_problems(disks: Disks, domain: Domain, walls: Sequence[Wall], names: DiskNames) -> Iterator[str]:
+    """The rule that walls heat what has a temperature."""
+    warm = [f"domain.walls.{name}" for name, side in domain.walls if side.temperature is not None]
+    warm += [f"wall[{i}]" for i, wall in enumerate(walls) if wall.temperature is not None]
+    broken = np.flatnonzero(~(np.isfinite(disks.mass) & (disks.mass > 0.0))) if warm else ()
+    for k in list(broken)[: WRITTEN_OUT.get()]:
+        yield f"{warm[0]}.temperature: {names.disk(int(k))} has mass {disks.mass[k]}: only a finite mass above 0 can be heated"
 
 
 def domain_problems(domain: Domain) -> Iterator[str]:

@@ -70,7 +70,7 @@ def scene_beside_disks(scene: Scene) -> str:
 def _tables(scene: Scene) -> dict[str, Any]:
     """The tables of a scene in their order, that of the disks still empty."""
     data: dict[str, Any] = {}
-    for key in ("name", "until", "events", "contact_duration", "equilibration"):
+    for key in ("name", "until", "events", "contact_duration", "equilibration", "seed"):
         value = getattr(scene, key)
         if value is not None:
             data[key] = value

@@ -36,6 +36,27 @@ LAWS: dict[str, Keys] = {
         "restitution": Restitution(0.9, 1.0, pairs={"a-a": float(rng.choice([0.5, 1.0])), "a-b": 0.75}),
         "species": ["a", "b", "b", "c"] * 3,
     },
+    "walls that shake": lambda rng: {
+        "restitution": Restitution(**_shares(rng)),
+        "sides": {"bottom": {"shaking": float(rng.choice([0.0, 0.5]))}, "left": {"shaking": 0.25, "restitution": 0.5}},
+        "own": {"shaking": float(rng.choice([0.125, 1.0]))},
+    },
+    "walls that shake and look at speeds": lambda rng: {
+        "restitution": Restitution(0.9, 0.8, yield_speed=0.5),
+        "sides": {"bottom": {"shaking": 0.25}, "top": {"shaking": 0.5}},
+        "own": {"shaking": 1.0},
+    },
+    "walls that heat": lambda rng: {
+        "seed": int(rng.integers(2**40)),
+        "sides": {"bottom": {"temperature": 2.0}, "top": {"temperature": 0.5, "velocity": 1.5}},
+        "own": {"temperature": 1.0, "velocity": float(rng.choice([0.0, -1.0]))},
+    },
+    "walls that heat and take": lambda rng: {
+        "seed": int(rng.integers(2**40)),
+        "restitution": Restitution(**_shares(rng)),
+        "sides": {"left": {"temperature": 2.0}, "bottom": {"shaking": 0.5}, "top": {"restitution": 0.5}},
+        "own": {"temperature": 1.0},
+    },
     "of the user's own": lambda rng: {"restitution": Restitution(**_shares(rng)), "law": own},
     "yielding": lambda rng: {"restitution": Restitution(**_shares(rng), yield_speed=float(rng.choice([0.25, 1.0])))},
     "yielding, kept if soon": lambda rng: {
@@ -54,7 +75,7 @@ def random_scene(seed: int, law: str, kinds: int | None = None) -> es.Scene:
     rng, kind = np.random.default_rng(seed), seed if kinds is None else seed % kinds
     choice = np.random.default_rng(kind)
     domain = (es.Box, es.Channel, es.Periodic)[kind % 3]
-    masses = ((1.0,), (1.0, 3.0), (1.0, 2.0, np.inf, 0.0))[int(choice.integers(3))]
+    masses = ((1.0,), (1.0, 3.0), (1.0, 2.0, np.inf, 0.0))[int(choice.integers(2 if "heat" in law else 3))]
     gravity = (0.0, -0.5) if choice.random() < 0.3 else None
     gas = lattice_gas(12, 0.1, domain, seed=seed, radii=(0.5, 0.25), masses=masses)
     pitch = gas.domain.size[0] / 4.0

@@ -62,6 +62,10 @@ SUPPORT_X, SUPPORT_Y, SUPPORT_LOW, SUPPORT_HIGH, SUPPORT_LINE, SUPPORT_FACE = 0,
 """Their places; a wall that supports nobody goes from 0 to 0."""
 
 
+OWN_OF_WALL, SHARE, SERIES, TEMPERATURE, SHAKING, SLIDE = 5, 0, 1, 2, 3, 4
+"""How many numbers each wall has of its own, and their places: see `rules.shares_of`."""
+
+
 class Arrays(NamedTuple):
     """The memory of a kernel: arrays where Python makes it, pointers inside; None is what the scene does not need.
 
@@ -70,7 +74,7 @@ class Arrays(NamedTuple):
     parts of velocities, (vx, vy) each.  sides: of points, one number for each shape
     (`scene.sides`); images: see `rules.images_of`.  levels: the table of `cells`.  shares: see
     `rules.shares_of`.  species: of each disk; pairs: see
-    `rules.pairs_of`.  rows: the log's buffer, bytes.
+    `rules.pairs_of`.  draws: how often each disk asked chance.  rows: the log's buffer, bytes.
     """
 
     disks: object
@@ -87,6 +91,7 @@ class Arrays(NamedTuple):
     shares: object
     species: object
     pairs: object
+    draws: object
     rows: object
 
 
@@ -94,10 +99,11 @@ class Rules(NamedTuple):
     """What the scene says; None: it does not have that.
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  series_restitution: see `Law.series`.  law: its
-    `numbers`; by_speed: it looks at the speed of approach; own: it is the user's.  classes: there are immovable disks or
-    tracers.  features: number of wall shapes; shapes: of each of the kinds of `shapes` whether there is one; first_feature:
-    the place of the first.  instant, at_once_limit: see `instant_of`.  still: see `stillness_of`, None where disks do not
-    settle.  tie_screen: see `formulas.doubt`, in the present window.  sinks: gaps can sink below the digits.
+    `numbers`; by_speed: it looks at the speed of approach; own: it is the user's; driven: walls heat, shake or slide; seed:
+    of chance.  classes: there are immovable disks or tracers.  features: number of wall shapes; shapes: of each of the kinds
+    of `shapes` whether there is one; first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.
+    still: see `stillness_of`, None where disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.
+    sinks: gaps can sink below the digits.
     """
 
     gx: object
@@ -114,6 +120,8 @@ class Rules(NamedTuple):
     law: object
     by_speed: object
     own: object
+    driven: object
+    seed: object
     classes: object
     common_mass: float
     features: object

@@ -91,6 +91,7 @@ def pointers(a):
         pointer(a.shares),
         pointer(a.species),
         pointer(a.pairs),
+        pointer(a.draws),
         pointer(a.rows),
     )
 

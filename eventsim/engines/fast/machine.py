@@ -252,6 +252,7 @@ class Machine:
                 self._shares,
                 self._species,
                 self._pairs,
+                self.state.draws_in_memory,
                 self._buffer.view(np.uint8) if self.keep_rows else None,
             )
             full = fill(self.arrays, self.grid, self.rules, now)

@@ -23,6 +23,7 @@ from numba.extending import overload, register_jitable
 from eventsim.errors import LogError
 from eventsim.formulas import (
     careful_impulse,
+    chance,
     contact,
     corner,
     crossing,
@@ -278,6 +279,7 @@ for _module in (motion, contact, doubt, image, impulse):
 _shapes = [sys.modules[shape.__module__] for shape in SHAPES]
 for _module in (
     careful_impulse,
+    chance,
     corner,
     crossing,
     digits,

@@ -14,8 +14,12 @@ from eventsim.engines.fast.layout import (
     MET,
     OUTER_X,
     OUTER_Y,
+    OWN_OF_WALL,
     RADIUS,
     REALS,
+    SHAKING,
+    SLIDE,
+    TEMPERATURE,
     VX,
     VY,
     WALL,
@@ -30,12 +34,15 @@ from eventsim.engines.fast.rows import write_pair, write_wall
 from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal, wall_normal
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
+from eventsim.formulas.chance import flux
 from eventsim.formulas.doubt import AT_ONCE as SERIES_AT_ONCE
 from eventsim.formulas.doubt import is_still
 from eventsim.formulas.impulse import (
+    along,
     approach_speed,
     contact_restitution,
     flat_update,
+    heated,
     mass_fractions,
     pair_update,
     reduced_mass,
@@ -95,14 +102,20 @@ def _approach_of_pair(m, rules, a, b, t, dx, dy, by_speed):
 
 
 @inline
-def _approach_to_wall(m, rules, i, place_, side, x, y, u, w, by_speed, features):
+def _approach_to_wall(m, rules, i, place_, side, x, y, u, w, u0, w0, by_speed):
     """The same of a disk and a wall."""
     if by_speed is None:
         return 0.0
-    if _hits_a_post(m, rules, i, place_, features):
-        return approach_speed(-u, -w, u, w)
-    nx, ny = wall_normal(m, rules, place_, side, x, y, rules.wall_x, rules.wall_y, features)
+    nx, ny = _towards(m, rules, i, place_, side, x, y, u0, w0)
     return approach_speed(nx, ny, u, w)
+
+
+@inline
+def _towards(m, rules, i, place_, side, x, y, u, w):
+    """The normal of the wall that disk i meets; where a point hits a post, against its velocity."""
+    if _hits_a_post(m, rules, i, place_, m.features):
+        return (0.0, 1.0) if u == 0.0 and w == 0.0 else (-u, -w)
+    return wall_normal(m, rules, place_, side, x, y, rules.wall_x, rules.wall_y, m.features)
 
 
 @inline
@@ -114,9 +127,9 @@ def _restitution_of_pair(m, rules, a, b, t, dx, dy, mass):
 
 
 @inline
-def _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w):
-    """The restitution of a disk at a wall."""
-    approach = _approach_to_wall(m, rules, i, place_, side, x, y, u, w, rules.by_speed, m.features)
+def _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w, u0, w0):
+    """The restitution of a disk at a wall; (u0, w0): its velocity, (u, w): as the wall sees it."""
+    approach = _approach_to_wall(m, rules, i, place_, side, x, y, u, w, u0, w0, rules.by_speed)
     usual = share_at_wall(m, rules, place_, m.shares)
     return _restitution(m, i, i, t, usual, rules.law, approach, mass_of(i, m.mass, rules.common_mass))
 
@@ -132,8 +145,10 @@ def _is_unlawful(m, rules, i, code, t):
     if code <= WALL:
         wall_code = WALL - code
         x, y = place(m, rules, i, t)
-        u, w = speed(m, rules, i, t)
-        e = _restitution_at_wall(m, rules, i, t, wall_code // 2, -1 if wall_code % 2 else 1, x, y, u, w)
+        u0, w0 = speed(m, rules, i, t)
+        place_, side = wall_code // 2, -1 if wall_code % 2 else 1
+        u, w = _from_wall(m, rules, i, place_, side, x, y, u0, w0, -1.0, u0, w0, rules.driven)
+        e = _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w, u0, w0)
     else:
         a, b = _in_order(m, i, code, m.mass)
         xa, ya = place(m, rules, a, t)
@@ -326,10 +341,12 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     x, y = place(m, rules, i, t)
     u, w = speed(m, rules, i, t)
     u0, w0 = u, w
+    came_x, came_y = x, y
+    u, w = _from_wall(m, rules, i, place_, side, x, y, u, w, -1.0, u0, w0, rules.driven)
     series = _is_series(m, i, place_, m.supports, rules.still)
     still = _is_still(m, rules, i, t, rules.still) and not series
     ends = series and _ends(m, place_, m.supports)
-    e = _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w)
+    e = _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w, u0, w0)
     r = real(m.disks, i * REALS + RADIUS)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r
@@ -345,6 +362,8 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         )
         x, y = _laid_on(m, rules, place_, side, x, y, r, rules.features, m.supports, rules.still)
     u, w = _rebound(m, rules, i, place_, side, u0, w0, u, w, e, m.supports)
+    u, w = _from_wall(m, rules, i, place_, side, came_x, came_y, u, w, 1.0, u0, w0, rules.driven)
+    u, w = _heated(m, rules, i, place_, side, came_x, came_y, u, w, u0, w0, rules.driven, rules.seed)
     keep_sides(m, rules, i, t, pulls(m, rules, i), x, y, u, w, place_, side, m.sides)
     anchor(m, i, t, x, y, u, w)
     remember(m, i, -1 - place_, side, 0)
@@ -354,6 +373,41 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         sums[OUTER_X] += mass * (u - u0)
         sums[OUTER_Y] += mass * (w - w0)
     write_wall(m, number, slot, i, wall, (x, y, u, w), wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
+
+
+@inline
+def _from_wall(m, rules, i, place_, side, x, y, u, w, sign, u0, w0, driven):
+    """A velocity, with that of a wall that shakes added to it, or taken away."""
+    if driven is None:
+        return u, w
+    speed_ = real(m.shares, OWN_OF_WALL * place_ + SHAKING)
+    if speed_ == 0.0:
+        return u, w
+    nx, ny = _towards(m, rules, i, place_, side, x, y, u0, w0)
+    shift_x, shift_y = along(nx, ny, speed_)
+    return u + sign * shift_x, w + sign * shift_y
+
+
+@inline
+def _heated(m, rules, i, place_, side, x, y, u, w, u0, w0, driven, seed):
+    """The velocity that a wall that heats draws; another wall leaves it as it is."""
+    if driven is None or seed is None:
+        return u, w
+    return _drawn(m, rules, i, place_, side, x, y, u, w, u0, w0, seed)
+
+
+@part
+def _drawn(m, rules, i, place_, side, x, y, u, w, u0, w0, seed):
+    temperature = real(m.shares, OWN_OF_WALL * place_ + TEMPERATURE)
+    if temperature == 0.0:
+        return u, w
+    number = word(m.draws, i)
+    out, sideways, _ = flux((seed, word(m.disks, i * WORDS + LABEL), number))
+    store(m.draws, i, number + 1)
+    thermal = sqrt(temperature / mass_of(i, m.mass, rules.common_mass))
+    slide = side * real(m.shares, OWN_OF_WALL * place_ + SLIDE)
+    nx, ny = _towards(m, rules, i, place_, side, x, y, u0, w0)
+    return heated(nx, ny, thermal * out, thermal * sideways + slide)
 
 
 @inline

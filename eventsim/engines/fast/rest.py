@@ -15,10 +15,13 @@ from eventsim.engines.fast.layout import (
     MET_KX,
     MET_KY,
     NOBODY,
+    OWN_OF_WALL,
     RADIUS,
     REALS,
     RESTING,
+    SERIES,
     SEVERAL,
+    SHARE,
     SUPPORT,
     SUPPORT_FACE,
     SUPPORT_HIGH,
@@ -75,13 +78,13 @@ def support_face(m, place):
 @inline
 def share_at_wall(m, rules, place, shares):
     """The usual restitution at a wall."""
-    return rules.wall_restitution if shares is None else real(shares, 2 * place)
+    return rules.wall_restitution if shares is None else real(shares, OWN_OF_WALL * place + SHARE)
 
 
 @inline
 def _share_of_series(m, rules, place, shares):
     """The same of bounces that follow each other ever faster."""
-    return rules.series_restitution if shares is None else real(shares, 2 * place + 1)
+    return rules.series_restitution if shares is None else real(shares, OWN_OF_WALL * place + SERIES)
 
 
 @inline

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.engines.fast.compiled import compiled_law
-from eventsim.engines.fast.layout import SUPPORT, SUPPORT_FACE, Rules
+from eventsim.engines.fast.layout import OWN_OF_WALL, SUPPORT, SUPPORT_FACE, Rules
 from eventsim.engines.fast.plan import Grids
 from eventsim.engines.fast.shapes import CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
@@ -44,6 +44,8 @@ def rules_of(stage: Stage) -> Rules:
         law_in_kernels(stage.law),
         1 if stage.law.by_speed else None,
         1 if isinstance(stage.law, Own) else None,
+        1 if stage.law.drives else None,
+        stage.seed,
         1 if classes else None,
         stage.common_mass,
         len(stage.features) or None,
@@ -67,7 +69,7 @@ def law_in_kernels(law: Law) -> Numbers | None:
 
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
-    law = (stage.law.walls, stage.law.pairs, *(stage.law.numbers() or ()))
+    law = (shares_of(stage), stage.law.pairs, *(stage.law.numbers() or ()))
     asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
@@ -89,11 +91,18 @@ def features_of(stage: Stage) -> Floats | None:
 
 
 def shares_of(stage: Stage) -> Floats | None:
-    """What comes back at each wall, and of low bounces there, in one row of memory; None where all walls are alike."""
-    if stage.law.walls is None:
+    """What each wall does, in one row of memory; None where all walls are alike.
+
+    What comes back there, and of low bounces; the temperature, or 0; the speed of its shaking; that along itself, times its turn.
+    """
+    law = stage.law
+    if law.walls is None and not law.drives:
         return None
-    shares = [stage.law.of_wall(surface.wall) for surface in stage.surfaces]
-    return np.array([(share, stage.law.series(share)) for share in shares]).reshape(-1)
+    table = np.zeros((len(stage.surfaces), OWN_OF_WALL))
+    for row, turn, wall in zip(table, stage.turns, (surface.wall for surface in stage.surfaces), strict=True):
+        share, done = law.of_wall(wall), law.treatment(wall)
+        row[:] = share, law.series(share), done.temperature or 0.0, done.shaking, turn * done.velocity
+    return table.reshape(-1)
 
 
 def pairs_of(stage: Stage) -> Floats | None:

@@ -14,8 +14,9 @@ from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
 from eventsim.engines.reference.unresolvable import joint_under, lawful, rough_joint
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
-from eventsim.formulas.impulse import approach_speed, flat_update, pair_update, wall_update
-from eventsim.formulas.laws import Own
+from eventsim.formulas.chance import flux
+from eventsim.formulas.impulse import along, approach_speed, flat_update, heated, pair_update, wall_update
+from eventsim.formulas.laws import Own, Treatment
 from eventsim.formulas.real import Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
 from eventsim.formulas.rough import SMOOTH, Roughness, grip_strength, gripped, pair_grip, wall_grip
@@ -178,7 +179,13 @@ class Resolver:
         # A series on one wall is over when it is, and may well be lower than the last bits before.
         series = self._instants.is_series(i, place)
         still = not series and self._instants.is_still(i, t)
-        nx, ny = self._towards(event, x, y, u, w) if stage.law.by_speed else (0.0, 0.0)
+        done = stage.law.treatment(stage.surfaces[place].wall) if stage.law.drives else None
+        asks = stage.law.by_speed or done is not None
+        nx, ny = self._towards(event, x, y, u, w) if asks else (0.0, 0.0)
+        shift_x = shift_y = 0.0
+        if done is not None and done.shaking:
+            shift_x, shift_y = along(nx, ny, done.shaking)
+            u, w = u - shift_x, w - shift_y
         restitution = self._restitution(event, t, nx, ny, ((u, w),))
         again = self._launched(i, place, side)
         if stage.is_exact_hit(place, self._radius[i]):
@@ -194,10 +201,15 @@ class Resolver:
             u, _ = flat_update(u, boundary.side, restitution)
         else:
             w, _ = flat_update(w, boundary.side, restitution)
-        if self._grips[1]:
-            nx, ny = stage.normal(place, side, x, y)
-            k = self._turn_at_wall(i, nx, ny, *before)
-            u, w = u + k * ny, w - k * nx
+        if self._grips[1] and (done is None or done.temperature is None):
+            mx, my = stage.normal(place, side, x, y)
+            slide_x, slide_y = self._slide(done, place, side, mx, my)
+            k = self._turn_at_wall(i, mx, my, before[0] - slide_x, before[1] - slide_y)
+            u, w = u + k * my, w - k * mx
+        if done is not None and done.shaking:
+            u, w = u + shift_x, w + shift_y
+        if done is not None and done.temperature is not None:
+            u, w = self._heated(i, done.temperature, done.velocity, place, side, nx, ny)
         x, y = self._place_on(place, side, i, x, y)
         self._rests.free(i, t)
         state.keep_sides(i, t, (x, y), (u, w), ((place, side),))
@@ -208,6 +220,26 @@ class Resolver:
         self._counters.wall_contacts += 1
         self._ledger.log(t, Kind.WALL, i, -1, stage.surfaces[place].wall, impulse, -1)
         return [i]
+
+    def _slide(self, done: Treatment | None, place: int, side: int, nx: Real, ny: Real) -> tuple[Real, Real]:
+        """The velocity of a wall along itself."""
+        if done is None or not done.velocity:
+            return 0.0, 0.0
+        return along(ny, -nx, (self._stage.turns[place] * side) * done.velocity)
+
+    def _heated(
+        self, i: int, temperature: float, velocity: float, place: int, side: int, nx: Real, ny: Real
+    ) -> tuple[Real, Real]:
+        """The velocity of disk i behind a wall that heats, and slides: drawn; so is its spin, if it has one."""
+        state, stage, mass = self._state, self._stage, self._masses.of(i)
+        out, sideways, other = flux((stage.seed or 0, i, state.draws[i]))
+        state.draws[i] += 1
+        speed = sqrt(temperature / mass)
+        slide = (stage.turns[place] * side) * velocity
+        if state.spin is not None:
+            r = self._radius[i]
+            state.spin[i] = other * sqrt(temperature / (self._moment[i] * mass * (r * r)))
+        return heated(nx, ny, speed * out, speed * sideways + slide)
 
     def _launched(self, i: int, place: int, side: int) -> Real:
         """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""
@@ -251,6 +283,9 @@ class Resolver:
         number = {disk: k for k, disk in enumerate(disks)}
         at = [state.place(i, t) for i in disks]
         before = [state.speed(i, t) for i in disks]
+        shift = self._shaken(component, at, before)
+        if shift is not None:
+            before = [(u - shift[0], w - shift[1]) for u, w in before]
         contacts = []
         for event in component:
             a, b = number[event.a], number[event.b] if event.b >= 0 else None
@@ -262,8 +297,8 @@ class Resolver:
                 nx, ny = self._towards(event, *at[a], *before[a])
                 e = self._restitution(event, t, nx, ny, (before[a],))
                 contacts.append(JointContact(a, None, nx, ny, e))
-        if stage.law.by_speed and not are_apart(contacts):
-            raise joint_under(stage.law.name(), disks)
+        if (stage.law.by_speed or shift is not None) and not are_apart(contacts):
+            raise joint_under(stage.law.name() if shift is None else "the law of walls that heat or shake", disks)
         if any(self._grips[event.b < 0] for event in component):
             raise rough_joint(disks)
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
@@ -284,6 +319,8 @@ class Resolver:
                 reached = (abs(u) + abs(w)) * t
                 x, y = stage.at_end([-1 - event.b for event in own], x, y, reached, self._radius[i])
             leaves = outcome.velocities[number[i]]
+            if shift is not None:
+                leaves = leaves[0] + shift[0], leaves[1] + shift[1]
             state.keep_sides(i, t, (x, y), leaves, tuple((-1 - event.b, event.image[0]) for event in own))
             state.anchor(i, t, x, y, *leaves)
             state.forget_low_parts(i)
@@ -294,6 +331,25 @@ class Resolver:
             self._note_joint(t, component[k], contacts[k], outcome.impulses[k], first)
         self._counters.clusters += 1
         return changed
+
+    def _shaken(
+        self, component: list[Event], at: list[tuple[Real, Real]], before: list[tuple[Real, Real]]
+    ) -> tuple[Real, Real] | None:
+        """The velocity of walls that shake, which one disk meets at one instant; None where none does.
+
+        Raises UnlawfulError where one heats, or several disks are at it.
+        """
+        stage = self._stage
+        done = [stage.law.treatment(stage.surfaces[-1 - event.b].wall) for event in component if event.b < 0]
+        if not stage.law.drives or not any(one.shaking or one.temperature is not None for one in done):
+            return None
+        if any(one.temperature is not None for one in done) or len(at) > 1:
+            disks = sorted({i for event in component for i in disks_of(event)})
+            raise joint_under("the law of walls that heat or shake", disks)
+        shifts = [
+            along(*self._towards(event, *at[0], *before[0]), one.shaking) for event, one in zip(component, done, strict=True)
+        ]
+        return sum(shift[0] for shift in shifts), sum(shift[1] for shift in shifts)
 
     def _together(self, contacts: list[JointContact], before: list[tuple[Real, Real]], masses: list[float]) -> Outcome:
         """The law of simultaneous contacts in the engine's numbers."""
