@@ -102,7 +102,7 @@ def test_all_problems_come_at_once(eventsim, scene_file):
     result = eventsim("check", scene_file)
     assert result.exit_code == 2
     assert result.stdout == ""
-    assert result.stderr.count("spin: unknown key") == 2
+    assert result.stderr.count("swirl: unknown key") == 2
 
 
 def test_a_missing_scene_argument_is_named(eventsim):
