@@ -60,7 +60,7 @@ def command(
     engine calls sub-steps are smaller steps here.
 
     \b
-    Engines: frames, frames-forget (the course project's, two readings of its memory), stepped,
+    Engines: frames, frames-forget (a students' project, two readings of its memory), stepped,
     stepped-located (impact located within the step), penalty (springs), pymunk, pymunk-1, pymunk-30
     (Chipmunk, an extra, with 10, 1, 30 iterations of its solver in a step).
 

@@ -126,7 +126,7 @@ TABLE = {
         ),
         Engine(
             "frames",
-            "the per-frame engine of the course project",
+            "the per-frame engine of a students' project",
             "eventsim.engines.stepped.frames:FramesSession",
             FramesOptions,
             stepped=True,

@@ -1,4 +1,4 @@
-"""`frames`: the per-frame engine of the course project that this package replaces, rule by rule.
+"""`frames`: the per-frame engine of a students' project that this package replaces, rule by rule.
 
 Every frame all circles move by v dt.  Then, circle by circle in the order of the list: if it overlaps a border, the component of
 its velocity across that border is flipped, and it is the next one's turn; else its two closest circles are looked at in turn: if
@@ -82,7 +82,7 @@ class FramesSession(SteppedSession):
 
 
 def _demand_known(stage: Stage) -> None:
-    """Raise EventsimError for what the course project did not know."""
+    """Raise EventsimError for what that project did not know."""
     reasons = {
         "it knows no disks that spin": stage.law.rough is not None,
         "it knows no periodic boundaries": stage.periodic,

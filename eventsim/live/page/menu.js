@@ -5,7 +5,7 @@ const NUMBERS = ["count", "packing", "speed", "gravity", "restitution", "seed"],
 const OWN = "", GIVEN = "?";
 const OPPONENTS = { frames: "per frame", stepped: "fixed steps", penalty: "springs", pymunk: "Chipmunk (pymunk)" };
 const OPPONENT_WORDS = {
-  frames: "As in the course project: it knows boxes and elastic contacts; no restitution, no round walls.",
+  frames: "As in a students' project that came before: it knows boxes and elastic contacts; no restitution, no round walls.",
   stepped: "Disks that overlap and approach are resolved after each step. It knows restitution, gravity, all walls.",
   penalty: "Overlapping disks push each other apart like springs, for some 20 steps: give it many steps a second.",
   pymunk: "A game engine that others wrote. It knows restitution and gravity; no round walls, no periodic boundaries.",
