@@ -46,6 +46,10 @@ class Species(NamedTuple):
     name: str = ""
 
 
+SMOOTH = -1.0
+"""The tangential restitution that gives nothing along surfaces."""
+
+
 @dataclass(frozen=True)
 class Ensemble:
     """The disks of a scene as statistical mechanics sees them.
@@ -126,9 +130,15 @@ class Ensemble:
         return bool((np.isinf(disks.mass) & (disks.velocity != 0.0).any(axis=1)).any())
 
     @property
+    def turned(self) -> bool:
+        """Whether contacts turn motion into spin and spin into motion."""
+        rough = self.law.rough
+        return rough is not None and not (rough.pair == rough.wall == SMOOTH)
+
+    @property
     def conserved(self) -> bool:
-        """Whether the kinetic energy never changes."""
-        return self.elastic and not self.kicked and not self.pushed and self.scene.gravity is None
+        """Whether the kinetic energy of the motion never changes."""
+        return self.elastic and not self.turned and not self.kicked and not self.pushed and self.scene.gravity is None
 
     @cached_property
     def unsteady(self) -> str | None:
@@ -161,6 +171,8 @@ class Ensemble:
             return self.unsteady
         if self.n == 1:
             return "one disk shares its energy with nobody"
+        if self.turned:
+            return "rough disks share their energy with their spins, which are not measured"
         if self.drowned:
             return "the energy of the common motion leaves no digits of the thermal energy"
         if not self.scene.disks.radius[self.counted].any():
@@ -195,7 +207,7 @@ class Ensemble:
     @property
     def simple(self) -> bool:
         """Whether theory for a homogeneous gas applies: alone, elastic, without gravity, held."""
-        return self.alone and self.steady and self.scene.gravity is None
+        return self.alone and self.steady and not self.turned and self.scene.gravity is None
 
     @property
     def billiard(self) -> bool:

@@ -1,6 +1,7 @@
 """Neighbours of known faults: gases that drift, tracers that are pushed, points, gases apart, engines of steps, cold gases."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -216,3 +217,17 @@ def test_where_walls_take_energy_no_exponent_is_told_by_contacts():
         assert "walls take energy" in measured(scene, events=300)["cooling_exponent"].doubt
     pairs_only = measured(es.Scene(gas.disks, gas.domain, restitution=Restitution(0.9, 1.0)), events=300)
     assert pairs_only["cooling_exponent"].value > 0.0
+
+
+@pytest.mark.parametrize("grip", [1.0, 0.5])
+def test_rough_disks_have_no_temperature_that_motion_alone_tells(grip):
+    """Spins have a share of the energy, and no theory of smooth disks speaks of such a gas."""
+    gas = lattice_gas(25, 0.2, es.Periodic, seed=3)
+    measures = measured(replace(gas, tangential_restitution=grip), events=300)
+    why = "spins" if grip == 1.0 else "contacts take energy"
+    for name in ("temperature", "Z", "diffusion"):
+        assert why in measures[name].doubt
+    assert all(quantity.theory is None for quantity in measures.quantities)
+    assert measures["energy_end"].value < measures["energy_start"].value
+    smooth = measured(replace(gas, tangential_restitution=-1.0), events=300)
+    assert smooth["temperature"].value == measured(gas, events=300)["temperature"].value

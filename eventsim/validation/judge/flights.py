@@ -47,8 +47,8 @@ class Turn:
     """A disk flies free until sample `first` and from sample `last` on.
 
     time: where the two flights cross, to within `slack`.  before: the velocity with which it comes there.  change: what it was
-    given, gravity apart.  ends: whether the samples end before the flight after it is known.  split: whether the two flights do
-    not cross, so that there were several contacts between the samples.
+    given, gravity apart.  place: where it is then, as samples have it.  ends: whether the samples end before the flight after it
+    is known.  split: whether the two flights do not cross, so that there were several contacts between the samples.
     """
 
     disk: int
@@ -57,6 +57,7 @@ class Turn:
     time: float
     before: Floats
     change: Floats
+    place: Floats
     slack: float = 0.0
     ends: bool = False
     split: bool = False
@@ -128,7 +129,8 @@ class Flights:
         split = math.hypot(*(apart - kept * change)) > slack * math.sqrt(size)
         time = float(self.times[first]) + kept
         ends = not self.told and last >= len(self.times) - 2
-        return Turn(disk, first, last, time, before + pull * (time - float(self.times[first])), change, slack, ends, split)
+        place = self.place[first, disk] + before * kept + 0.5 * pull * kept * kept
+        return Turn(disk, first, last, time, before + pull * kept, change, place, slack, ends, split)
 
 
 def flights_of(

@@ -32,6 +32,7 @@ class Met:
 
     key: (kind, a, b or wall).  time: when.  first, last: samples up to which and from which on both are free.  turns: of a and
     b, None for what did not turn.  alone: whether the turns are those of this contact alone, so that they tell its impulse.
+    across: the part of what it gave that is not along the line of centres, or the normal of the wall; NaN where nobody knows.
     """
 
     key: Key
@@ -40,6 +41,7 @@ class Met:
     last: int
     turns: tuple[Turn | None, Turn | None] = (None, None)
     alone: bool = False
+    across: float = math.nan
 
 
 @dataclass(slots=True)
@@ -53,12 +55,16 @@ class Read:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A contact that may explain turns: their places in the list (of a; of b or None), who, the unit normal from a on."""
+    """A contact that may explain turns: their places in the list (of a; of b or None), who, the unit normal from a on.
+
+    at_turn: that normal where the two flights cross; None where it is not known.
+    """
 
     turns: tuple[int, int | None]
     key: Key
     normal: tuple[float, float]
     swapped: bool = False
+    at_turn: tuple[float, float] | None = None
 
 
 def contacts_from(flights: Flights, around: Surroundings, mass: Floats) -> Read:
@@ -131,7 +137,10 @@ def _close(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Ed
             d = around.apart(flights.place[middle, a], flights.place[middle, b])
             size = math.hypot(*d) or 1.0
             normal = (float(d[0]) / size, float(d[1]) / size)
-            edges.append(Edge((i, j), (int(Kind.PAIR), a, b), normal))
+            there = around.apart(turns[i].place, turns[j].place)
+            size = math.hypot(*there)
+            at_turn = (float(there[0]) / size, float(there[1]) / size) if size > 0.0 else None
+            edges.append(Edge((i, j), (int(Kind.PAIR), a, b), normal, at_turn=at_turn))
         active.append(place)
     return edges
 
@@ -149,7 +158,7 @@ def _walls(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Ed
     for place, turn in enumerate(turns):
         radius = float(around.stage.radius[turn.disk])
         margin = radius * (1.0 + NEAR) + flown_at(flights, turn)
-        best: dict[int, tuple[float, tuple[float, float]]] = {}
+        best: dict[int, tuple[float, tuple[float, float], int]] = {}
         for surface in around.surfaces:
             for sample in range(*_span(turn, count).indices(count)):
                 normal, distance = around.to_wall(surface, flights.place[sample, turn.disk])
@@ -157,9 +166,11 @@ def _walls(flights: Flights, around: Surroundings, turns: list[Turn]) -> list[Ed
                 if -margin < distance < margin and away > WEAK * math.hypot(*turn.change):
                     wall = around.wall_of(surface)
                     if wall not in best or away > best[wall][0]:
-                        best[wall] = (away, normal)
-        for wall, (_, normal) in best.items():
-            edges.append(Edge((place, None), (int(Kind.WALL), turn.disk, wall), (-normal[0], -normal[1])))
+                        best[wall] = (away, normal, surface)
+        for wall, (_, normal, surface) in best.items():
+            (x, y), distance = around.to_wall(surface, turn.place)
+            at_turn = (-x, -y) if math.isfinite(distance) else None
+            edges.append(Edge((place, None), (int(Kind.WALL), turn.disk, wall), (-normal[0], -normal[1]), at_turn=at_turn))
     return edges
 
 
@@ -265,10 +276,16 @@ def _met(edge: Edge, turns: list[Turn], alone: bool) -> Met:
     along = all(_is_along(turn, edge.normal) and turn.is_sharp for turn in both)
     at_once = other is None or abs(one.time - other.time) <= one.slack + other.slack
     first, last = min(turn.first for turn in both), max(turn.last for turn in both)
-    return Met(edge.key, time, first, last, pair, alone and along and at_once)
+    across = math.nan if edge.at_turn is None else max(_across(turn, edge.at_turn) for turn in both)
+    return Met(edge.key, time, first, last, pair, alone and along and at_once, across)
 
 
 def _is_along(turn: Turn, normal: tuple[float, float]) -> bool:
     """Whether a turn is along a line of centres: otherwise it is that of another contact as well."""
-    across = abs(turn.change[0] * normal[1] - turn.change[1] * normal[0])
-    return bool(across <= ALONG * math.hypot(*turn.change))
+    return _across(turn, normal) <= ALONG
+
+
+def _across(turn: Turn, normal: tuple[float, float]) -> float:
+    """The sine of the angle between a turn and a normal."""
+    size = math.hypot(*turn.change)
+    return abs(float(turn.change[0] * normal[1] - turn.change[1] * normal[0])) / size if size > 0.0 else 0.0

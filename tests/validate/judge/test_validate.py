@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -225,3 +226,27 @@ def test_disks_that_begin_with_other_velocities_turn_nowhere(pace):
     judged = es.validate(SCENE, trajectory=(pace * times, places), until=3.9)
     assert "turn" not in {fault.kind for fault in judged.judgement.faults}
     assert any("begin with velocities that differ from those of the scene" in text for text in judged.verdict)
+
+
+@pytest.mark.parametrize("share", [0.12, 0.28])
+def test_a_wall_that_takes_speed_along_it_is_friction(share):
+    """And no wrong restitution: the part across the normal is told apart, as the wall's normal is known."""
+    scene = es.Scene(es.Disks([[0.5, 0.5]], [[0.6, -0.5]], 0.1), es.Box((3.0, 3.0)))
+    times = np.arange(0.0, 2.0, 0.01)
+    late = np.maximum(times - 0.8, 0.0)
+    speed = np.array([0.6 - 0.5 * share, 0.5])
+    place = np.array([0.5, 0.5]) + np.outer(np.minimum(times, 0.8), [0.6, -0.5]) + np.outer(late, speed)
+    first = es.validate(scene, trajectory=(times, place[:, None])).first_fault
+    assert first.kind == "friction"
+    assert "of its impulse across the normal" in first.sentence
+
+
+def test_rough_disks_are_judged_by_their_contacts_alone():
+    """Spins, which nobody tells, take energy and speed along surfaces."""
+    scene = replace(SCENE, tangential_restitution=1.0)
+    run = es.simulate(scene, until=3.0, engine="reference", log=True, trust=False)
+    times = np.arange(0.0, 3.0, 0.01)
+    places = np.array([run.state_at(float(time)).position for time in times])
+    judged = es.validate(scene, trajectory=(times, places), until=2.99)
+    assert judged.first_fault is None
+    assert judged.judgement.charge.found > 5
