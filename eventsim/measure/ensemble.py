@@ -169,10 +169,10 @@ class Ensemble:
             return "tracers carry no energy"
         if self.unsteady is not None:
             return self.unsteady
-        if self.n == 1:
-            return "one disk shares its energy with nobody"
         if self.turned:
             return "rough disks share their energy with their spins, which are not measured"
+        if self.n == 1:
+            return "one disk shares its energy with nobody"
         if self.drowned:
             return "the energy of the common motion leaves no digits of the thermal energy"
         if not self.scene.disks.radius[self.counted].any():
@@ -213,7 +213,8 @@ class Ensemble:
     def billiard(self) -> bool:
         """Whether those who move never meet: tracers alone, or one disk, flying straight among what stands still."""
         movers = self.n if self.n else 0 if self.tracers is None else self.species[self.tracers].number
-        return (self.n == 0 or movers == 1) and movers > 0 and self.steady and self.scene.gravity is None
+        still = self.steady and not self.turned and self.scene.gravity is None
+        return (self.n == 0 or movers == 1) and movers > 0 and still
 
     @cached_property
     def integrable(self) -> bool:

@@ -231,3 +231,11 @@ def test_rough_disks_have_no_temperature_that_motion_alone_tells(grip):
     assert measures["energy_end"].value < measures["energy_start"].value
     smooth = measured(replace(gas, tangential_restitution=-1.0), events=300)
     assert smooth["temperature"].value == measured(gas, events=300)["temperature"].value
+
+
+def test_one_rough_disk_is_no_billiard():
+    """Its way depends on its spin: pi A / P is the mean free path of what flies by its place and direction alone."""
+    disk = es.Disks([[1.0, 1.2]], [[0.7, 0.4]], 0.1)
+    measures = measured(es.Scene(disk, es.Box((3.0, 2.0)), tangential_restitution=1.0), events=100)
+    assert "mean_free_path" not in list(measures)
+    assert "spins" in measures["temperature"].doubt

@@ -96,6 +96,7 @@ def test_a_small_fluid_comes_near_to_enskog():
         (es.gallery("gas", n=12), "periodic ones"),
         (fluid(restitution=es.gallery("cooling").restitution), "contacts take energy"),
         (fluid(gravity=(0.0, -1.0)), "fall for ever"),
+        (fluid(tangential_restitution=1.0), "spins"),
     ],
 )
 def test_where_they_have_no_meaning_there_is_a_dash(scene, words):

@@ -205,7 +205,7 @@ def _no_meaning(ensemble: Ensemble) -> str | None:
     if not ensemble.torus:
         return f'the domain is "{ensemble.scene.domain.kind}": the moments are those of periodic ones'
     if not ensemble.simple:
-        return ensemble.unsteady or ("gravity pulls" if ensemble.alone else "walls and posts take momentum")
+        return ensemble.no_temperature or ("gravity pulls" if ensemble.alone else "walls and posts take momentum")
     if ensemble.tracers is not None:
         return "there are tracers, which take no part"
     return ensemble.no_temperature
