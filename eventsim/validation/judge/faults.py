@@ -6,6 +6,7 @@ errors before, a contact more or less is a consequence of these.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ from eventsim.scene.stage import Stage
 from eventsim.validation.judge.flights import Flights, Gained, Turn
 from eventsim.validation.judge.outcome import named, wrong_outcome
 from eventsim.validation.judge.surroundings import Surroundings
-from eventsim.validation.judge.told import NEAR, Met, is_beside_something
+from eventsim.validation.judge.told import NEAR, Met
 
 GRAZE = 0.02
 """In reaches: a missed contact whose own path overlaps by less is called a graze."""
@@ -144,13 +145,29 @@ class Witness:
         said = wrong_outcome(met, self._stage, self._mass, self._flights.least)
         if said is None:
             return None
-        if met.key[0] == Kind.PAIR and any(
-            turn is not None and is_beside_something(turn, self._flights, self._around, self._mass) for turn in met.turns
-        ):
+        if met.key[0] == Kind.PAIR and any(turn is not None and self._may_have_met_more(turn) for turn in met.turns):
             return None
         kind = said.split(":")[0]
         disks = tuple(disk for disk in met.key[1:] if disk >= 0) if met.key[0] == Kind.PAIR else met.key[1:2]
         return Fault(met.time, kind, f"{said} (t = {met.time:.6g})", disks)
+
+    def _may_have_met_more(self, turn: Turn) -> bool:
+        """Whether a disk can have flown to a wall, or an immovable disk, and from there on, from the first sample to the last."""
+        times, ends = self._flights.times, self._flights.place[[turn.first, turn.last]]
+        speed = max(math.hypot(*turn.before), math.hypot(*(turn.before + turn.change)))
+        flown = speed * float(times[turn.last] - times[turn.first])
+        radius = self._stage.radius
+        mine = ends[:, turn.disk]
+        for surface in self._around.surfaces:
+            if sum(self._around.to_wall(surface, place)[1] - float(radius[turn.disk]) for place in mine) < flown:
+                return True
+        for other in np.flatnonzero(~np.isfinite(self._mass)).tolist():
+            if other != turn.disk:
+                reach = float(radius[other] + radius[turn.disk])
+                away = self._around.apart(mine, ends[:, other])
+                if float(np.hypot(away[:, 0], away[:, 1]).sum()) - 2.0 * reach < flown:
+                    return True
+        return False
 
     def turn(self, turn: Turn) -> Fault:
         """The fault of a disk that turns with nothing near."""
