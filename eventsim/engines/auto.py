@@ -42,7 +42,7 @@ With these numbers no guess costs more than a fifth of the better engine's time,
 
 def first_engine(stage: Stage, stop: Stop, keep_rows: bool = True) -> str:
     """The engine that a run of this stage to this stop begins with."""
-    if not has_compiler() or stage.spin is not None:
+    if not has_compiler():
         return "reference"
     seconds = reference_seconds(stage, stop)
     if stage.n >= LARGE or (seconds > COLD and not may_warm()):
@@ -64,7 +64,7 @@ class AutoSession(Session):
         self._options = options or AutoOptions()
         self._spent = self._sampled = 0.0
         self._begun = 0, 0.0
-        self._may_change = self._options == AutoOptions() and stage.spin is None
+        self._may_change = self._options == AutoOptions()
         self._opened: Session | None = None
         self._is_cold = False
         self._warming: Warming | None = None

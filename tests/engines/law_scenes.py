@@ -58,6 +58,19 @@ LAWS: dict[str, Keys] = {
         "own": {"temperature": 1.0},
     },
     "of the user's own": lambda rng: {"restitution": Restitution(**_shares(rng)), "law": own},
+    "rough": lambda rng: {
+        "restitution": float(rng.choice([1.0, 0.9])),
+        "tangential_restitution": {"pair": float(rng.choice([-0.5, 0.5, 1.0])), "wall": float(rng.choice([0.0, 1.0]))},
+    },
+    "rough between smooth walls": lambda rng: {
+        "restitution": Restitution(**_shares(rng)),
+        "tangential_restitution": {"pair": float(rng.uniform(-1.0, 1.0))},
+        "contact_duration": (None, 1e-2)[int(rng.integers(2))],
+    },
+    "rough walls": lambda rng: {
+        "restitution": {"pair": 0.9},
+        "tangential_restitution": {"wall": float(rng.uniform(-1.0, 1.0))},
+    },
     "yielding": lambda rng: {"restitution": Restitution(**_shares(rng), yield_speed=float(rng.choice([0.25, 1.0])))},
     "yielding, kept if soon": lambda rng: {
         "restitution": Restitution(0.9, 0.8, yield_speed=0.5),
@@ -82,7 +95,11 @@ def random_scene(seed: int, law: str, kinds: int | None = None) -> es.Scene:
     corners = [(pitch, pitch), (1.2 * pitch, 1.1 * pitch), (1.0 * pitch, 1.25 * pitch)]
     keys = LAWS[law](rng)
     own, sides, species = keys.pop("own", {}), keys.pop("sides", {}), keys.pop("species", None)
-    disks = es.Disks(gas.disks.position, gas.disks.velocity, gas.disks.radius, gas.disks.mass, species)
+    spin = moment = None
+    mass = gas.disks.mass
+    if "tangential_restitution" in keys:
+        spin, moment, mass = rng.normal(size=12), rng.uniform(0.1, 1.0, 12), np.where(mass == 0.0, 5.0, mass)
+    disks = es.Disks(gas.disks.position, gas.disks.velocity, gas.disks.radius, mass, species, spin, moment)
     walls: list[es.Segment | es.Arc] = [es.Segment(*corners[:2], **own)] if choice.random() < 0.5 else []
     walls = [es.Arc(*corners, **own)] if choice.random() < 0.3 else walls
     hard = {name: side for name, side in sides.items() if name in hard_sides(gas.domain)}

@@ -74,7 +74,8 @@ class Arrays(NamedTuple):
     parts of velocities, (vx, vy) each.  sides: of points, one number for each shape
     (`scene.sides`); images: see `rules.images_of`.  levels: the table of `cells`.  shares: see
     `rules.shares_of`.  species: of each disk; pairs: see
-    `rules.pairs_of`.  draws: how often each disk asked chance.  rows: the log's buffer, bytes.
+    `rules.pairs_of`.  draws: how often each disk asked chance.  rows: the log's buffer, bytes.  spin: the angular velocity
+    and the moment of each disk; spin_rows: what rows have of spins, two numbers each.
     """
 
     disks: object
@@ -93,6 +94,8 @@ class Arrays(NamedTuple):
     pairs: object
     draws: object
     rows: object
+    spin: object
+    spin_rows: object
 
 
 class Rules(NamedTuple):
@@ -103,7 +106,8 @@ class Rules(NamedTuple):
     of chance.  classes: there are immovable disks or tracers.  features: number of wall shapes; shapes: of each of the kinds
     of `shapes` whether there is one; first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.
     still: see `stillness_of`, None where disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.
-    sinks: gaps can sink below the digits.
+    sinks: gaps can sink below the digits.  pair_roughness, wall_roughness: the tangential restitution, None where contacts
+    turn no disk.
     """
 
     gx: object
@@ -132,6 +136,8 @@ class Rules(NamedTuple):
     still: object
     tie_screen: float
     sinks: object
+    pair_roughness: object
+    wall_roughness: object
 
 
 class Grid(NamedTuple):

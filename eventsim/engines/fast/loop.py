@@ -93,6 +93,8 @@ def pointers(a):
         pointer(a.pairs),
         pointer(a.draws),
         pointer(a.rows),
+        pointer(a.spin),
+        pointer(a.spin_rows),
     )
 
 

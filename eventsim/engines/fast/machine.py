@@ -20,7 +20,7 @@ from eventsim.engines.fast.state import FastState
 from eventsim.formulas.clock import window_length
 from eventsim.formulas.doubt import latest_tie, screen_in
 from eventsim.formulas.expansion import two_sum
-from eventsim.record.events import ROW, Floats, Rows
+from eventsim.record.events import ROW, SPIN_ROW, Floats, Rows, row_of
 from eventsim.scene.stage import Stage
 
 ROOM = 1 << 13
@@ -61,6 +61,15 @@ def _looks(pool: list[Rows]) -> list[int]:
 
 UNSEEN = _looks([np.empty(0, ROW)])[0]
 """The count of a buffer that only the pool has: counted, since it depends on the Python that counts."""
+
+
+def with_spins(rows: Rows, spins: Floats) -> Rows:
+    """Rows (n,) of kernels with their spins (n, 2), as rows of a scene with spin."""
+    whole = np.empty(len(rows), SPIN_ROW)
+    memory = whole.view(np.uint8).reshape(len(rows), -1)
+    memory[:, : ROW.itemsize] = rows.view(np.uint8).reshape(len(rows), -1)
+    memory[:, ROW.itemsize :] = spins.view(np.uint8)
+    return whole
 
 
 COUNTED = {
@@ -105,6 +114,7 @@ class Machine:
         self._mass = None if stage.mass is None else np.ascontiguousarray(stage.mass[order])
         self._buffers = Buffers()
         self._buffer = self._buffers.blank() if keep_rows else np.empty(0, ROW)
+        self._spins = np.empty(2 * ROOM) if keep_rows and stage.spin is not None else None
         self.counts[layout.ROOM] = ROOM if keep_rows else 2 * FOREVER
         self._blocks: list[Rows] = []
         self.grids = Grids(stage, sizes)
@@ -254,6 +264,8 @@ class Machine:
                 self._pairs,
                 self.state.draws_in_memory,
                 self._buffer.view(np.uint8) if self.keep_rows else None,
+                None if state.turning is None else state.turning.reshape(-1),
+                self._spins,
             )
             full = fill(self.arrays, self.grid, self.rules, now)
             if full < 0:
@@ -318,6 +330,9 @@ class Machine:
         count = int(self.counts[layout.ROW_COUNT])
         self.counts[layout.ROW_COUNT] = 0
         if count and self.keep_rows:
+            if self._spins is not None:
+                self._blocks.append(with_spins(self._buffer[:count], self._spins.reshape(-1, 2)[:count]))
+                return
             self._blocks.append(self._buffer[:count])
             self._buffer = self._buffers.blank()
             self.arrays = self.arrays._replace(rows=self._buffer.view(np.uint8))
@@ -332,4 +347,4 @@ class Machine:
         blocks, self._blocks = self._blocks, []
         if len(blocks) == 1:
             return blocks[0]
-        return np.concatenate(blocks) if blocks else np.empty(0, ROW)
+        return np.concatenate(blocks) if blocks else np.empty(0, row_of(self._spins is not None))

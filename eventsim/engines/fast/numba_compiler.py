@@ -36,6 +36,7 @@ from eventsim.formulas import (
     parabola,
     real,
     rest,
+    rough,
     slide,
 )
 from eventsim.formulas.walls import point
@@ -274,7 +275,7 @@ def _register(module: ModuleType, **options: Any) -> None:
             register_jitable(**options)(function)
 
 
-for _module in (motion, contact, doubt, image, impulse):
+for _module in (motion, contact, doubt, image, impulse, rough):
     _register(_module, forceinline=True, **_PART)
 _shapes = [sys.modules[shape.__module__] for shape in SHAPES]
 for _module in (

@@ -30,7 +30,7 @@ from eventsim.engines.fast.layout import (
 )
 from eventsim.engines.fast.pairs import image, pair_is_due, shift
 from eventsim.engines.fast.rest import is_support, launched, share_at_wall, support_face
-from eventsim.engines.fast.rows import write_pair, write_wall
+from eventsim.engines.fast.rows import write_pair, write_spins, write_wall
 from eventsim.engines.fast.shapes import CENTER, WIDTH, is_exact_hit, laid_on_shape, shape_normal, wall_normal
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
@@ -51,6 +51,7 @@ from eventsim.formulas.impulse import (
 )
 from eventsim.formulas.real import sqrt
 from eventsim.formulas.rest import rebound
+from eventsim.formulas.rough import grip_strength, gripped, pair_grip, wall_grip
 from eventsim.formulas.walls.face import face_normal
 from eventsim.formulas.walls.point import is_still_rising
 
@@ -288,6 +289,7 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot, posts):
     dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
     still = _are_still(m, rules, a, b, t, kx, ky, rules.still)
     ua, wa, ub, wb, q = _parted(m, rules, a, b, t, dx, dy, m.mass, m.low)
+    ua, wa, ub, wb, k = _turned(m, rules, a, b, t, dx, dy, ua, wa, ub, wb, m.mass, rules.pair_roughness)
     keep_sides(m, rules, a, t, pulls(m, rules, a), xa, ya, ua, wa, NOWHERE, 0, m.sides)
     keep_sides(m, rules, b, t, pulls(m, rules, b), xb, yb, ub, wb, NOWHERE, 0, m.sides)
     anchor(m, a, t, xa, ya, ua, wa)
@@ -301,9 +303,11 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot, posts):
     distance = sqrt(dx * dx + dy * dy)
     reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
     overlap = (reach - distance) / reach
-    _book_pair(sums, a, b, -(q * reduced) * dx, -(q * reduced) * dy, m.mass)
+    jx, jy, strength = _exchanged(q, k, reduced, dx, dy, distance, rules.pair_roughness)
+    _book_pair(sums, a, b, jx, jy, m.mass)
     flight_a, flight_b = (xa, ya, ua, wa), (xb, yb, ub, wb)
-    write_pair(m, number, slot, a, b, flight_a, flight_b, -(q * reduced) * distance, t, clock, m.rows)
+    write_pair(m, number, slot, a, b, flight_a, flight_b, strength, t, clock, m.rows)
+    write_spins(m, slot, a, b, m.spin_rows)
     return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
 
 
@@ -317,6 +321,78 @@ def _parted(m, rules, a, b, t, dx, dy, mass, low):
     ub, wb = speed(m, rules, b, t)
     share_a, share_b = _shares(a, b, mass)
     return pair_update(dx, dy, ua, wa, ub, wb, share_a, share_b, e)
+
+
+@inline
+def _turned(m, rules, a, b, t, dx, dy, ua, wa, ub, wb, mass, roughness):
+    """The velocities of a pair, which are those of smooth disks after the contact, and k as from `pair_grip`; spins are set."""
+    if roughness is None:
+        return ua, wa, ub, wb, 0.0
+    ua0, wa0 = speed(m, rules, a, t)
+    ub0, wb0 = speed(m, rules, b, t)
+    share_a, share_b = _shares(a, b, mass)
+    radius_a, radius_b = real(m.disks, a * REALS + RADIUS), real(m.disks, b * REALS + RADIUS)
+    i, j = 2 * a, 2 * b
+    spin_a, spin_b, moment_a, moment_b = real(m.spin, i), real(m.spin, j), real(m.spin, i + 1), real(m.spin, j + 1)
+    about = (share_a, share_b, radius_a, radius_b, moment_a, moment_b, roughness)
+    spin_a, spin_b, k = pair_grip(dx, dy, ua0 - ub0, wa0 - wb0, spin_a, spin_b, *about)
+    store(m.spin, i, spin_a)
+    store(m.spin, j, spin_b)
+    ua, wa, ub, wb = gripped(dx, dy, ua, wa, ub, wb, share_a, share_b, k)
+    return ua, wa, ub, wb, k
+
+
+@inline
+def _exchanged(q, k, reduced, dx, dy, distance, roughness):
+    """The momentum (x, y) that disk a received from b, and its magnitude."""
+    jx, jy = -(q * reduced) * dx, -(q * reduced) * dy
+    if roughness is None:
+        return jx, jy, -(q * reduced) * distance
+    return jx + (k * reduced) * dy, jy - (k * reduced) * dx, grip_strength(q, k, reduced, distance)
+
+
+@inline
+def _slid(m, rules, i, place_, side, x, y, u, w, roughness, features):
+    """What roughness makes of the velocity of disk i, which comes with (u, w), besides the normal part; its spin is set."""
+    if roughness is None:
+        return 0.0, 0.0
+    if math.isinf(mass_of(i, m.mass, rules.common_mass)):
+        return 0.0, 0.0
+    if _heats(m, place_, rules.driven):
+        return 0.0, 0.0
+    nx, ny = wall_normal(m, rules, place_, side, x, y, rules.wall_x, rules.wall_y, features)
+    u, w = _over_wall(m, place_, side, nx, ny, u, w, rules.driven)
+    radius, moment = real(m.disks, i * REALS + RADIUS), real(m.spin, 2 * i + 1)
+    spin, k = wall_grip(nx, ny, u, w, real(m.spin, 2 * i), radius, moment, roughness)
+    store(m.spin, 2 * i, spin)
+    return k * ny, k * nx
+
+
+@inline
+def _heats(m, place_, driven):
+    """Whether a wall draws velocities, so that nothing grips there."""
+    if driven is None:
+        return False
+    return real(m.shares, OWN_OF_WALL * place_ + TEMPERATURE) != 0.0
+
+
+@inline
+def _over_wall(m, place_, side, nx, ny, u, w, driven):
+    """A velocity, as seen from a wall that slides along itself."""
+    if driven is None:
+        return u, w
+    velocity = real(m.shares, OWN_OF_WALL * place_ + SLIDE)
+    if velocity == 0.0:
+        return u, w
+    slide_x, slide_y = along(ny, -nx, side * velocity)
+    return u - slide_x, w - slide_y
+
+
+@inline
+def _with_slide(u, w, du, dw, roughness):
+    if roughness is None:
+        return u, w
+    return u + du, w - dw
 
 
 @part
@@ -348,6 +424,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     ends = series and _ends(m, place_, m.supports)
     e = _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w, u0, w0)
     r = real(m.disks, i * REALS + RADIUS)
+    du, dw = _slid(m, rules, i, place_, side, x, y, u0, w0, rules.wall_roughness, m.features)
     if _is_across(rules.wall_x, place_):
         x = rules.width - r if side < 0 else r
         u = _across(2 * i, u, float(side), e, m.low)
@@ -362,6 +439,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         )
         x, y = _laid_on(m, rules, place_, side, x, y, r, rules.features, m.supports, rules.still)
     u, w = _rebound(m, rules, i, place_, side, u0, w0, u, w, e, m.supports)
+    u, w = _with_slide(u, w, du, dw, rules.wall_roughness)
     u, w = _from_wall(m, rules, i, place_, side, came_x, came_y, u, w, 1.0, u0, w0, rules.driven)
     u, w = _heated(m, rules, i, place_, side, came_x, came_y, u, w, u0, w0, rules.driven, rules.seed)
     keep_sides(m, rules, i, t, pulls(m, rules, i), x, y, u, w, place_, side, m.sides)
@@ -373,6 +451,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
         sums[OUTER_X] += mass * (u - u0)
         sums[OUTER_Y] += mass * (w - w0)
     write_wall(m, number, slot, i, wall, (x, y, u, w), wall_impulse(mass, u - u0, w - w0), t, clock, m.rows)
+    write_spins(m, slot, i, -1, m.spin_rows)
 
 
 @inline
@@ -402,12 +481,22 @@ def _drawn(m, rules, i, place_, side, x, y, u, w, u0, w0, seed):
     if temperature == 0.0:
         return u, w
     number = word(m.draws, i)
-    out, sideways, _ = flux((seed, word(m.disks, i * WORDS + LABEL), number))
+    out, sideways, other = flux((seed, word(m.disks, i * WORDS + LABEL), number))
     store(m.draws, i, number + 1)
-    thermal = sqrt(temperature / mass_of(i, m.mass, rules.common_mass))
+    mass = mass_of(i, m.mass, rules.common_mass)
+    _draw_spin(m, i, other, temperature, mass, m.spin)
+    thermal = sqrt(temperature / mass)
     slide = side * real(m.shares, OWN_OF_WALL * place_ + SLIDE)
     nx, ny = _towards(m, rules, i, place_, side, x, y, u0, w0)
     return heated(nx, ny, thermal * out, thermal * sideways + slide)
+
+
+@inline
+def _draw_spin(m, i, other, temperature, mass, spin):
+    """Give disk i, if it has a spin, one that a wall draws."""
+    if spin is not None:
+        r = real(m.disks, i * REALS + RADIUS)
+        store(spin, 2 * i, other * sqrt(temperature / (real(spin, 2 * i + 1) * mass * (r * r))))
 
 
 @inline

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.fast.compiled import inline, put_line, word
+from eventsim.engines.fast.compiled import inline, put_line, real, store, word
 from eventsim.engines.fast.layout import LABEL, WORDS
 from eventsim.record.events import ROW, Kind
 
@@ -37,6 +37,20 @@ def write_wall(m, number, slot, a, wall, flight, impulse, t, clock, rows):
         return
     labels = word(m.disks, a * WORDS + LABEL), -1
     _write(rows, SIZE * slot, number, WALL_KIND, labels, wall, flight, NO_FLIGHT, impulse, t, clock)
+
+
+@inline
+def write_spins(m, slot, a, b, spin_rows):
+    """Write the spins of a pair, the smaller label first, or of a disk at a wall (b < 0), beside the row in a slot."""
+    if spin_rows is None:
+        return
+    if b < 0:
+        store(spin_rows, 2 * slot, real(m.spin, 2 * a))
+        store(spin_rows, 2 * slot + 1, math.nan)
+        return
+    swapped = word(m.disks, b * WORDS + LABEL) < word(m.disks, a * WORDS + LABEL)
+    store(spin_rows, 2 * slot + (1 if swapped else 0), real(m.spin, 2 * a))
+    store(spin_rows, 2 * slot + (0 if swapped else 1), real(m.spin, 2 * b))
 
 
 @inline

@@ -14,6 +14,7 @@ from eventsim.engines.fast.shapes import CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
 from eventsim.engines.reference.sunk import can_creep, can_sink
 from eventsim.formulas.laws import Law, Numbers, Own
+from eventsim.formulas.rough import SMOOTH
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
 from eventsim.scene.surfaces import moved_on
@@ -55,6 +56,7 @@ def rules_of(stage: Stage) -> Rules:
         stillness_of(stage),
         stage.tie_screen,
         1 if can_sink(stage) or can_creep(stage) else None,
+        *(None if beta == SMOOTH else beta for beta in stage.law.rough or (SMOOTH, SMOOTH)),
     )
 
 
@@ -73,7 +75,7 @@ def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
-    needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, *wanted, *law]
+    needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, stage.spin, *wanted, *law]
     return "".join("0" if need is None else "1" for need in needs)
 
 

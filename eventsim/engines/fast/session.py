@@ -16,7 +16,6 @@ from eventsim.engines.fast.python_resolver import PythonResolver
 from eventsim.engines.fast.rules import kind_of
 from eventsim.engines.fast.state import FastState
 from eventsim.engines.reference.ahead import meets_again
-from eventsim.errors import EventsimError
 from eventsim.formulas.motion import position, velocity
 from eventsim.record.events import Floats, Rows
 from eventsim.scene.stage import Stage
@@ -43,8 +42,6 @@ class FastSession(ExactSession):
         saved: Snapshot | None = None,
     ) -> None:
         super().__init__(stage)
-        if stage.spin is not None:
-            raise EventsimError("fast cannot simulate this scene yet: its disks spin; the reference engine can")
         options = options or FastOptions()
         self._marked: object = False
         self._open: Snapshot  # the flights of the open window
@@ -243,6 +240,7 @@ class FastSession(ExactSession):
             velocity(vy, lag, gy),
             s.wraps_x.every().astype(np.int64),
             s.wraps_y.every().astype(np.int64),
+            None if s.spin is None else s.spin.every(),
         )
 
     def kick(self, i: int, vx: float, vy: float) -> None:

@@ -66,7 +66,7 @@ class FastState(ExactState):
     memory: the records, and the calendar's buckets behind them.
     disks: (n + 1, REALS), the last one a sentinel.  words: the same memory as int32.  place_of: where a disk is in memory;
     labels: which disk is at a place.  several: chains of whom disks met in joint contacts.  low: low parts of velocities, (n, 2),
-    or (0, 2) where there are none.
+    or (0, 2) where there are none.  turning: spins and moments, (n, 2) by place; None where disks have no spin.
     """
 
     x: Any
@@ -84,6 +84,7 @@ class FastState(ExactState):
     met: Any
     gravity_x: Any
     gravity_y: Any
+    turning: Any
 
     def __init__(self, stage: Stage, order: NDArray[np.int64], counts: NDArray[np.int64]) -> None:
         n = stage.n
@@ -123,6 +124,11 @@ class FastState(ExactState):
             self.draws = Column(self.draws_in_memory, self.place_of)
         drawn = () if self.draws is None else ("draws",)
         self._columns = (*COLUMNS, *(LOW_COLUMNS if stage.low_parts else ()), *drawn)
+        self.spin = self.turning = None
+        if stage.spin is not None and stage.moment is not None:
+            self.turning = np.ascontiguousarray(np.stack([stage.spin, stage.moment], axis=1)[order])
+            self.spin = Column(self.turning[:, 0], self.place_of)
+            self._columns = (*self._columns, "spin")
         self.supports = stage.supports
         self._radius = stage.radius.tolist()
         self.sides = self.sides_in_memory = None
@@ -190,7 +196,7 @@ class FastState(ExactState):
         """Fly as at the beginning, where all but the flights is zero."""
         self.window_rows = 0
         self.begin_window(FIRST_WINDOW)
-        for name in ("x", "y", "vx", "vy"):
+        for name in ("x", "y", "vx", "vy", *(() if self.spin is None else ("spin",))):
             getattr(self, name).set_all(getattr(stage, name))
         self.contact_time.set_all(-np.inf)
         if self.draws is not None:

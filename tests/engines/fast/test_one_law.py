@@ -12,7 +12,6 @@ from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Stop
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession
-from eventsim.record.events import ROW
 from eventsim.scene.stage import stage_of
 from tests.engines.law_scenes import LAWS, own, random_scene
 
@@ -49,8 +48,8 @@ def assert_one_log(seed, law):
         found, *stopped = followed(FastSession(stage), seed, other)
         assert stopped == why
         assert len(found) == len(rows)
-        for name in ROW.names[1:] if other is not None else ROW.names:  # a session that takes over counts anew
-            assert np.array_equal(found[name], rows[name], equal_nan=ROW[name].kind == "f"), name
+        for name in rows.dtype.names[1:] if other is not None else rows.dtype.names:  # a session that takes over counts anew
+            assert np.array_equal(found[name], rows[name], equal_nan=rows.dtype[name].kind == "f"), name
     return len(rows)
 
 
