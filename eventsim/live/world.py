@@ -135,7 +135,7 @@ class World:
         """Begin anew from the state at the time that is shown, with one more disk, at rest and of mass 1."""
         async with self._changing():
             state, scene = await self._state_at(message.time), self.tracks[0].scene
-            moved = scene.disks.begun_at(state.position, state.velocity)
+            moved = scene.disks.begun_at(state.position, state.velocity, state.spin)
             disks = join([moved, Disks([message.position], radius=message.radius)])
             await self._begin(scene.begun_at(state.time, disks), self._rate, "disk", self.speed)
 
@@ -190,7 +190,7 @@ class World:
     def _scene_from(self, state: State, domain: Box | None = None) -> Scene:
         """Return the scene with another start; its disks keep radius and mass."""
         scene = self.tracks[0].scene
-        disks = scene.disks.begun_at(state.position, state.velocity)
+        disks = scene.disks.begun_at(state.position, state.velocity, state.spin)
         return scene.begun_at(state.time, disks, domain)
 
     async def _state_at(self, time: float, disk: int = 0) -> State:

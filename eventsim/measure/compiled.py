@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from eventsim.measure import sums
+from eventsim.record.events import Floats
 
 FEW_ROWS = 1 << 15
 """Rows up to which plain Python is done before a compiler is even loaded."""
@@ -25,7 +26,7 @@ VERY_FEW_ROWS = 1 << 11
 class Kernels(NamedTuple):
     """`sums.take`, `sums.finish` and `sums.hold_all`."""
 
-    take: Callable[[sums.Block, int, sums.Plan, sums.Sums], int]
+    take: Callable[[sums.Block, int, sums.Plan, sums.Sums, Floats | None], int]
     finish: Callable[[float, sums.Plan, sums.Sums], bool]
     hold_all: Callable[[sums.Plan, sums.Sums, float], float]
 
@@ -42,7 +43,9 @@ def _viewed(arrays: Any) -> Any:
 
 
 PLAIN = Kernels(
-    lambda block, first, plan, held: sums.take(_viewed(block), first, plan, _viewed(held)),
+    lambda block, first, plan, held, told: sums.take(
+        _viewed(block), first, plan, _viewed(held), None if told is None else memoryview(cast(Any, told))  # type: ignore[arg-type]
+    ),
     lambda until, plan, held: sums.finish(until, plan, _viewed(held)),
     lambda plan, held, time: sums.hold_all(plan, _viewed(held), time),
 )
@@ -67,6 +70,7 @@ def _compiled() -> Kernels:
         sums.leave,
         sums.fly,
         sums.meet,
+        sums.spin,
     ):
         register_jitable(**ALONE, forceinline=True)(part)
     # rare, or long: calls of their own

@@ -109,8 +109,8 @@ class Ensemble:
 
     @property
     def elastic(self) -> bool:
-        """Whether contacts keep the energy: those that there can be."""
-        return self.law.keeps_energy(len(self.scene.disks) > 1, self._walled)
+        """Whether contacts keep the energy of flights: those that there can be."""
+        return self.law.keeps_energy(len(self.scene.disks) > 1, self._walled) and not any(self.law.grips)
 
     @property
     def walls_take(self) -> bool:
@@ -146,7 +146,7 @@ class Ensemble:
         if self.kicked:
             return "kicks change the energy"
         if not self.elastic:
-            return "contacts take energy"
+            return "contacts turn disks, and spins take energy and give it" if any(self.law.grips) else "contacts take energy"
         if self.pushed:
             return "moving obstacles change the energy"
         if not self.held:
@@ -316,7 +316,7 @@ class Ensemble:
     @property
     def middle(self) -> tuple[float, float] | None:
         """Of a lone round container, where the angular momentum about it is conserved."""
-        free = self.posts is None and self.scene.gravity is None
+        free = self.posts is None and self.scene.gravity is None and not any(self.law.grips)
         return self.circle.center if self.circle is not None and free else None
 
     @cached_property

@@ -26,7 +26,7 @@ from eventsim.measure.profile import Profiler
 from eventsim.measure.records import Records
 from eventsim.measure.speeds import FASTEST
 from eventsim.measure.walls import described_walls
-from eventsim.record.events import Floats, Kind, Rows, row_of
+from eventsim.record.events import SPINS, Floats, Kind, Rows, has_spins, row_of
 from eventsim.record.provenance import Kick, Provenance, has_spin
 from eventsim.replay.log import AnyLog, stream_log
 from eventsim.scene.numbers import Point
@@ -176,8 +176,9 @@ class Meter:
         self._time = float(time[-1])
         self._make_room(self._time)
         block = sums.Block(time, *(rows[name] for name in sums.Block._fields[1:]))
+        told = np.stack([rows[name] for name in SPINS], axis=1) if has_spins(rows) else None
         done = 0
-        while (done := kernel.take(block, done, self._plan, self._sums)) < len(rows):
+        while (done := kernel.take(block, done, self._plan, self._sums, told)) < len(rows):
             self._drain(coarsen=True)
         self._drain()
 
@@ -272,6 +273,14 @@ def _disks(stage: Stage, ensemble: Ensemble) -> Floats:
     return disks
 
 
+def _spins(stage: Stage, ensemble: Ensemble) -> Floats:
+    """The spins of disks at the start, and their moments of inertia; (0, 2) where they have none."""
+    if stage.spin is None or stage.moment is None:
+        return np.zeros((0, 2))
+    mass = np.where(ensemble.counted, ensemble.scene.disks.mass, 0.0)
+    return np.stack([stage.spin, stage.moment * mass * stage.radius**2], axis=1)
+
+
 def _sums(scene: Scene, stage: Stage, ensemble: Ensemble, plan: sums.Plan, watched: NDArray[np.intp]) -> sums.Sums:
     """Empty sums, with the disks at the start of the run."""
     numbers, counts = np.zeros(sums.NUMBERS), np.zeros(sums.COUNTS, dtype=np.int64)
@@ -289,6 +298,7 @@ def _sums(scene: Scene, stage: Stage, ensemble: Ensemble, plan: sums.Plan, watch
         watched=watched.astype(np.int64),
         way=np.zeros((room, len(watched), 2)),
         velocity=np.zeros((room, len(watched), 2)),
+        spins=_spins(stage, ensemble),
     )
 
 

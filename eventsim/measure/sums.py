@@ -25,11 +25,11 @@ PAIR, WALL, REST, KICK = 0, 1, 2, 3
 """Kinds of rows, as `record.events.Kind` has them."""
 
 MOST_BINS = 2048
-VIRIAL, PAIRS, WALL_VIRIAL, ROTATION, SAMPLES, ENERGY, XX, XY, YY = range(9)
-GENERAL = 9
+VIRIAL, PAIRS, WALL_VIRIAL, ROTATION, SAMPLES, ENERGY, XX, XY, YY, TURNING = range(10)
+GENERAL = 10
 """Channels of a bin.  Sums of reach x impulse, and number of contacts, between disks that carry energy; sum of lever x impulse at
 walls; energy of the common rotation, summed over samples, and the number of these; of disks that carry energy, the integrals over
-time of the energy, and of m v_x^2, m v_x v_y, m v_y^2."""
+time of the energy, and of m v_x^2, m v_x v_y, m v_y^2; and that of the energy of their spins."""
 
 PATH, SPEED2, HITS = 0, 1, 2
 PER_SPECIES = 3
@@ -42,14 +42,14 @@ PIECES = 4
 """Parts of a flight under gravity, each with a speed of its own in the histogram."""
 
 MOST_POINTS = 2048
-POINT_TIME, POINT_ENERGY, POINT_VIRIAL = 0, 1, 2
-POINT_COLUMNS = 3
-"""Columns of the points along the contacts: time, energy, and the sum of FORCE by then."""
+POINT_TIME, POINT_ENERGY, POINT_VIRIAL, POINT_TURNING = 0, 1, 2, 3
+POINT_COLUMNS = 4
+"""Columns of the points along the contacts: time, energy, the sum of FORCE by then, and the energy of spins."""
 
-WIDTH, ORIGIN, INTERVAL, HEAT, FORCE = range(5)
-NUMBERS = 5
+WIDTH, ORIGIN, INTERVAL, HEAT, FORCE, SPUN = range(6)
+NUMBERS = 6
 """Numbers that change: width of a bin; time at which the bins begin; interval of samples; energy now; sum of reach x impulse so
-far, between disks and at the walls that hold them."""
+far, between disks and at the walls that hold them; energy of spins now."""
 
 PLACE, SAMPLED, FILLED, CONTACTS, STRIDE, POINTS = range(6)
 COUNTS = 6
@@ -110,7 +110,8 @@ class Sums(NamedTuple):
     """What is gathered.
 
     disks: (N, DISK_COLUMNS).  walls: (W, WALL_COLUMNS).  bins: (MOST_BINS, channels).  rates, since: (channels,) the rate of each
-    channel, and until when it is in the bins.  numbers, counts: see WIDTH, PLACE.  points: (MOST_POINTS, POINT_COLUMNS).
+    channel, and until when it is in the bins.  spins: (N, 2) spin and moment of inertia, 0 where a disk carries no energy; (0, 2)
+    where disks have no spin.  numbers, counts: see WIDTH, PLACE.  points: (MOST_POINTS, POINT_COLUMNS).
     watched: (W,) disks that are sampled.  way, velocity: (S, W, 2) buffers of samples.
     """
 
@@ -125,6 +126,7 @@ class Sums(NamedTuple):
     watched: Indices
     way: Floats
     velocity: Floats
+    spins: Floats
 
 
 def channels_of(plan: Plan) -> int:
@@ -238,6 +240,11 @@ def hold_all(plan: Plan, sums: Sums, time: float) -> float:
     for i in range(len(disks)):
         hold(plan, sums, i, time, 1.0)
         energy += 0.5 * disks[i, MASS] * (disks[i, VX] * disks[i, VX] + disks[i, VY] * disks[i, VY])
+    spun = 0.0
+    for i in range(len(sums.spins)):
+        spun += 0.5 * sums.spins[i, 1] * (sums.spins[i, 0] * sums.spins[i, 0])
+    turn(sums, TURNING, time, spun)
+    sums.numbers[SPUN] = spun
     return energy
 
 
@@ -390,6 +397,7 @@ def mark(sums: Sums, time: float) -> None:
     points[place, POINT_TIME] = time
     points[place, POINT_ENERGY] = numbers[HEAT]
     points[place, POINT_VIRIAL] = numbers[FORCE]
+    points[place, POINT_TURNING] = numbers[SPUN]
     counts[POINTS] = place + 1
 
 
@@ -409,6 +417,15 @@ def leave(plan: Plan, sums: Sums, i: int, time: float, vx: float, vy: float) -> 
         hold(plan, sums, i, since, 1.0)
     change: float = 0.5 * disks[i, MASS] * ((vx * vx + vy * vy) - (old_x * old_x + old_y * old_y))
     return change
+
+
+def spin(sums: Sums, i: int, time: float, spun: float) -> None:
+    """Disk i turns at another rate from a time on."""
+    spins, numbers = sums.spins, sums.numbers
+    change = 0.5 * spins[i, 1] * (spun * spun - spins[i, 0] * spins[i, 0])
+    spins[i, 0] = spun
+    turn(sums, TURNING, max(time - numbers[ORIGIN], 0.0), change)
+    numbers[SPUN] += change
 
 
 def meet(plan: Plan, sums: Sums, a: int, b: int, time: float, impulse: float) -> None:
@@ -446,8 +463,11 @@ def expect(disks: Floats, i: int) -> None:
     """Disk i is needed soon: machine code fetches it, plain Python does nothing."""
 
 
-def take(block: Block, first: int, plan: Plan, sums: Sums) -> int:
-    """Take up rows from `first` on; return the number of the next row: all are taken, or the buffer of samples is full."""
+def take(block: Block, first: int, plan: Plan, sums: Sums, told: Floats | None = None) -> int:
+    """Take up rows from `first` on; return the number of the next row: all are taken, or the buffer of samples is full.
+
+    told: (R, 2) the spins of their disks; None where these have none.
+    """
     disks, numbers = sums.disks, sums.numbers
     for row in range(first, len(block.time)):
         if row + AHEAD < len(block.time):
@@ -463,6 +483,10 @@ def take(block: Block, first: int, plan: Plan, sums: Sums) -> int:
         if b >= 0:
             change += leave(plan, sums, b, time, block.vxb[row], block.vyb[row])
         numbers[HEAT] += change
+        if told is not None:
+            spin(sums, a, time, told[row, 0])
+            if b >= 0:
+                spin(sums, b, time, told[row, 1])
         if kind == PAIR:
             meet(plan, sums, a, b, time, block.impulse[row])
         elif kind != KICK:

@@ -14,6 +14,7 @@ from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats, Rows, State, blank_rows, joined
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Moment, Passage
+from eventsim.show.turns import Turns
 
 GLOW = 0.2
 """Seconds of the movie for which a contact lights up its disks."""
@@ -89,7 +90,7 @@ class Frame:
 
     moment: all disks, exactly at that time, and what gravity does to them. events: rows of the log so far. contacts: (N,)
     contacts of each disk so far. glow: (N,) 1 at a contact, fading to 0. energy: as from `energy_of`. recent: the rows since the
-    previous frame; None where they are more than `MOST_RECENT`.
+    previous frame; None where they are more than `MOST_RECENT`.  angle: (N,) by which disks have turned; None without spin.
     """
 
     moment: Moment
@@ -98,6 +99,7 @@ class Frame:
     glow: Floats
     energy: float
     recent: Rows | None
+    angle: Floats | None = None
 
     @property
     def state(self) -> State:
@@ -110,6 +112,7 @@ def frames_at(passage: Passage, times: Floats, glow_time: float) -> Iterator[Fra
     log, n = passage.log, passage.stage.n
     news = News(log)
     contacts, latest = np.zeros(n, dtype=np.int64), np.full(n, -np.inf)
+    turns = None if passage.stage.spin is None else Turns(passage.stage, passage.stage.spin)
     for moment in passage.moments(times.tolist()):
         time, recent, count = moment.state.time, [blank_rows(0)], 0
         for rows, clock in news.until(time):
@@ -118,11 +121,14 @@ def frames_at(passage: Passage, times: Floats, glow_time: float) -> Iterator[Fra
             np.add.at(contacts, met["b"][met["b"] >= 0], 1)
             np.maximum.at(latest, rows["a"], clock)
             np.maximum.at(latest, rows["b"][pairs], clock[pairs])
+            if turns is not None:
+                turns.take(rows, clock)
             count += len(rows)
             recent = [*recent, rows] if count <= MOST_RECENT else []
         glow = np.maximum(1.0 - (time - latest) / glow_time, 0.0)
         since = joined(recent) if recent else None
-        yield Frame(moment, news.count, contacts.copy(), glow, energy_of(log, moment.state), since)
+        angle = None if turns is None else turns.at(time)
+        yield Frame(moment, news.count, contacts.copy(), glow, energy_of(log, moment.state), since, angle)
 
 
 class News:
@@ -154,6 +160,8 @@ class News:
 def energy_of(log: AnyLog, state: State) -> float:
     """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes.
 """
+    if state.spin is not None:
+        return state.energy
     mass = np.where(np.isfinite(log.scene.disks.mass), log.scene.disks.mass, 0.0)
     energy = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
     if log.scene.gravity is not None:

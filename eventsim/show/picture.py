@@ -26,7 +26,7 @@ from eventsim.show.layout import DPI, Bars, layout
 from eventsim.show.output import name_of
 from eventsim.show.overview import overview_of
 from eventsim.show.palette import DARK, LIGHT
-from eventsim.show.strokes import Trails, arrows
+from eventsim.show.strokes import Trails, arrows, spokes
 
 SMALLEST = 1.5
 """Pixels: the radius at which points, and disks too small to be seen, are drawn."""
@@ -87,6 +87,7 @@ class Picture:
         self._disks = self._disk_artist()
         self._trails = Trails(passage, trail_frames) if look.trails else None
         self._trail = self._path_artist(self._palette.trail)
+        self._spokes = self._path_artist(self._palette.edge)
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
         self._bars = Bars(self._figure, self.layout, self._palette, name_of(log))
         self._bars.draw_key(self._colouring.key)
@@ -103,6 +104,10 @@ class Picture:
                 self._axes.draw_artist(self._trail)
         self._place_disks(frame)
         self._axes.draw_artist(self._disks)
+        if frame.angle is not None:
+            place, disk = disks_with_images(frame.state.position, self._radius, self._scene)
+            self._spokes.set_path(spokes(place, frame.angle[disk], self._radius[disk]))
+            self._axes.draw_artist(self._spokes)
         if self._look.velocities:
             self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
             self._axes.draw_artist(self._arrows)

@@ -37,6 +37,13 @@ def arrows(tail: Floats, along: Floats) -> Path:
     return Path(points, codes)
 
 
+def spokes(centre: Floats, angle: Floats, radius: Floats) -> Path:
+    """Return lines from centres (N, 2) to the edges of disks at angles (N,) as one path."""
+    tip = centre + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    codes = np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=np.uint8), len(centre))
+    return Path(np.stack([centre, tip], axis=1).reshape(-1, 2), codes)
+
+
 class Trails:
     """Where the disks have been in the last frames: through the places of all contacts, so corners are sharp."""
 

@@ -58,6 +58,12 @@ LAWS: dict[str, Keys] = {
         "own": {"temperature": 1.0},
     },
     "of the user's own": lambda rng: {"restitution": Restitution(**_shares(rng)), "law": own},
+    "rough, where walls shake and heat and slide": lambda rng: {
+        "seed": int(rng.integers(2**40)),
+        "tangential_restitution": {"pair": 0.5, "wall": float(rng.uniform(-1.0, 1.0))},
+        "sides": {"bottom": {"temperature": 2.0, "velocity": 0.5}, "top": {"velocity": 1.5}, "left": {"shaking": 0.25}},
+        "own": {"velocity": -1.0},
+    },
     "rough": lambda rng: {
         "restitution": float(rng.choice([1.0, 0.9])),
         "tangential_restitution": {"pair": float(rng.choice([-0.5, 0.5, 1.0])), "wall": float(rng.choice([0.0, 1.0]))},

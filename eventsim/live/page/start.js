@@ -183,8 +183,8 @@ class LiveView {
   }
 
   _opened(header, columns) {
-    const { x, y, vx, vy, radius, mass, species } = columns;
-    const begin = () => new World({ ...header.scene, disks: { x, y, vx, vy, radius, mass } });
+    const { x, y, vx, vy, radius, mass, species, spin } = columns;
+    const begin = () => new World({ ...header.scene, disks: { x, y, vx, vy, radius, mass, spin } });
     const stage = { ...header.stage, species }, playing = this.player && this.player.playing && header.why === "resize";
     if (this.current && this.current.scene === "menu") stage.shown = [-MARGIN, -MARGIN, stage.size[0] + MARGIN, stage.size[1] + MARGIN];
     const alike = header.stage.masses[0] === header.stage.masses[1];

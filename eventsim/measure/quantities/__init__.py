@@ -15,6 +15,7 @@ from eventsim.measure.quantities import (
     paths,
     pressure,
     rates,
+    rotation,
     species,
     speeds,
     temperature,
@@ -47,6 +48,11 @@ FAMILIES = (
         "temperature_I, mean_speed_I, collision_rate_I, collision_rate_I_J (of a disk of species I)", species.measures
     ),
     Family("diffusion (d <r^2> / d 4t about the common motion; its lags; D against lag)", diffusion.measures),
+    Family(
+        "rotational_energy_start, rotational_energy_end; rotational_temperature (kT of spins); rotation_ratio (the same over\n"
+        "  kT of flights, averaged along the contacts)",
+        rotation.measures,
+    ),
     Family("cooling_exponent (-d ln T per contact of a disk)", cooling.measures),
 )
 """The table of families, in the order of the page."""

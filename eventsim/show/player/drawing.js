@@ -124,7 +124,23 @@ class Drawing {
       context.fill();
       if (edged) context.stroke();
     }
+    if (state.angle) this._drawSpokes(state);
     if (view.flash) this._drawGlow(state, view);
+  }
+
+  /* A line from the middle of each disk to its edge, which turns with it. */
+  _drawSpokes(state) {
+    const context = this.context, radii = this.world.disks.radius;
+    context.beginPath();
+    for (let i = 0; i < this.world.count; i++) {
+      const r = radii[i] * this.scale, dx = r * Math.cos(state.angle[i]), dy = -r * Math.sin(state.angle[i]);
+      for (const [ix, iy] of this._images(state.x[i], state.y[i], radii[i])) {
+        const px = this._x(ix), py = this._y(iy);
+        context.moveTo(px, py);
+        context.lineTo(px + dx, py + dy);
+      }
+    }
+    context.stroke();
   }
 
   _circle(x, y, r) {

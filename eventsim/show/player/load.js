@@ -20,8 +20,8 @@ function columnsIn(bytes, columns) {
 
 function openPlayer(root, description, text) {
   const columns = unpacked(text.trim(), description.columns);
-  const { x, y, vx, vy, radius, mass, species, ...rows } = columns;
-  const world = new World({ ...description.scene, disks: { x, y, vx, vy, radius, mass } });
+  const { x, y, vx, vy, radius, mass, species, spin, ...rows } = columns;
+  const world = new World({ ...description.scene, disks: { x, y, vx, vy, radius, mass, spin } });
   world.append(rows);
   description.stage.species = species;
   return new Player(root, world, description);

@@ -17,7 +17,7 @@ from matplotlib.colors import to_hex
 from eventsim.engines import engine_named
 from eventsim.errors import EventsimError
 from eventsim.measure.trust import UNASKED, TrustLine
-from eventsim.record.events import Column, Rows, joined
+from eventsim.record.events import SPINS, Column, Rows, has_spins, joined
 from eventsim.record.provenance import has_spin
 from eventsim.replay.log import AnyLog, EventLog
 from eventsim.replay.motion import Motion
@@ -103,12 +103,13 @@ def start_columns(motion: Motion) -> list[PackedColumn]:
     }
     columns: list[PackedColumn] = [(name, "f8", column) for name, column in start.items()]
     columns.append(("species", "i4", species_of(disks)[0]))
-    return columns
+    return columns if stage.spin is None else [*columns, ("spin", "f8", stage.spin)]
 
 
 def row_columns(rows: Rows) -> list[PackedColumn]:
     """Return what the player needs of rows."""
-    return [(name, kind, rows[name]) for name, kind in ROW_COLUMNS]
+    turning = SPINS if has_spins(rows) else ()
+    return [(name, kind, rows[name]) for name, kind in (*ROW_COLUMNS, *((name, "f8") for name in turning))]
 
 
 def described_columns(columns: Sequence[PackedColumn]) -> list[dict[str, Any]]:

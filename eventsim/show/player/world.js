@@ -25,8 +25,8 @@ class Column {
 }
 
 class World {
-  /* scene: {count, epochLength, period: [number | null, ...], gravity: [gx, gy] | null, disks: {x, y, vx, vy, radius, mass},
-     slopes: the part of gravity that is left to a disk at rest on each wall, or null where none comes to rest}. */
+  /* scene: {count, epochLength, period: [number | null, ...], gravity: [gx, gy] | null, disks: {x, y, vx, vy, radius, mass, spin},
+     slopes: the part of gravity that is left to a disk at rest on each wall, or null where none comes to rest; spin: undefined where disks have none}. */
   constructor(scene) {
     this.count = scene.count;
     this.epochLength = scene.epochLength;
@@ -35,19 +35,20 @@ class World {
     this.slopes = scene.slopes;
     this.disks = scene.disks;
     this.anchor = {};
-    for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy", "gx", "gy", "contacts"]) this.anchor[name] = new Column();
+    for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy", "gx", "gy", "contacts", "spin", "angle"]) this.anchor[name] = new Column();
     this.event = {};
     for (const name of ["time", "a", "b", "kind", "wall", "anchor"]) this.event[name] = new Column();
     this.anchorsOf = [];
     for (let i = 0; i < this.count; i++) {
       this.anchorsOf.push([]);
-      this._anchor(i, 0, 0, scene.disks.x[i], scene.disks.y[i], scene.disks.vx[i], scene.disks.vy[i], this._pull(i), 0);
+      this._anchor(i, 0, 0, scene.disks.x[i], scene.disks.y[i], scene.disks.vx[i], scene.disks.vy[i], this._pull(i), 0, scene.disks.spin ? scene.disks.spin[i] : 0, 0);
     }
     this.now = { x: new Float64Array(this.count), y: new Float64Array(this.count),
-                 vx: new Float64Array(this.count), vy: new Float64Array(this.count) };
+                 vx: new Float64Array(this.count), vy: new Float64Array(this.count),
+                 angle: scene.disks.spin ? new Float64Array(this.count) : null };
   }
 
-  /* Take up rows of the log, given as columns: epoch, remainder, a, b (-1: none), kind, wall, vxa, vya, vxb, vyb; of an engine whose
+  /* Take up rows of the log, given as columns: epoch, remainder, a, b (-1: none), kind, wall, vxa, vya, vxb, vyb; of disks with spin, spin_a, spin_b; of an engine whose
      disks do not fly free also their places, xa, ya, xb, yb. */
   append(rows) {
     for (let k = 0; k < rows.a.length; k++) {
@@ -55,8 +56,8 @@ class World {
       const rests = rows.kind[k] === REST, pull = rests ? this.slopes[rows.wall[k]] : this._pull(rows.a[k]);
       const met = rows.kind[k] <= WALL ? 1 : 0;
       this.event.anchor.push(this.anchor.time.length);
-      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull, met, rows.xa && [rows.xa[k], rows.ya[k]]);
-      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]), met, rows.xa && [rows.xb[k], rows.yb[k]]);
+      this._turn(rows.a[k], epoch, remainder, rows.vxa[k], rows.vya[k], pull, met, rows.xa && [rows.xa[k], rows.ya[k]], rows.spin_a ? rows.spin_a[k] : 0);
+      if (rows.b[k] >= 0) this._turn(rows.b[k], epoch, remainder, rows.vxb[k], rows.vyb[k], this._pull(rows.b[k]), met, rows.xa && [rows.xb[k], rows.yb[k]], rows.spin_b ? rows.spin_b[k] : 0);
       const last = this.event.time.length ? this.event.time.values[this.event.time.length - 1] : 0;
       this.event.time.push(Math.max(epoch * this.epochLength + remainder, last));
       for (const name of ["a", "b", "kind", "wall"]) this.event[name].push(rows[name][k]);
@@ -76,9 +77,10 @@ class World {
     }
   }
 
-  /* All disks at a time: {x, y, vx, vy}, arrays that the next call overwrites. At the time of an event, after it. */
+  /* All disks at a time: {x, y, vx, vy, angle}, arrays that the next call overwrites. At the time of an event, after it.
+     angle: by which disks have turned; null without spin. */
   state(time) {
-    const { x, y, vx, vy } = this.now;
+    const { x, y, vx, vy, angle } = this.now;
     for (let i = 0; i < this.count; i++) {
       const k = this.anchorsOf[i][this.anchorBefore(i, time)];
       const lag = this._lag(k, time);
@@ -86,6 +88,7 @@ class World {
       y[i] = wrapped(this._place("y", k, lag), this.period[1]);
       vx[i] = this._velocity("x", k, lag);
       vy[i] = this._velocity("y", k, lag);
+      if (angle) angle[i] = this.anchor.angle.values[k] + this.anchor.spin.values[k] * lag;
     }
     return this.now;
   }
@@ -176,15 +179,16 @@ class World {
     }
   }
 
-  _turn(i, epoch, remainder, vx, vy, pull, met, place) {
+  _turn(i, epoch, remainder, vx, vy, pull, met, place, spin) {
     const k = this.anchorsOf[i][this.anchorsOf[i].length - 1];
     const lag = (epoch - this.anchor.epoch.values[k]) * this.epochLength + (remainder - this.anchor.remainder.values[k]);
     const x = wrapped(place ? place[0] : this._place("x", k, lag), this.period[0]);
     const y = wrapped(place ? place[1] : this._place("y", k, lag), this.period[1]);
-    this._anchor(i, epoch, remainder, x, y, vx, vy, pull, this.anchor.contacts.values[k] + met);
+    this._anchor(i, epoch, remainder, x, y, vx, vy, pull, this.anchor.contacts.values[k] + met, spin,
+                 this.anchor.angle.values[k] + this.anchor.spin.values[k] * lag);
   }
 
-  _anchor(i, epoch, remainder, x, y, vx, vy, pull, contacts) {
+  _anchor(i, epoch, remainder, x, y, vx, vy, pull, contacts, spin, angle) {
     const anchor = this.anchor;
     this.anchorsOf[i].push(anchor.time.length);
     anchor.epoch.push(epoch);
@@ -194,6 +198,7 @@ class World {
     anchor.vx.push(vx); anchor.vy.push(vy);
     anchor.gx.push(pull[0]); anchor.gy.push(pull[1]);
     anchor.contacts.push(contacts);
+    anchor.spin.push(spin); anchor.angle.push(angle);
   }
 
   _lag(k, time) {

@@ -1,0 +1,75 @@
+"""Rotation: the energy of spins, and how it goes with that of flights."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from eventsim.measure import sums, theory
+from eventsim.measure.blocking import block_average
+from eventsim.measure.ensemble import Ensemble
+from eventsim.measure.entries import Expected, average, beside, dash
+from eventsim.measure.measures import Measure
+from eventsim.measure.quantities.cooling import MOST_FLOWING, flowing
+from eventsim.measure.records import FEW, Records
+
+PARTS = 16
+"""Stretches of equal numbers of contacts, of the second half of a run, whose means are averaged."""
+
+ACCURACY = 0.05
+"""Share to which theory is told: it knows neither the tails of distributions nor how spins and flights go together."""
+
+SETTLED = 3.0
+"""Decays of what a ratio begins with by the middle of a run, behind which it is averaged."""
+
+
+def measures(records: Records) -> Iterator[Measure]:
+    """Yield what there is to say of spins; nothing where disks have none."""
+    ensemble, spun = records.ensemble, records.sums.spins
+    if not len(spun) or not ensemble.n:
+        return
+    disks = ensemble.scene.disks
+    inertia = disks.moments() * np.where(ensemble.counted, disks.mass, 0.0) * disks.radius**2
+    start = 0.5 * float((inertia * disks.spins() ** 2).sum())
+    ends = {"rotational_energy_start": start, "rotational_energy_end": float(records.sums.numbers[sums.SPUN])}
+    for name, energy in ends.items():
+        yield Measure(energy, unit="energy", name=name, fixed=True)
+    if ensemble.law.keeps_energy():
+        heat = 2.0 * records.channel(sums.TURNING) / ensemble.n
+        yield average(records, "rotational_temperature", heat, records.time, "energy", remembered=True)
+    if ensemble.law.grips[0]:
+        yield _ratio(records)
+
+
+def _ratio(records: Records) -> Measure:
+    """kT of spins over kT of flights, averaged over the second half of the contacts."""
+    ensemble, count = records.ensemble, int(records.sums.counts[sums.POINTS])
+    points = records.sums.points[count - count // 2 : count]
+    whole = len(points) // PARTS * PARTS
+    if whole < PARTS:
+        return dash("rotation_ratio", "1", f"it is told from {2 * PARTS} stretches of contacts on")
+    flights = np.array([ensemble.temperature(float(e)) for e in points[-whole:, sums.POINT_ENERGY]])
+    if not (flights > 0.0).all():
+        return dash("rotation_ratio", "1", "rounding leaves no digits of the energy of flights")
+    ratios = 2.0 * points[-whole:, sums.POINT_TURNING] / ensemble.n / flights
+    bar = block_average(ratios.reshape(PARTS, -1).mean(axis=1))
+    contacts = 2.0 * (count - whole) * int(records.sums.counts[sums.STRIDE]) / ensemble.n
+    error = bar.error if bar.error > 0.0 else math.nan
+    entry = Measure(bar.mean, error, unit="1", name="rotation_ratio", blocks=bar.blocks)
+    return beside(entry, _expected(ensemble, contacts))
+
+
+def _expected(ensemble: Ensemble, contacts: float) -> Expected | None:
+    """The ratio in a homogeneous gas that has had so many contacts of a disk; None where theory does not speak of it."""
+    law, disks = ensemble.law, ensemble.scene.disks
+    moments = np.unique(disks.moments()[ensemble.counted])
+    plain = not law.by_speed and law.pairs is None and law.duration is None and ensemble.scene.gravity is None
+    alone = ensemble.torus and ensemble.alone and ensemble.equal and ensemble.n >= FEW and len(moments) == 1
+    if not plain or not alone or law.rough is None or ensemble.kicked:
+        return None
+    ratio, decay, loss = theory.rotation_ratio(law.pair, law.rough.pair, float(moments[0]))
+    if decay * contacts < SETTLED or flowing(ensemble, 2.0 * contacts, loss) > MOST_FLOWING:
+        return None
+    return Expected(ratio, ACCURACY * ratio, "Luding et al. 1998, homogeneous")

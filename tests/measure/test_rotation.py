@@ -1,0 +1,119 @@
+"""Spins in measures: their energy, their temperature, and how it goes with that of flights."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import eventsim as es
+from eventsim.engines.base import Stop
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.measure import Meter, measure, sums
+from eventsim.measure.compiled import PLAIN, kernels
+from eventsim.measure.theory import rotation_ratio
+from eventsim.scene.gallery import gallery
+from eventsim.scene.stage import stage_of
+
+
+def rotational(scene, spins):
+    disks = scene.disks
+    return 0.5 * float((disks.moments() * disks.mass * disks.radius**2 * spins**2).sum())
+
+
+def test_energies_of_spins_are_those_of_the_states():
+    scene = gallery("rough", n=36, spin=2.0)
+    run = es.simulate(scene, events=200, engine="reference", log=True)
+    found = measure(run.log)
+    assert found["rotational_energy_start"].value == pytest.approx(rotational(scene, scene.disks.spins()), rel=1e-12)
+    assert found["rotational_energy_end"].value == pytest.approx(rotational(scene, run.state.spin), rel=1e-12)
+
+
+def test_the_rotational_temperature_is_the_mean_over_time():
+    scene = gallery("rough", n=36, roughness=1.0)
+    run = es.simulate(scene, events=400, engine="reference", log=True)
+    found = measure(run.log, 0.0)
+    times = np.array([scene.start_time, *run.log.time, run.time])
+    # the energy is a step function: its value after each event, for as long as that lasts
+    energies = [rotational(scene, run.state_at(t).spin) for t in times[:-1]]
+    mean = float(np.sum(np.diff(times) * energies)) / (run.time - scene.start_time)
+    assert found["rotational_temperature"].value == pytest.approx(2.0 * mean / 36, rel=1e-9)
+
+
+def test_a_scene_without_spins_has_no_word_of_them():
+    run = es.simulate(gallery("gas", n=16), events=100, engine="reference", log=True)
+    assert not [name for name in measure(run.log).by_name if name.startswith("rotation")]
+
+
+@pytest.mark.slow  # it is compiled
+def test_plain_python_and_machine_code_sum_spins_alike():
+    pytest.importorskip("numba")
+    scene = gallery("rough", n=49)
+    log = es.simulate(scene, events=300, engine="reference", log=True).log
+    told = np.stack([log.spin_a, log.spin_b], axis=1)
+    block = sums.Block(log.epoch * log.provenance.epoch_length + log.remainder, *(log.rows[n] for n in sums.Block._fields[1:]))
+    held = []
+    for kernel in (PLAIN, kernels(1 << 20)):
+        meter = Meter(scene)
+        meter._scales(float(block.time[-1]), len(log))
+        kernel.hold_all(meter._plan, meter._sums, 0.0)
+        assert kernel.take(block, 0, meter._plan, meter._sums, told) == len(log)
+        held.append(meter._sums)
+    assert held[0].numbers[sums.SPUN] > 0.0
+    for one, other in zip(*held, strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_perfectly_rough_disks_share_alike():
+    assert [rotation_ratio(1.0, 1.0, q)[0] for q in (0.25, 0.5, 1.0)] == pytest.approx([1.0] * 3, rel=1e-12)
+    assert rotation_ratio(1.0, -1.0, 0.5)[0] == 0.0  # what never turns stays as cold as it is
+
+
+def test_the_ratio_is_told_beside_theory():
+    run = es.simulate(gallery("rough"), engine="reference", log=True)
+    ratio = measure(run.log)["rotation_ratio"]
+    assert ratio.theory == pytest.approx(rotation_ratio(1.0, 0.5, 0.5)[0])
+    assert abs(ratio.value - ratio.theory) < 4.0 * math.hypot(ratio.error, 0.05 * ratio.theory)
+    assert measure(es.simulate(gallery("rough"), events=600, engine="reference", log=True).log)["rotation_ratio"].theory is None
+
+
+def followed(restitution, tangential, n, seed, contacts):
+    """kT of spins over kT of flights of a homogeneous gas that begins without spins, after so many contacts of a disk each."""
+    dense = gallery("rough", n=n, restitution=restitution, roughness=tangential, seed=seed)
+    session = ReferenceSession(stage_of(replace(dense, restitution=None, tangential_restitution=None)))
+    session.advance(Stop(events=4 * n), 10**9)  # places of equilibrium
+    motion = session.motion()
+    disks = dense.disks.begun_at(np.stack([motion.x, motion.y], axis=1), np.stack([motion.vx, motion.vy], axis=1))
+    session = ReferenceSession(stage_of(replace(dense, disks=disks)))
+    ratios = []
+    for s in contacts:
+        session.advance(Stop(events=round(s * n / 2)), 10**9)
+        motion = session.motion()
+        flights = float((motion.vx**2 + motion.vy**2).sum()) / 2.0
+        ratios.append(float((dense.disks.moments() * (dense.disks.radius * motion.spin) ** 2).sum()) / flights)
+    return ratios
+
+
+def in_theory(restitution, tangential, moment, contacts):
+    """The same, from the two linear equations of the theory: the ratio relaxes as a Riccati equation."""
+    h = moment * (1.0 + tangential) / (2.0 * (1.0 + moment))
+    a = (1.0 - restitution**2) / 4.0 + h * (1.0 - h) / 2.0
+    b, c = h * h / (2.0 * moment), h * (1.0 - h / moment) / (2.0 * moment)
+    rates, states = np.linalg.eig(np.array([[-2.0 * a, 2.0 * b], [4.0 * b, -4.0 * c]]))
+    begun = np.linalg.solve(states, [1.0, 0.0])
+    flights, spins = (states[:, :, None] * (begun[:, None] * np.exp(np.outer(rates, contacts)))[None]).sum(axis=1)
+    return spins / flights
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("restitution", "tangential"), [(1.0, 0.5), (0.99, -0.5), (0.95, 0.0), (1.0, 1.0)])
+def test_spins_warm_up_as_the_theory_of_rough_cooling_says(restitution, tangential):
+    """Within 5 %: N = 2000 at eta = .2, four starts; until shear modes grow, 8 contacts of a disk."""
+    contacts, n, starts = (2.0, 4.0, 6.0, 8.0), 2000, 4
+    ratios = np.array([followed(restitution, tangential, n, seed, contacts) for seed in range(starts)])
+    mean, bar = ratios.mean(axis=0), ratios.std(axis=0, ddof=1) / math.sqrt(starts)
+    theory = in_theory(restitution, tangential, 0.5, contacts)
+    print(f"e = {restitution}, beta = {tangential}: {mean.round(4)} +- {bar.round(4)}, theory {theory.round(4)}")
+    # a bar of four starts is itself known to 40 %: the scatter of N spins, sqrt(3 / N) for each, is what chance may do
+    assert np.all(np.abs(mean / theory - 1.0) < 0.05 + 2.0 * math.sqrt(3.0 / (n * starts)))
+    assert np.mean(np.abs(mean / theory - 1.0)) < 0.05
