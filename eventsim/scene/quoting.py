@@ -20,6 +20,7 @@ HEADER = re.compile(r"\s*(\[\[?)\s*([\w.\"'-]+)\s*\]")
 KEY = re.compile(r"\s*([\w-]+)\s*=\s*")
 INNER = re.compile(r"[{,]\s*([\w-]+)\s*=\s*")
 PATH = re.compile(r"(?P<table>[\w-]+(?:\[\d+\])?)(?:\.(?P<key>[\w-]+))?(?:\[\d+\])*(?P<rest>: | = | is missing)")
+GUESS = re.compile(r"unknown key \((?:did you mean \"(\w+)\"\?|known here: [^)]*)\)")
 CHOICE = re.compile(r"(?P<table>\w+\[\d+\]): (?:needs|has both) (?P<key>\w+)")
 
 
@@ -91,7 +92,15 @@ def with_lines(error: SceneError, text: str, data: Mapping[str, Any], settings: 
         return error
     places, lines = places_in(text), text.split("\n")
     typed = {re.sub(r"\.(\d+)", r"[\1]", setting.partition("=")[0].strip()): setting for setting in settings}
-    return SceneError(problem + "".join(_quotes(problem, places, lines, data, typed)) for problem in error.problems)
+    return SceneError(_with_quotes(problem, list(_quotes(problem, places, lines, data, typed))) for problem in error.problems)
+
+
+def _with_quotes(problem: str, quotes: list[str]) -> str:
+    """A problem with its quoted lines; what these propose is not guessed as well."""
+    told = "".join(quotes)
+    if "\n    write:" in told:
+        problem = GUESS.sub(lambda guess: guess[0] if guess[1] and guess[1] in told else "unknown key", problem)
+    return problem + told
 
 
 def _quotes(

@@ -176,6 +176,13 @@ def _alias(table: str, word: str) -> str | None:
     return next((key for key, words in ALIASES.get(table, {}).items() if word in words.split()), None)
 
 
+def meant(word: str) -> str:
+    """The key that a word means in whatever table, the word itself where it is no other name of any."""
+    if word in EXAMPLES:
+        return word
+    return next((right for table in ALIASES if (right := _alias(table, word)) is not None), word)
+
+
 def _line(table: str, key: str, value: Any) -> str:
     """A line with a key, its value mended where that is needed."""
     mended = None if _fits(key, value) else _of_value(table, key, value)

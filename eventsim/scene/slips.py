@@ -12,7 +12,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from eventsim.scene.quoting import HEADER, quoted
-from eventsim.scene.remedies import EXAMPLES, LISTS, PAIRS, TEXTS, WHOLES, written
+from eventsim.scene.remedies import EXAMPLES, LISTS, PAIRS, TEXTS, WHOLES, meant, written
 
 LONGEST = 1 << 20
 """Letters of a file that is read again with a line mended."""
@@ -147,7 +147,7 @@ def _key_of(line: str) -> str:
 def _mended(lines: list[str], number: int) -> Iterator[tuple[str, str]]:
     """What may be wrong with a line, and the line without it."""
     line = lines[number - 1]
-    key = _key_of(line)
+    key = meant(_key_of(line))
     for slip in SLIPS:
         if (right := slip.mend(line, key)) != line:
             yield slip.why, right

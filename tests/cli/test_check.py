@@ -98,7 +98,7 @@ def test_an_outcome_that_hangs_on_the_last_bit_is_told(eventsim):
 
 
 def test_all_problems_come_at_once(eventsim, scene_file):
-    scene_file.write_text(scene_file.read_text().replace("radius = 0.25", "radius = -1.0\nspin = 2"))
+    scene_file.write_text(scene_file.read_text().replace("radius = 0.25", "radius = -1.0\nswirl = 2"))
     result = eventsim("check", scene_file)
     assert result.exit_code == 2
     assert result.stdout == ""

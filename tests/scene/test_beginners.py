@@ -181,3 +181,21 @@ def test_every_key_of_a_scene_has_an_example():
         for key in schema.schema
     }
     assert keys <= EXAMPLES.keys()
+
+
+def test_a_proposal_stands_alone_without_a_guess_that_says_otherwise(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE.replace("restitution = 0.9\n", "").replace("radius = 0.05", "radius = 0.05\nrestitution = 0.5"))
+    with pytest.raises(SceneError) as error:
+        load_scene(path)
+    assert "it stands above the first table" in str(error.value)
+    assert "did you mean" not in str(error.value)
+    assert "known here" not in str(error.value)
+
+
+def test_two_numbers_behind_another_name_of_a_key_are_put_in_brackets(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE.replace("position = [0.3, 0.8]", "pos = 0.3, 0.8"))
+    with pytest.raises(SceneError) as error:
+        load_scene(path)
+    assert "write:   pos = [0.3, 0.8]" in str(error.value)
