@@ -46,10 +46,6 @@ class Species(NamedTuple):
     name: str = ""
 
 
-SMOOTH = -1.0
-"""The tangential restitution that gives nothing along surfaces."""
-
-
 @dataclass(frozen=True)
 class Ensemble:
     """The disks of a scene as statistical mechanics sees them.
@@ -130,21 +126,17 @@ class Ensemble:
         return bool((np.isinf(disks.mass) & (disks.velocity != 0.0).any(axis=1)).any())
 
     @property
-    def turned(self) -> bool:
-        """Whether contacts turn motion into spin and spin into motion."""
-        rough = self.law.rough
-        return rough is not None and not (rough.pair == rough.wall == SMOOTH)
-
-    @property
     def conserved(self) -> bool:
         """Whether the kinetic energy of the motion never changes."""
-        return self.elastic and not self.turned and not self.kicked and not self.pushed and self.scene.gravity is None
+        return self.elastic and not self.kicked and not self.pushed and self.scene.gravity is None
 
     @cached_property
     def unsteady(self) -> str | None:
         """Why no equilibrium can be reached, a clause; None where it can: elastic, not driven, and held together."""
         if self.kicked:
             return "kicks change the energy"
+        if self.law.drives:
+            return "walls heat, shake or slide"
         if not self.elastic:
             return "contacts turn disks, and spins take energy and give it" if any(self.law.grips) else "contacts take energy"
         if self.pushed:
@@ -169,8 +161,6 @@ class Ensemble:
             return "tracers carry no energy"
         if self.unsteady is not None:
             return self.unsteady
-        if self.turned:
-            return "rough disks share their energy with their spins, which are not measured"
         if self.n == 1:
             return "one disk shares its energy with nobody"
         if self.drowned:
@@ -207,14 +197,13 @@ class Ensemble:
     @property
     def simple(self) -> bool:
         """Whether theory for a homogeneous gas applies: alone, elastic, without gravity, held."""
-        return self.alone and self.steady and not self.turned and self.scene.gravity is None
+        return self.alone and self.steady and self.scene.gravity is None
 
     @property
     def billiard(self) -> bool:
         """Whether those who move never meet: tracers alone, or one disk, flying straight among what stands still."""
         movers = self.n if self.n else 0 if self.tracers is None else self.species[self.tracers].number
-        still = self.steady and not self.turned and self.scene.gravity is None
-        return (self.n == 0 or movers == 1) and movers > 0 and still
+        return (self.n == 0 or movers == 1) and movers > 0 and self.steady and self.scene.gravity is None
 
     @cached_property
     def integrable(self) -> bool:

@@ -238,7 +238,7 @@ def test_another_opponent_knows_restitution_and_gravity(page, opponent):
     page.wait("live.player.comparison && live.player.duration > 0.5")
     page.js("live.player.seek(0.4)")
     assert {"stepped": "fixed steps", "pymunk": "Chipmunk"}[opponent] in page.js("return live.part('differences').textContent")
-    assert "contact_duration 0.02" in page.js("return live.part('settings').textContent")
+    assert "a contact within 0.02 of a disk's previous one is elastic" in page.js("return live.part('settings').textContent")
     assert "contact_duration" in page.js("return live.part('exact').textContent")
     assert page.js("return live.menu.field('opponent').value") == opponent
 

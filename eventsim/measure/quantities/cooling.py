@@ -34,6 +34,8 @@ def measures(records: Records) -> Iterator[Measure]:
     ensemble = records.ensemble
     if not ensemble.n or ensemble.elastic or ensemble.kicked or ensemble.pushed or ensemble.scene.gravity is not None:
         return
+    if ensemble.law.drives:
+        return
     if ensemble.walls_take:
         yield dash("cooling_exponent", UNIT, "walls take energy as well, as often as disks come to them")
         return
