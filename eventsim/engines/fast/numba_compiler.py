@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import math
 import os
@@ -20,6 +21,7 @@ from numba import cfunc, config, njit, types
 from numba.core import event
 from numba.extending import overload, register_jitable
 
+from eventsim.engines.fast.numba_parts import KernelCompiler, PartCompiler
 from eventsim.errors import LogError
 from eventsim.formulas import (
     careful_impulse,
@@ -124,6 +126,7 @@ class _Watcher(event.Listener):
         self._note = note
         self._depth = 0
         self._began = 0.0
+        self._collects = False
 
     def on_start(self, event: Any) -> None:
         if self._depth == 0:
@@ -132,12 +135,16 @@ class _Watcher(event.Listener):
                 print("compiling the fast engine (once) ...", file=sys.stderr)
             _Watcher.told = True
             _Watcher.at_work += 1
+            self._collects = gc.isenabled()
+            gc.disable()  # nothing of what a compiler makes is garbage before it is done; looking takes a tenth of its time
         self._depth += 1
 
     def on_end(self, event: Any) -> None:
         self._depth -= 1
         if self._depth == 0:
             _Watcher.at_work -= 1
+            if self._collects:
+                gc.enable()
             self._note(perf_counter() - self._began)
 
 
@@ -160,7 +167,13 @@ def _widened(kind: Any) -> Any:
     return types.unliteral(kind)
 
 
-_PART: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
+_PART: dict[str, Any] = {
+    "error_model": "numpy",
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "_nrt": False,
+    "pipeline_class": PartCompiler,
+}
 """For what kernels alone call, and what allocates nothing: without these, machine code that nobody uses is made, too."""
 
 inline = partial(_once, njit(forceinline=True, **_PART))
@@ -173,16 +186,16 @@ part = partial(_once, njit(**_PART))
 
 def kernel(function: Callable[..., Any]) -> Any:
     """A compiled function that Python calls; kept on disk where that is possible.  Other threads go on meanwhile."""
-    return _kept(partial(njit, nogil=True, _nrt=False), function)
+    return _kept(partial(njit, nogil=True, _nrt=False, no_cfunc_wrapper=True), function)
 
 
 def _kept(compiler: Callable[..., Any], function: Callable[..., Any], *signature: Any) -> Any:
     before = config.CACHE_DIR
     config.CACHE_DIR = str(_FOLDER)  # read when the function is decorated; the caller's own setting is left alone
     try:
-        kept = compiler(*signature, error_model="numpy", cache=True)(function)
+        kept = compiler(*signature, error_model="numpy", cache=True, pipeline_class=KernelCompiler)(function)
     except RuntimeError:  # no folder to write to
-        return compiler(*signature, error_model="numpy")(function)
+        return compiler(*signature, error_model="numpy", pipeline_class=KernelCompiler)(function)
     finally:
         config.CACHE_DIR = before
     name_apart(kept)
