@@ -25,7 +25,7 @@ from eventsim.engines.fast.loop import pointers
 from eventsim.engines.fast.pairs import images, pair_is_due
 from eventsim.engines.fast.predict import corner_slot, number_sought
 from eventsim.engines.fast.rest import border_contact
-from eventsim.engines.fast.single_disk_events import shape_time
+from eventsim.engines.fast.single_disk_events import shape_near, shape_time, shapes_near
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.rest import STRUCK
 
@@ -46,7 +46,7 @@ def contacts_between(arrays, grid, rules, counts, first, latest, found, times):
         while i != grid.n:
             if first <= real(m.disks, i * REALS + DUE) <= latest:
                 count = _pairs_between(m, grid, rules, i, span, found, times, count, m.slots, grid.levels)
-                count = _shapes_between(m, rules, i, span, found, times, count, rules.features)
+                count = _shapes_between(m, grid, rules, i, span, found, times, count, rules.features)
                 count = _walls_between(m, grid, rules, i, span, found, times, count)
             i = word(m.disks, i * WORDS + NEXT)
     return count
@@ -116,10 +116,12 @@ def _pairs_of_everyone(m, grid, rules, i, span, found, times, count):
 
 
 @inline
-def _shapes_between(m, rules, i, span, found, times, count, features):
+def _shapes_between(m, grid, rules, i, span, found, times, count, features):
     if features is None:
         return count
-    for k in range(features):
+    begin, end = shapes_near(m, home_of(m, grid, i), i, features, m.near_walls)
+    for item in range(begin, end):
+        k = shape_near(item, m.near_walls)
         time, side, how = shape_time(m, rules, i, k, m.supports)
         count = _add(span, found, times, count, time, i, -1 - (rules.first_feature + k), side, how)
     return count

@@ -75,7 +75,8 @@ class Arrays(NamedTuple):
     (`scene.sides`); images: see `rules.images_of`.  levels: the table of `cells`.  shares: see
     `rules.shares_of`.  species: of each disk; pairs: see
     `rules.pairs_of`.  draws: how often each disk asked chance.  rows: the log's buffer, bytes.  spin: the angular velocity
-    and the moment of each disk; spin_rows: what rows have of spins, two numbers each.
+    and the moment of each disk; spin_rows: what rows have of spins, two numbers each.  near_walls: see
+    `wall_cells.shapes_in_cells`.
     """
 
     disks: object
@@ -96,6 +97,7 @@ class Arrays(NamedTuple):
     rows: object
     spin: object
     spin_rows: object
+    near_walls: object
 
 
 class Rules(NamedTuple):

@@ -95,6 +95,7 @@ def pointers(a):
         pointer(a.rows),
         pointer(a.spin),
         pointer(a.spin_rows),
+        pointer(a.near_walls),
     )
 
 

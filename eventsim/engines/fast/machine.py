@@ -266,6 +266,7 @@ class Machine:
                 self._buffer.view(np.uint8) if self.keep_rows else None,
                 None if state.turning is None else state.turning.reshape(-1),
                 self._spins,
+                self.grids.near_walls(),
             )
             full = fill(self.arrays, self.grid, self.rules, now)
             if full < 0:

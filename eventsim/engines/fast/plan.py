@@ -12,6 +12,7 @@ from eventsim.engines.base import Motion
 from eventsim.engines.fast.cells import WIDTH
 from eventsim.engines.fast.columns import Integers, aligned
 from eventsim.engines.fast.layout import USUAL_DEPTH, Grid
+from eventsim.engines.fast.wall_cells import MANY_SHAPES, shapes_in_cells
 from eventsim.engines.reference.cells import MARGIN
 from eventsim.record.events import Floats
 from eventsim.scene.stage import Stage
@@ -73,26 +74,25 @@ def cell_sizes(
     classes: the largest radius on each level.  None where a period is too short for cells: everyone looks at everyone.  On the
     open plane the grids cover three times the extent of the disks, and their outer cells all the rest.
     """
-    if stage.size is None:
-        low, size = _around(x, y)
-    else:
-        low, size = (0.0, 0.0), stage.size
+    low, size = _ground(stage, x, y)
     level = levels_of(stage, classes)
     grids: list[Sizes] = []
     for k in range(len(classes)):
         radius = stage.radius[level == k]
         if k == 0:
-            grids.append(_finest(low, size, radius, depths.get(k, USUAL_DEPTH)))
+            shapes = len(stage.features) if len(classes) == 1 else 0
+            grids.append(_finest(low, size, radius, depths.get(k, USUAL_DEPTH), shapes))
         else:
             grids.append(_coarser(low, size, stage.period, radius, grids, depths.get(k, DEEP)))
     return tuple(grids) if _images_are_clear(stage, grids) else None
 
 
-def _finest(low: Pair, size: Pair, radius: Floats, depth: int) -> Sizes:
-    """The grid for most of the disks: as narrow as the reach of two of them allows, or as wide as they are apart."""
+def _finest(low: Pair, size: Pair, radius: Floats, depth: int, shapes: int) -> Sizes:
+    """The grid for most of the disks: as narrow as two of them reach, or as wide as they, or many shapes, are apart."""
     largest = float(radius.max())
     least = 2.0 * largest * MARGIN
-    spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(len(radius))
+    number = max(len(radius), shapes) if shapes >= MANY_SHAPES else len(radius)
+    spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(number)
     if not spacing > 0.0:
         spacing = least or 1.0
     wide = max(least, 1e-6 * max(size))
@@ -130,7 +130,7 @@ def _images_are_clear(stage: Stage, grids: list[Sizes]) -> bool:
     On a single level neighbouring cells hold them.  On several a disk flies no further along an axis, until it is predicted
     again, than the finest cells are wide.
     """
-    finest, longest = grids[0], float(np.partition(stage.radius, -2)[-2:].sum()) * MARGIN
+    finest, longest = grids[0], float(np.sort(stage.radius)[-2:].sum()) * MARGIN
     for count, side, length in zip((finest.columns, finest.rows), finest.side, stage.period, strict=True):
         if length is not None and count < FEWEST_COLUMNS:
             return False
@@ -159,6 +159,18 @@ def classes_of(stage: Stage) -> tuple[float, ...]:
 def levels_of(stage: Stage, classes: tuple[float, ...]) -> NDArray[np.int64]:
     """(n,) the level of each disk, by the largest radii on each level."""
     return np.searchsorted(classes, stage.radius)
+
+
+def _ground(stage: Stage, x: Floats, y: Floats) -> tuple[Pair, Pair]:
+    """Corner and size of what cells for centres at (x, y) cover; with many shapes their own ground, on the open plane."""
+    if stage.size is not None:
+        return (0.0, 0.0), stage.size
+    if len(stage.features) >= MANY_SHAPES:
+        x = np.append(x, [one.shape.x for one in stage.features])
+        y = np.append(y, [one.shape.y for one in stage.features])
+        low = float(x.min()), float(y.min())
+        return low, (float(np.ptp(x)) or 1.0, float(np.ptp(y)) or 1.0)
+    return _around(x, y)
 
 
 def _around(x: Floats, y: Floats) -> tuple[Pair, Pair]:
@@ -221,11 +233,11 @@ def in_memory(stage: Stage) -> NDArray[np.int64]:
 
 def cells_of_posts(stage: Stage, x: Floats, y: Floats, posts: NDArray[np.bool_]) -> tuple[Sizes, ...] | None:
     """The cells for posts at (x, y), which alone are in the slots; None where there are few, or a period is too short."""
-    number = int(posts.sum())
+    number = max(int(posts.sum()), len(stage.features))
     if number < FEW_DISKS:
         return None
-    low, size = _around(x[posts], y[posts]) if stage.size is None else ((0.0, 0.0), stage.size)
-    reach = float(stage.radius[posts].max() + stage.radius[~posts].max(initial=0.0)) * MARGIN
+    low, size = _ground(stage, x[posts], y[posts])
+    reach = float(stage.radius[posts].max(initial=0.0) + stage.radius[~posts].max(initial=0.0)) * MARGIN
     wide = max(reach, 1e-6 * max(size), math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(number))
     columns, rows = (max(1, int(length / wide)) for length in size)
     sizes = (Sizes(low, columns, rows, (size[0] / columns, size[1] / rows), DEEP),)
@@ -249,9 +261,11 @@ class Grids:
         self._stage = stage
         self._depths: dict[int, int] = {}
         self._given: tuple[Sizes, ...] | None = None
-        self._chooses = isinstance(wanted, str) and stage.n >= FEW_DISKS
+        self._chooses = isinstance(wanted, str) and (stage.n >= FEW_DISKS or len(stage.features) >= MANY_SHAPES)
         self._still = posts_of(stage)
         self.posts: int | None = None
+        self._many_shapes = len(stage.features) >= MANY_SHAPES
+        self._listed: tuple[Sizes, Integers] | None = None
         if not (wanted is None or isinstance(wanted, str)):
             self._given = (wanted,) if isinstance(wanted, Sizes) else wanted
         self._classes = classes_of(stage) if self._chooses else (float(stage.radius.max()),)
@@ -280,6 +294,15 @@ class Grids:
         self._depths[level] = 2 * sizes[level].depth
         sizes[level] = sizes[level]._replace(depth=self._depths[level])
         self.sizes = tuple(sizes)
+
+    def near_walls(self) -> Integers | None:
+        """The table of `wall_cells`; None with few shapes, without cells, and on several levels."""
+        if not self._many_shapes or self.sizes is None or len(self.sizes) > 1:
+            return None
+        size = self.sizes[0]._replace(depth=0)
+        if self._listed is None or self._listed[0] != size:
+            self._listed = size, shapes_in_cells(self._stage, size)
+        return self._listed[1]
 
     @property
     def level(self) -> Integers:

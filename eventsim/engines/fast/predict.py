@@ -65,7 +65,7 @@ def predict(m, grid, rules, i, now, floor):
         time, code = crossing(m, home, rules, i, now, x, y, u, w, rules.gx)
         shared = 0
     time, code, shared = _look(m, grid, rules, i, now, u, w, time, code, shared, grid.levels)
-    time, code, shared = earliest_at_shapes(m, rules, i, floor, time, code, shared, rules.features)
+    time, code, shared = earliest_at_shapes(m, home, rules, i, floor, time, code, shared, rules.features)
     contacts = either(m.slots, contacts_in_cells, contacts_of_everyone)
     time, code, shared = contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
     shared = _or_for_rules(m, rules, i, code, time, shared, m.supports, rules.still)

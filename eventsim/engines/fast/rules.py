@@ -72,7 +72,7 @@ def law_in_kernels(law: Law) -> Numbers | None:
 def kind_of(stage: Stage, grids: Grids, keep_rows: bool) -> str:
     """A name for what kernels are compiled for: scenes of one kind, in cells of one kind, share theirs."""
     law = (shares_of(stage), stage.law.pairs, *(stage.law.numbers() or ()))
-    asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None]
+    asked = [keep_rows, stage.low_parts, stage.points, grids.sizes is not None, grids.near_walls() is not None]
     wanted = (True if want else None for want in asked)
     rules = rules_of(stage)
     needs = [*rules, *rules.shapes, *grids.grid(None), stage.mass, stage.supports, stage.spin, *wanted, *law]

@@ -136,16 +136,33 @@ def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, s
 
 
 @inline
-def earliest_at_shapes(m, rules, i, floor, time, code, shared, features):
+def earliest_at_shapes(m, grid, rules, i, floor, time, code, shared, features):
     """The earliest contact with a wall shape, if that is before the given event."""
     if features is None:
         return time, code, shared
-    for k in range(features):
+    begin, end = shapes_near(m, grid, i, features, m.near_walls)
+    for item in range(begin, end):
+        k = shape_near(item, m.near_walls)
         new, side, _ = shape_time(m, rules, i, k, m.supports)
         if new >= floor:
             wall = WALL - 2 * (rules.first_feature + k) - (1 if side < 0 else 0)
             time, code, shared = earlier(time, code, shared, new, wall, rules.tie_screen)
     return time, code, shared
+
+
+@inline
+def shapes_near(m, grid, i, features, near):
+    """Where the list of the shapes that disk i can meet in its cell begins and ends."""
+    if near is None:
+        return 0, features
+    cell = word(m.disks, i * WORDS + COLUMN) - 1 + grid.columns * (word(m.disks, i * WORDS + ROW) - 1)
+    return word(near, cell), word(near, cell + 1)
+
+
+@inline
+def shape_near(item, near):
+    """The shape at a place of such a list."""
+    return item if near is None else word(near, item)
 
 
 @part
