@@ -14,7 +14,8 @@ from eventsim.engines.exact_times import ExactTimes
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
 from eventsim.formulas.roots import Line
-from eventsim.formulas.walls.point import closeness, hand, is_point
+from eventsim.formulas.walls.boundary import Boundary
+from eventsim.formulas.walls.point import closeness, hand, is_near, is_point
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Thin
 from eventsim.scene.stage import Stage
@@ -26,6 +27,7 @@ class Aimed:
     def __init__(self, stage: Stage, state: ExactState) -> None:
         self._state = state
         self._radius = stage.radius.tolist()
+        self._surfaces = stage.surfaces
         self._moments = ExactTimes(stage, state)
         ends: dict[tuple[float, float], float] = {}
         for feature in stage.features if stage.points else ():
@@ -41,7 +43,7 @@ class Aimed:
         if self._ends:
             for event in generation:
                 for i in disks_of(event):
-                    if self._is_rounded(i) and (end := self._doubtful_end(i, event.time)) is not None:
+                    if self._is_rounded(i) and (end := self._doubtful_end(i, event)) is not None:
                         return _sentence(i, end)
         return None
 
@@ -50,15 +52,21 @@ class Aimed:
         state = self._state
         return state.is_as_at_start(i) and bool(state.epoch > 0 or state.wraps_x[i] != 0 or state.wraps_y[i] != 0)
 
-    def _doubtful_end(self, i: int, t: float) -> tuple[float, float] | None:
-        """The end of a wall that the present flight of disk i passes until t on another side than the exact one; None without."""
-        s = self._state
+    def _doubtful_end(self, i: int, event: Event) -> tuple[float, float] | None:
+        """The end of a wall that disk i passes until a contact on another side than in its exact flight; None without.
+
+        An end on a side of the domain does not matter to who meets that side there.
+        """
+        s, t = self._state, event.time
+        at_border = event.b < 0 and isinstance(self._surfaces[-1 - event.b], Boundary)
         flight = s.x[i], s.y[i], s.vx[i], s.vy[i], s.gravity_x[i], s.gravity_y[i]
         (x, y), (u, w) = s.place(i, t), s.speed(i, t)
         lines = self._moments.lines(i)
         for (px, py), size in self._ends:
             close = closeness(size, x, y, u, w, t)
             if not is_point(self._radius[i], size) or not _is_between(flight, (x, y), (px, py), close):
+                continue
+            if at_border and is_near(px, py, x, y, close):
                 continue
             told = hand(*flight, px, py, u, w)
             if _sign(told) != _exact_hand(lines, px, py, u, w):
