@@ -19,7 +19,7 @@ A coordinate apart carries those of two products u lag, two sums x + u lag, the 
 halves of a last bit.  There are two coordinates, c and D round a few times more, and two times are compared.
 """
 
-SLOW = 2.0**-6
+SLOW = 2.0**-12
 """Contacts that close at this part of the slowest disk's speed, or faster, are within the screen."""
 
 GLANCES = 2.0**-12

@@ -113,3 +113,15 @@ def test_a_kick_ends_what_the_starting_floats_say(engine):
     sim.set_velocity(0, (1.0, 0.0))
     sim.advance_to(3.0)
     assert sim.log.joint.tolist()[2:4] == [-1, -1]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_tie_is_seen_where_all_fly_a_thousand_times_faster_than_they_close(engine):
+    """Mirror images fly beside each other; a spectator between two walls turns the clock, which rounds their places."""
+    places = [(0.0, 0.0), (1.0356054597480155, 0.7819657483600345), (1.0356054597480155, -0.7819657483600345), (50.0, 50.0)]
+    velocities = [(0.206142029595752, 512.0), (0.0, 512.0), (0.0, 512.0), (0.0, 500.0)]
+    walls = [es.Segment((48.0, y), (52.0, y)) for y in (47.0, 53.0)]
+    disks = es.Disks(places, velocities, [0.5, 0.5, 0.5, 0.25])
+    run = es.simulate(es.Scene(disks, es.Open(), walls, restitution=0.5), until=2.5, engine=engine, log=True)
+    assert run.counters.clusters == 1
+    assert run.state.velocity[0, 1] == 512.0
