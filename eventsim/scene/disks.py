@@ -209,8 +209,8 @@ def join(parts: list[Disks]) -> Disks:
         np.concatenate([part.radius for part in parts]),
         np.concatenate([part.mass for part in parts]),
         np.concatenate([_named(part) for part in parts]) if named else None,
-        np.concatenate([part.spins() for part in parts]),
-        np.concatenate([part.moments() for part in parts]),
+        np.concatenate([part.spins() for part in parts]) if any(part.spin is not None for part in parts) else None,
+        np.concatenate([part.moments() for part in parts]) if any(part.moment is not None for part in parts) else None,
     )
 
 

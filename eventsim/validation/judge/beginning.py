@@ -42,7 +42,9 @@ def scene_at(scene: Scene, first: float) -> Scene:
 
 
 def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
-    """The samples on the scene's axes, from its start on; EventsimError where they are of another scene."""
+    """The samples on the scene's axes, from its start on; EventsimError where they are of another scene, or its disks spin."""
+    if stage.law.rough is not None:
+        raise EventsimError("the disks of this scene spin: places and velocities do not tell whether such contacts are right")
     if samples.n != stage.n:
         raise EventsimError(f"{samples.source}: has {samples.n} disks, and the scene {stage.n}")
     for name, told, own in (("radius", samples.radius, stage.radius), ("mass", samples.mass, scene.disks.mass)):
