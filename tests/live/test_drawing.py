@@ -8,10 +8,13 @@ from tests.live.driven import Page
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
 
-SIZES = [(1280, 800), (844, 390), (390, 844)]
+SIZES = [(1280, 800), *(pytest.param(size, marks=pytest.mark.slow) for size in ((844, 390), (390, 844)))]
+"""A screen, and a phone held both ways: these are left to the slow tests, but for drawing itself."""
+
+EVERY_SIZE = pytest.mark.parametrize("page", [(1280, 800), (844, 390), (390, 844)], indirect=True, ids="{0[0]}x{0[1]}".format)
 
 
-@pytest.fixture(params=SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+@pytest.fixture(params=SIZES, ids="{0[0]}x{0[1]}".format)
 def page(request, chromium, address):
     chromium.set_window_size(*request.param)
     yield Page(chromium, address)
@@ -52,6 +55,7 @@ def saved(page, tmp_path):
     return es.load_scene(page.fetch("scene-file", tmp_path / "scene.toml"))
 
 
+@EVERY_SIZE
 def test_a_wall_and_disks_are_drawn_saved_and_taken_back(page, tmp_path):
     page.open("count=1&speed=50&packing=0.001&seed=3")
     start, end = drawn(page, "wall", (0.3, 0.7), (0.6, 0.8))
