@@ -33,8 +33,6 @@ def jumps(
         mass: (n,), inf for immovable disks.
         known: faults that name the contact itself; turns of them are left out.
     """
-    if around.stage.law.rough is not None:
-        return  # spins take energy and give it back
     held = ~np.isfinite(mass)
     if bool(np.any(np.hypot(*flights.before[0, held].T) > 0.0)):
         return  # a moving obstacle gives energy

@@ -80,7 +80,7 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float) -> str | N
         mass: (n,), inf for immovable disks.
         least: the smallest change of velocity that is seen.
     """
-    found = None if stage.law.rough is not None else outcome_of(met, mass)  # spins, which nobody tells, have their part in it
+    found = outcome_of(met, mass)
     if found is None or not _is_told(met, found, mass, least):
         return None
     who = named(met.key, stage)

@@ -241,12 +241,7 @@ def test_a_wall_that_takes_speed_along_it_is_friction(share):
     assert "of its impulse across the normal" in first.sentence
 
 
-def test_rough_disks_are_judged_by_their_contacts_alone():
-    """Spins, which nobody tells, take energy and speed along surfaces."""
-    scene = replace(SCENE, tangential_restitution=1.0)
-    run = es.simulate(scene, until=3.0, engine="reference", log=True, trust=False)
-    times = np.arange(0.0, 3.0, 0.01)
-    places = np.array([run.state_at(float(time)).position for time in times])
-    judged = es.validate(scene, trajectory=(times, places), until=2.99)
-    assert judged.first_fault is None
-    assert judged.judgement.charge.found > 5
+def test_disks_that_spin_are_not_judged():
+    times, places, _, _ = motion(SCENE)
+    with pytest.raises(es.EventsimError, match="the disks of this scene spin"):
+        es.validate(replace(SCENE, tangential_restitution=1.0), trajectory=(times, places))
