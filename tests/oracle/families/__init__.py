@@ -23,6 +23,7 @@ from tests.oracle.families import (
     points,
     slopes,
     ties,
+    wrapped,
 )
 from tests.oracle.families.case import Case
 
@@ -40,6 +41,7 @@ FAMILIES: Mapping[str, Callable[[np.random.Generator], Case]] = {
     **ties.FAMILIES,
     **meetings.FAMILIES,
     **collapse.FAMILIES,
+    **wrapped.FAMILIES,
 }
 
 

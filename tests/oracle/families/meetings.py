@@ -84,7 +84,8 @@ def three_walls(rng: np.random.Generator) -> Case:
     return Case(made)
 
 
-def _starts(rng: np.random.Generator) -> Start:
+def starts(rng: np.random.Generator) -> Start:
+    """A tie of pairs that is not too large for a box."""
     while True:
         start = (at_rest, mirrored, moving)[int(rng.integers(3))](rng)
         if start is not None and max(start.radii) < 8.0 and max(abs(x) for place in start.places for x in place) < 20.0:
@@ -105,7 +106,7 @@ def _placed(start: Start, shift: tuple[float, float], size: float) -> list[tuple
 def borders(rng: np.random.Generator) -> Case:
     """A tie of pairs anywhere in a periodic box or channel, mostly of images across its borders, some behind wraps."""
     while True:
-        start, size = _starts(rng), 64.0
+        start, size = starts(rng), 64.0
         shift = [float(rng.choice([0.0, 0.0, 32.0])) + dyadic(rng, -2, 2, 2) for _ in range(2)]
         channel = rng.random() < 0.3
         if channel:
@@ -134,7 +135,7 @@ def borders(rng: np.random.Generator) -> Case:
 
 def kicked(rng: np.random.Generator) -> Case:
     """All rest or glide until a disk is kicked so that it meets two others at once; the kick is at any time of few bits."""
-    start, size = _starts(rng), 64.0
+    start, size = starts(rng), 64.0
     places = _placed(start, (32.0, 32.0), size)
     if start.velocities[1] != (0.0, 0.0) or start.velocities[2] != (0.0, 0.0) or any(x is None for p in places for x in p):
         return kicked(rng)
@@ -184,7 +185,7 @@ def falling(rng: np.random.Generator) -> Case:
     return Case(made)
 
 
-def _valid(make: Callable[[np.random.Generator], Case]) -> Callable[[np.random.Generator], Case]:
+def valid(make: Callable[[np.random.Generator], Case]) -> Callable[[np.random.Generator], Case]:
     """The same, again until the scene is a legal one."""
 
     @wraps(make)
@@ -199,9 +200,9 @@ def _valid(make: Callable[[np.random.Generator], Case]) -> Callable[[np.random.G
 
 
 FAMILIES = {
-    "P2-mixed": _valid(mixed),
-    "P2-three-walls": _valid(three_walls),
-    "P2-borders": _valid(borders),
-    "P2-kicked": _valid(kicked),
-    "P2-falling": _valid(falling),
+    "P2-mixed": valid(mixed),
+    "P2-three-walls": valid(three_walls),
+    "P2-borders": valid(borders),
+    "P2-kicked": valid(kicked),
+    "P2-falling": valid(falling),
 }
