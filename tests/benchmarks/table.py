@@ -1,9 +1,11 @@
-"""A table of measured rows: printed as it grows, kept as CSV with the commit that was measured."""
+"""A table of measured rows: printed as it grows, kept as CSV with the commit that was measured and the machine."""
 
 from __future__ import annotations
 
 import argparse
 import csv
+import os
+import platform
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -27,6 +29,17 @@ def commit() -> str:
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
 
 
+def machine() -> str:
+    """What it is measured on: the processor's name where the system tells it, and how many cores there are."""
+    names = [line.split(":")[1].strip() for line in _about_processors() if line.startswith("model name")]
+    return f"{names[0] if names else platform.machine()}, {os.cpu_count()} cores, {platform.system()}"
+
+
+def _about_processors() -> list[str]:
+    about = Path("/proc/cpuinfo")
+    return about.read_text().splitlines() if about.exists() else []
+
+
 class Table:
     """Rows of a benchmark; `columns` are printed, what else a row has is kept in the file only."""
 
@@ -39,7 +52,7 @@ class Table:
 
     def add(self, row: Mapping[str, object]) -> None:
         """Print a row, and keep it."""
-        self._rows.append({**row, "commit": self._commit})
+        self._rows.append({**row, "commit": self._commit, "machine": machine()})
         print(" ".join(f"{row[name]!s:>{self._width}}" for name in self._columns), flush=True)
 
     def write(self, path: Path | None) -> None:
