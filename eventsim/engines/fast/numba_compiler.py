@@ -21,6 +21,7 @@ from numba import cfunc, config, njit, types
 from numba.core import event
 from numba.extending import overload, register_jitable
 
+from eventsim.engines.fast.numba_parts import CallerCompiler as CallerCompiler
 from eventsim.engines.fast.numba_parts import KernelCompiler, PartCompiler
 from eventsim.errors import LogError
 from eventsim.formulas import (

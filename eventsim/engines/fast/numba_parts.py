@@ -72,6 +72,27 @@ class KernelLibrary(JITCodeLibrary):
             super()._optimize_final_module()
 
 
+class CallerLibrary(JITCodeLibrary):
+    """The code of a function that calls parts, and is compiled as numba compiles everything else."""
+
+    def finalize(self) -> None:
+        """Link the parts, those of parts as well."""
+        self._linking_libraries = list(_all_linked(self, set()))
+        super().finalize()
+
+
+class CallerCompiler(Compiler):
+    """numba's compiler, for functions that call parts."""
+
+    def define_pipelines(self) -> Any:
+        """All passes of numba."""
+        state = self.state
+        if state.library is None:
+            state.library = CallerLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+            state.library.enable_object_caching()
+        return super().define_pipelines()
+
+
 def _all_linked(library: Any, seen: set[int]) -> Iterator[Any]:
     for linked in library._linking_libraries:
         if id(linked) not in seen:

@@ -43,9 +43,9 @@ else:
         before = config.CACHE_DIR
         config.CACHE_DIR = _FOLDER  # read when the function is decorated
         try:
-            kept = njit(error_model="numpy", cache=True)(function)
+            kept = njit(error_model="numpy", cache=True, pipeline_class=compiled.CallerCompiler)(function)
         except RuntimeError:  # no folder to write to
-            return cast(Loop, njit(error_model="numpy")(function))
+            return cast(Loop, njit(error_model="numpy", pipeline_class=compiled.CallerCompiler)(function))
         finally:
             config.CACHE_DIR = before
         compiled.name_apart(kept)
@@ -53,4 +53,4 @@ else:
 
     def part(function: Loop) -> Loop:
         """Compile what loops call."""
-        return cast(Loop, njit(error_model="numpy")(function))
+        return cast(Loop, njit(error_model="numpy", pipeline_class=compiled.CallerCompiler)(function))
