@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eventsim.errors import SceneError
-from eventsim.scene.disks import Disks
+from eventsim.scene.disks import USUAL, Disks, Floats
 from eventsim.scene.names import DiskNames
 from eventsim.scene.numbers import FASTEST, SLOWEST, number
 
@@ -65,27 +67,39 @@ FIRST = 3
 
 def roughness_problems(disks: Disks, tangential: TangentialRestitution | None, names: DiskNames) -> Iterator[str]:
     """Rules for spins and moments, and for the disks of a rough scene, one sentence each."""
-    with np.errstate(invalid="ignore"):
-        spin, surface = np.abs(disks.spins()), np.abs(disks.spins() * disks.radius)
-        moment = disks.moments()
-        told = {
-            "spin": ((spin == 0.0) | ((spin >= SLOWEST) & (spin <= FASTEST) & (surface <= FASTEST)),
-                     f"must be 0, or {SLOWEST} to {FASTEST}, and so must the speed of its surface"),
-            "moment": ((moment >= LEAST_MOMENT) & (moment <= 1.0),
-                       f"must be at most 1 and at least {LEAST_MOMENT} (I / m r^2: 1/2 is a disk, 1 a ring)"),
-        }
-    if tangential is None:
-        smooth = f"is for disks that turn: say {EXAMPLE}, or -1 where they are smooth and their spins are to be told"
-        told = {key: (np.equal(value, usual), smooth) for key, value, usual in
-                (("spin", spin, 0.0), ("moment", moment, 0.5))}
-    elif tangential.pair > -1.0 or tangential.wall > -1.0:
-        told["radius"] = (disks.radius != 0.0, "a point has no surface that could be rough; leave out tangential_restitution")
-        told["mass"] = (disks.mass != 0.0, "a tracer has no moment that could turn; leave out tangential_restitution")
-    for key, (kept, rule) in told.items():
+    for key, values, kept, rule in _smooth_rules(disks) if tangential is None else _rough_rules(disks, tangential):
         broken = np.flatnonzero(~kept)
-        values = getattr(disks, {"spin": "spins", "moment": "moments"}.get(key, key))
-        values = values() if callable(values) else values
         for i in broken[:FIRST].tolist():
             yield f"{names.key(i, key)} = {values[i].tolist()}: {rule}"
         if len(broken) > FIRST:
             yield f"... and {len(broken) - FIRST} more disks like this ({key})"
+
+
+def _smooth_rules(disks: Disks) -> Iterator[_Rule]:
+    """Disks of a scene that tells no roughness have neither spins nor moments."""
+    rule = f"is for disks that turn: say {EXAMPLE}, or -1 where they are smooth and their spins are to be told"
+    yield _Rule("spin", disks.spins(), disks.spins() == USUAL["spin"], rule)
+    yield _Rule("moment", disks.moments(), disks.moments() == USUAL["moment"], rule)
+
+
+def _rough_rules(disks: Disks, tangential: TangentialRestitution) -> Iterator[_Rule]:
+    spin, moment = np.abs(disks.spins()), disks.moments()
+    with np.errstate(invalid="ignore", over="ignore"):
+        turns = (spin >= SLOWEST) & (spin <= FASTEST) & (spin * disks.radius <= FASTEST)
+    rule = f"must be 0, or {SLOWEST} to {FASTEST}, and so must the speed of its surface"
+    yield _Rule("spin", disks.spins(), (spin == 0.0) | turns, rule)
+    rule = f"must be at most 1 and at least {LEAST_MOMENT} (I / m r^2: 1/2 is a disk, 1 a ring)"
+    yield _Rule("moment", moment, (moment >= LEAST_MOMENT) & (moment <= 1.0), rule)
+    if tangential != TangentialRestitution():
+        left = "leave out tangential_restitution"
+        yield _Rule("radius", disks.radius, disks.radius != 0.0, f"a point has no surface that could be rough; {left}")
+        yield _Rule("mass", disks.mass, disks.mass != 0.0, f"a tracer has no moment that could turn; {left}")
+
+
+class _Rule(NamedTuple):
+    """Which disks (N,) keep a rule for one of their numbers."""
+
+    key: str
+    values: Floats
+    kept: NDArray[np.bool_]
+    rule: str

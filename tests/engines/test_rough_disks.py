@@ -216,7 +216,7 @@ def test_proofs_know_rough_disks():
     [
         ({"tangential_restitution": 1.5}, "tangential_restitution = 1.5: must be from -1 (smooth) to 1 (perfectly rough)"),
         ({"tangential_restitution": {"pair": -2}}, "tangential_restitution.pair = -2.0: must be from -1"),
-        ({"tangential_restitution": {"walls": 1}}, "tangential_restitution.walls: unknown key (did you mean \"wall\"?)"),
+        ({"tangential_restitution": {"walls": 1}}, 'tangential_restitution.walls: unknown key (did you mean "wall"?)'),
         ({"tangential_restitution": "rough"}, "tangential_restitution = 'rough': must be a number"),
     ],
 )
