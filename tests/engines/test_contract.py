@@ -43,7 +43,7 @@ def test_a_session_answers_all_that_is_asked(name):
     assert not session.prepares
     assert (session.trajectory is None) == (not TABLE[name].stepped)
     assert len(session.take_rows()) == session.counters.events
-    assert all(len(column) == 2 for column in session.motion())
+    assert all(len(column) == 2 for column in session.motion() if column is not None)  # there are no spins
     session.break_off()
 
 
