@@ -83,6 +83,8 @@ COUNTED = {
 """Counters of a run that kernels keep, and where."""
 
 FOREVER = 1 << 60
+SOON = 0.25
+"""Rows for each disk before which cells that are full again get more slots, and are not chosen anew."""
 FEW_STEPS = 256
 TOO_FEW_DAYS, TOO_MANY_DAYS = 0.5, 6.0
 """Days that an event may take, on the average of so many steps; outside, the length of a day is chosen anew."""
@@ -233,7 +235,8 @@ class Machine:
         """
         events, epoch, now = self._remade
         same_time = (epoch, now) == (self.state.epoch, self.state.now)
-        if same_time or (for_ever and events == self.counts[layout.EVENTS]):
+        soon = int(self.counts[layout.EVENTS]) - events < SOON * self.state.n and self.stage.size is not None
+        if same_time or soon or (for_ever and events == self.counts[layout.EVENTS]):
             self.grids.deepen(int(self.state.words[place, layout.FLAGS]) // layout.FIRST_LEVEL)
             self.predict_afresh()
         else:

@@ -37,6 +37,9 @@ CROWDED = 3.0
 CLASS = 4.0
 """How much wider the largest disk of a class of radii is than the smallest, at most; of the smallest class: than most of them."""
 
+CROWD, MOST_CELLS = 4.0, 8.0
+"""So many disks in a disk's own cell, on the average, make cells narrower, up to so many cells for each disk."""
+
 FEWEST_SEEN = 3
 """Along a period: with fewer columns, cells on both sides of one would be the same."""
 
@@ -81,13 +84,16 @@ def cell_sizes(
         radius = stage.radius[level == k]
         if k == 0:
             shapes = len(stage.features) if len(classes) == 1 else 0
-            grids.append(_finest(low, size, radius, depths.get(k, USUAL_DEPTH), shapes))
+            places = x[level == 0], y[level == 0]
+            grids.append(_finest(low, size, radius, depths.get(k, USUAL_DEPTH), shapes, places))
         else:
             grids.append(_coarser(low, size, stage.period, radius, grids, depths.get(k, DEEP)))
     return tuple(grids) if _images_are_clear(stage, grids) else None
 
 
-def _finest(low: Pair, size: Pair, radius: Floats, depth: int, shapes: int) -> Sizes:
+def _finest(
+    low: Pair, size: Pair, radius: Floats, depth: int, shapes: int, places: tuple[Floats, Floats]
+) -> Sizes:
     """The grid for most of the disks: as narrow as two of them reach, or as wide as they, or many shapes, are apart."""
     largest = float(radius.max())
     least = 2.0 * largest * MARGIN
@@ -101,9 +107,23 @@ def _finest(low: Pair, size: Pair, radius: Floats, depth: int, shapes: int) -> S
     elif spacing < VERY_DILUTE * least and np.ptp(radius) == 0.0:
         side, most = WIDEST * least, True
     else:
-        side, depth, most = max(wide, spacing), max(depth, DEEP), False
+        side, depth, most = max(wide, _uncrowded(spacing, wide, low, size, places)), max(depth, DEEP), False
     columns, rows = (_number(length, side, wide, most) for length in size)
     return Sizes(low, columns, rows, (size[0] / columns, size[1] / rows), depth, largest)
+
+
+def _uncrowded(side: float, wide: float, low: Pair, size: Pair, places: tuple[Floats, Floats]) -> float:
+    """The width of cells, halved as long as most disks share theirs with many, where they stand together in a large domain."""
+    while side > wide:
+        rows = int(size[1] / side) + 1
+        cell = ((places[0] - low[0]) // side) * rows + (places[1] - low[1]) // side
+        _, numbers = np.unique(cell, return_counts=True)
+        crowd = float(np.sum(numbers * numbers)) / len(cell)  # in a disk's own cell, on the average
+        most = (size[0] / side) * (size[1] / side) > MOST_CELLS * len(cell)
+        if crowd <= CROWD or most:
+            break
+        side *= 0.5
+    return side
 
 
 def _coarser(
