@@ -42,7 +42,7 @@ STEADY = 1.005
 """Ratios of rounds that differ by no more than this factor are one; near the critical restitution they drift by more."""
 
 SEEN = 1e-9
-"""What is left of a series is told where it is more than this part of the time, which is written with nine digits."""
+"""A series of which less than this part of the time is left is over at that time, which is written with nine digits."""
 
 RECENT = 6
 """The disks of a series are those that are connected through so many rows at its end."""
@@ -112,9 +112,12 @@ def _of_rounds(rounds: Rounds, stage: Stage, time: float, collapses: bool) -> tu
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
     if collapses:
-        left = rounds.last * rounds.ratio / (1.0 - rounds.ratio)
-        rest = f", and those that are left take about {left:.2g}" if left > SEEN * abs(time) else ""
-        return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}{rest}; {stage.law.remedy()}"
+        if rounds.last * rounds.ratio <= (1.0 - rounds.ratio) * SEEN * abs(time):
+            return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {stage.law.remedy()}"
+        return "collapse", (
+            f"inelastic collapse of {names} soon after time {time:.9g}: {series}, and there is no end of them; the gaps sank below "
+            f"the digits of float64 when a round still took {rounds.last:.2g}; {stage.law.remedy()}"
+        )
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
         f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {stage.law.remedy()}"

@@ -239,7 +239,7 @@ def test_another_opponent_knows_restitution_and_gravity(page, opponent):
     page.js("live.player.seek(0.4)")
     assert {"stepped": "fixed steps", "pymunk": "Chipmunk"}[opponent] in page.js("return live.part('differences').textContent")
     assert "a contact within 0.02 of a disk's previous one is elastic" in page.js("return live.part('settings').textContent")
-    assert "contact_duration" in page.js("return live.part('exact').textContent")
+    assert "(TC model)" in page.js("return live.part('exact').textContent")
     assert page.js("return live.menu.field('opponent').value") == opponent
 
 

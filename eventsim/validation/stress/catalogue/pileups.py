@@ -23,9 +23,9 @@ def _eleven(bench: Bench) -> float:
 
 
 def _collapse(bench: Bench) -> float:
-    """How far the diagnosis is from the collapse in time; inf for a run that ends as if nothing were."""
+    """How far the end is from the collapse in time; a run may stop before it, where its digits are spent."""
     run = bench.run(gallery("collapse", restitution=0.0717), may_give_up=True)
-    if run.stopped not in (*GOES_ON, "collapse"):
+    if run.stopped in ("collapse", "digits") and run.time < COLLAPSE_TIME:
         raise GaveUpError(run.stopped, run.reason)
     return abs(run.time - COLLAPSE_TIME) if run.stopped == "collapse" else math.inf
 
@@ -126,9 +126,9 @@ def _critical_wall(bench: Bench) -> float:
 
 
 def _endless_wall(bench: Bench) -> float:
-    """How far the diagnosis is from the collapse in time; a run that stops for its digits must have used them."""
+    """How far the end is from the collapse in time; a run that stops before it must have used its digits."""
     run = bench.run(wall_and_two(0.17), until=5.0, may_give_up=True)
-    if run.stopped == "digits" and run.counters.events >= 31 and run.time < WALL_COLLAPSE_TIME:
+    if run.stopped in ("collapse", "digits") and run.counters.events >= 31 and run.time < WALL_COLLAPSE_TIME:
         raise GaveUpError(run.stopped, run.reason)
     return abs(run.time - WALL_COLLAPSE_TIME) if run.stopped in ("collapse", "digits") else math.inf
 
