@@ -115,8 +115,8 @@ def _of_rounds(rounds: Rounds, stage: Stage, time: float, collapses: bool) -> tu
         if rounds.last * rounds.ratio <= (1.0 - rounds.ratio) * SEEN * abs(time):
             return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {stage.law.remedy()}"
         return "collapse", (
-            f"inelastic collapse of {names} soon after time {time:.9g}: {series}, and there is no end of them; the gaps sank below "
-            f"the digits of float64 when a round still took {rounds.last:.2g}; {stage.law.remedy()}"
+            f"inelastic collapse of {names} soon after time {time:.9g}: {series}, and there is no end of them; the gaps sank "
+            f"below the digits of float64 when a round still took {rounds.last:.2g}; {stage.law.remedy()}"
         )
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "

@@ -36,7 +36,8 @@ def test_each_built_in_scene_is_explained_and_says_how_it_is_searched(eventsim, 
     cells = facts["search"]["kind"] == "cells"
     assert ("cells of" in facts["explanation"]["search"]) == cells
     assert ("parabolas" in facts["explanation"]["flights"]) == (facts["gravity"] is not None)
-    conserved = facts["restitution"] is None and facts["obstacles"] == 0 and facts["law"]["treatments"] is None and facts["law"]["rough"] is None
+    special = [facts["law"]["treatments"], facts["law"]["rough"]]
+    conserved = facts["restitution"] is None and facts["obstacles"] == 0 and special == [None, None]
     assert ("energy is conserved" in facts["explanation"]["contacts"]) == conserved
     assert ("walls" in facts["explanation"]) == bool(facts["walls"])
     assert facts["until"] is not None or facts["events"] is not None
