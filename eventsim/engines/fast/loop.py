@@ -164,7 +164,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 break
             i = i if k == grid.n else k
         steps += 1
-        floor, other = now, i
+        floor = now
         code = word(m.disks, i * WORDS + PARTNER)
         if code >= 0:
             if is_stale(m, i):
@@ -186,7 +186,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 overlap = resolve_pair(m, rules, sums, i, code, now, clock, events, first_slot + events, grid.posts)
                 deepest = overlap if overlap > deepest else deepest
                 events += 1
-                other = _to_predict(i, code, grid.posts)
+                room, deadline = _predict_partner(m, grid, rules, code, now, day, room, deadline, grid.posts)
         elif code <= WALL:
             if (
                 word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
@@ -210,12 +210,8 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 counts[DISK] = i
                 status = STATUS_FULL
                 break
-        while True:  # the partner first; one piece of machine code for both
-            predict(m, grid, rules, other, now, floor)
-            room, deadline = push_later(m, grid, other, day, room, deadline, grid.look_ahead)
-            if other == i:
-                break
-            other = i
+        predict(m, grid, rules, i, now, floor)
+        room, deadline = push_later(m, grid, i, day, room, deadline, grid.look_ahead)
         if word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
             counts[DISK] = i
             status = STATUS_STUCK
@@ -241,9 +237,12 @@ def _take_partner(m, i, posts):
 
 
 @inline
-def _to_predict(i, partner, posts):
-    """The disk to be predicted before disk i: its partner, but i itself where that is a post, with nothing ahead."""
-    return partner if posts is None else i
+def _predict_partner(m, grid, rules, i, now, day, room, deadline, posts):
+    """Predict the second disk of a contact and put it into the calendar; a post stays in it, with nothing ahead."""
+    if posts is not None:
+        return room, deadline
+    predict(m, grid, rules, i, now, now)
+    return push_later(m, grid, i, day, room, deadline, grid.look_ahead)
 
 
 @kernel
