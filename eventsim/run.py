@@ -58,7 +58,7 @@ class Run(PastRun):
         """
         from eventsim.show.animate import animate_with  # loaded by who wants a picture
 
-        if self.log is None:
+        if not self.has_log:
             raise LogError("animate needs the log of the run: simulate(..., log=True)")
         animate_with(self.log, path, **options)
 
@@ -70,13 +70,13 @@ class Run(PastRun):
         """
         from eventsim.show.figures.write import plot  # loaded by who wants a picture
 
-        if self.log is None:
+        if not self.has_log:
             raise LogError("plot needs the log of the run: simulate(..., log=True)")
         return plot(self.log, kind, ax)
 
     def _repr_html_(self) -> str | None:
         """Return the player for a notebook; None, so plain text, without a log, with too large a one, or without matplotlib."""
-        if self.log is None or find_spec("matplotlib") is None:
+        if not self.has_log or find_spec("matplotlib") is None:
             return None
         from eventsim.show.player.page import notebook_frame
 

@@ -92,6 +92,17 @@ def test_a_log_is_a_data_frame(run):
     assert run.log[5:8].to_pandas()["event"].tolist() == [5, 6, 7]
 
 
+def test_a_run_without_a_log_says_so_to_who_asks_for_it():
+    bare = es.simulate(es.gallery("gas", n=20), events=20, engine="reference")
+    assert not bare.has_log
+    with pytest.raises(es.LogError, match=r"this run kept no log: simulate\(..., log=True\)"):
+        _ = bare.log.time
+    for ask in (lambda: bare.state_at(0.0), lambda: bare.plot("speeds"), lambda: bare.animate("a.gif")):
+        with pytest.raises(es.LogError, match="needs the log of the run: simulate"):
+            ask()
+    assert "Run(gas" in repr(bare)
+
+
 def test_files_of_logs_are_read_by_data_frame_libraries(run, tmp_path):
     polars = pytest.importorskip("polars")
     run.log.save(tmp_path / "log.csv")

@@ -7,7 +7,7 @@ import re
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option, scene_options, writable
+from eventsim.cli.options import drawable, json_option, quiet_option, scene_options
 from eventsim.cli.output import say, say_data
 from eventsim.cli.source import stop_options
 
@@ -89,7 +89,7 @@ def command(
 
     Exit codes: 0 done; 2 bad usage, scene or file, or no ffmpeg for an mp4; 130 interrupted, no file left.
     """
-    target = writable(out, "--out", suffixes.ANIMATIONS)
+    target = drawable(out, "--out", suffixes.ANIMATIONS)
     assert target is not None
     if speed is not None and duration is not None:
         raise click.UsageError("--speed and --duration exclude each other: the one follows from the other")

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eventsim import suffixes
-from eventsim.cli.options import complete_scene, json_option, quiet_option, writable
+from eventsim.cli.options import complete_scene, drawable, json_option, quiet_option, writable
 from eventsim.cli.output import say, say_data
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ def command(
 
     Exit codes: 0 done; 2 bad usage or scene.
     """
-    figure, page = writable(out, "--out", suffixes.FIGURES), writable(details, "--details", suffixes.FIGURES)
+    figure, page = drawable(out, "--out"), drawable(details, "--details")
     assert figure is not None
     table = writable(csv if csv is not None else str(figure.with_suffix(".csv")), "--csv", (".csv",))
     assert table is not None

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import click
 
-from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option, scene_options, writable
+from eventsim.cli.options import drawable, json_option, quiet_option, scene_options
 from eventsim.cli.output import say, say_data
 from eventsim.cli.source import stop_options
 from eventsim.show.figures import TITLES
@@ -34,7 +33,9 @@ Exit codes: 0 done; 2 bad usage, scene or file, or a log without what the figure
 
 @click.command(help=HELP)
 @scene_options(required=True, metavar="LOG|SCENE")
-@click.option("--kind", type=click.Choice(tuple(TITLES)), required=True, metavar="KIND", help="Which figure, one of these.")
+@click.option(
+    "--kind", type=click.Choice(tuple(TITLES)), required=True, metavar="KIND", help="Which figure, one of these."
+)
 @click.option("--out", required=True, metavar="FILE", help="FILE.png, .svg or .pdf.")
 @stop_options
 @json_option
@@ -51,7 +52,7 @@ def command(
     quiet: bool,
 ) -> None:
     """Draw one kind of figure, see HELP."""
-    target = writable(out, "--out", suffixes.FIGURES)
+    target = drawable(out, "--out")
     assert target is not None
 
     from time import perf_counter

@@ -84,9 +84,13 @@ def study_options(verb: Verb) -> Verb:
     """Add the options of all studies."""
     for one in reversed(STUDIES):
         kinds = tuple(kind for _, kind in one.values)
-        how: dict[str, Any] = {"type": kinds[0] if len(kinds) == 1 else kinds} if kinds else {"is_flag": True, "default": None}
+        how: dict[str, Any] = (
+            {"type": kinds[0] if len(kinds) == 1 else kinds} if kinds else {"is_flag": True, "default": None}
+        )
         words = f"Also {one.words}."
-        verb = click.option(f"--{one.name}", metavar=" ".join(name for name, _ in one.values) or None, help=words, **how)(verb)
+        verb = click.option(
+            f"--{one.name}", metavar=" ".join(name for name, _ in one.values) or None, help=words, **how
+        )(verb)
     return verb
 
 
@@ -97,7 +101,9 @@ def study_options(verb: Verb) -> Verb:
 @click.option("--series", is_flag=True, help="Also energy, temperature, pressure and collision rate along the run.")
 @click.option("--profile", type=click.Choice(["x", "y"]), help="Also density, velocity and temperature along an axis.")
 @study_options
-@click.option("--out", metavar="FILE.csv", help="Write the series, else the profile, else the tables of studies, to a file.")
+@click.option(
+    "--out", metavar="FILE.csv", help="Write the series, else the profile, else the tables of studies, to a file."
+)
 @json_option
 @quiet_option
 def command(
@@ -118,7 +124,9 @@ def command(
     target = writable(out, "--out", (".csv",))
     asked = {one: _given(studies[one.name]) for one in STUDIES if studies[one.name] is not None}
     if target is not None and not series and profile is None and not asked:
-        raise click.UsageError("--out is the file of the series, the profile or the tables of studies: ask for one of them")
+        raise click.UsageError(
+            "--out is the file of the series, the profile or the tables of studies: ask for one of them"
+        )
     measures, found = measured(scene, settings, seed, until, events, discard, profile, asked, quiet)
     columns = series_columns(measures) if series else profile_columns(measures) or study_columns(found.values())
     if target is not None:
@@ -178,7 +186,7 @@ def measured(
     if run.measures is None:
         raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
     found = {name: sink.found(run.state.time - scene.start_time) for name, sink in sinks.items()}
-    if run.log is not None:
+    if run.has_log:
         found |= {one.name: one.of(run.log, discard, *given) for one, given in asked.items() if one.sink is None}
     return run.measures, found
 

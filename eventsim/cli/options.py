@@ -13,6 +13,7 @@ from click.shell_completion import CompletionItem
 
 from eventsim.engines import ENGINES, STEPPED, TABLE, engine_named
 from eventsim.engines.options import read_option, words_of
+from eventsim.suffixes import FIGURES
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 
@@ -126,6 +127,19 @@ def writable(path: str | None, option: str, suffixes: Sequence[str] | None, sour
         raise click.UsageError(f"{option} {path}: there is no directory {target.parent}")
     if not os.access(target.parent, os.W_OK) or (target.exists() and not os.access(target, os.W_OK)):
         raise click.UsageError(f"{option} {path}: no permission to write there")
+    return target
+
+
+def drawable(path: str | None, option: str, suffixes: Sequence[str] = FIGURES) -> Path | None:
+    """Return `path` as a picture that can be drawn and written, None if there is none.
+
+    Raises:
+        click.UsageError: as `writable`.
+        EventsimError: where nothing can draw; that is told before anything is run.
+    """
+    target = writable(path, option, suffixes)
+    if target is not None:
+        import eventsim.show  # noqa: F401 - its import is the question
     return target
 
 

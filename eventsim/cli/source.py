@@ -62,9 +62,7 @@ def log_of(
 
         return open_filed(source)
 
-    log = run_of(chosen_scene(source, settings, seed), source, until, events, quiet, log=True).log
-    assert log is not None
-    return log
+    return run_of(chosen_scene(source, settings, seed), source, until, events, quiet, log=True).log
 
 
 def demand_no_scene_options(

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eventsim import suffixes
-from eventsim.cli.options import Whole, json_option, quiet_option, writable
+from eventsim.cli.options import Whole, drawable, json_option, quiet_option, writable
 from eventsim.cli.output import FAILED, INTERRUPTED, say, say_data
 from eventsim.validation.stress.catalogue import CASES
 from eventsim.validation.stress.verdict import Word
@@ -105,7 +104,7 @@ def command(
         against = tuple(engine_named(name).name for name in dict.fromkeys(engines)) or ONE_LOG
         _soak(range(seed, seed + soak), against, workers, as_json, quiet)
         return
-    figure_path = writable(out, "--out", suffixes.FIGURES)
+    figure_path = drawable(out, "--out")
     table_path = writable(table, "--csv", (".csv",))
 
     from eventsim.cli.progress import ProgressBar

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim import suffixes
-from eventsim.cli.options import Whole, complete_scene, json_option, quiet_option, writable
+from eventsim.cli.options import Whole, complete_scene, drawable, json_option, quiet_option, writable
 from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say, say_data
 from eventsim.processes import cores
 
@@ -75,7 +75,7 @@ def command(
     Exit codes: 0 done; 2 bad usage, scene or file, or every run failed; 130 interrupted (what was done is kept).
     """
     target = writable(out, "--out", suffixes.TABLES)
-    drawn = writable(figure, "--figure", suffixes.FIGURES)
+    drawn = drawable(figure, "--figure")
     assert target is not None
     if dask is not None and workers is not None:
         raise click.UsageError("--workers is for this machine, --dask for a cluster: give one of them")

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eventsim import suffixes
-from eventsim.cli.options import json_option, quiet_option, scene_options, writable
+from eventsim.cli.options import drawable, json_option, quiet_option, scene_options, writable
 from eventsim.cli.output import FAILED, say, say_data
 
 if TYPE_CHECKING:
     from eventsim.validation.compare import Comparison, Line
 
-PATIENCE_HELP = "CPU seconds for one run at most; ten times that for the event-driven one, whose end all others then share."
+PATIENCE_HELP = (
+    "CPU seconds for one run at most; ten times that for the event-driven one, whose end all others then share."
+)
+
 
 @click.command()
 @scene_options(required=True)
@@ -106,7 +108,7 @@ def command(
     Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.
     With --trajectory: 0 also where a wrong event is named: in a test ask whether first_fault of --json is null.
     """
-    csv_path, figure_path = writable(csv, "--csv", (".csv",)), writable(figure, "--figure", suffixes.FIGURES)
+    csv_path, figure_path = writable(csv, "--csv", (".csv",)), drawable(figure, "--figure")
     judging = trajectory is not None
     if not judging and (contacts is not None or tolerance is not None):
         raise click.UsageError("--contacts and --tolerance belong to --trajectory")

@@ -25,13 +25,20 @@ class PastRun(Outcome):
         return cls(**{item.name: getattr(outcome, item.name) for item in fields(Outcome)})
 
     @property
-    def log(self) -> EventLog | None:
-        """The log, if one was kept; one that was streamed to a file is read when first asked for."""
+    def has_log(self) -> bool:
+        """Whether a log was kept."""
+        return self.recorded is not None or self.log_path is not None
+
+    @property
+    def log(self) -> EventLog:
+        """The log; one that was streamed to a file is read when first asked for.  Raises LogError where none was kept."""
         if self._log is None:
             if self.recorded is not None:
                 self._log = EventLog(*self.recorded)
             elif self.log_path is not None:
                 self._log = load_log(self.log_path)
+            else:
+                raise LogError("this run kept no log: simulate(..., log=True), or log='file.csv'")
         return self._log
 
     def state_at(self, time: float) -> State:
@@ -46,9 +53,8 @@ class PastRun(Outcome):
                     f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}"
                 )
             return replace(self.trajectory.state_at(time, self.start_time), scene=self.scene)
-        log = self.log
-        if log is None:
+        if not self.has_log:
             raise LogError("state_at needs the log of the run: simulate(..., log=True)")
         if self._replay is None:
-            self._replay = Replay(log)
+            self._replay = Replay(self.log)
         return self._replay.state_at(time)

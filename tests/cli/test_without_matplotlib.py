@@ -32,12 +32,23 @@ def test_what_draws_nothing_works(log, words):
     assert "matplotlib" not in done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("words", ["figure a.csv --kind raster --out a.png", "animate a.csv --out a.html"])
-def test_a_picture_is_refused_in_a_sentence(log, words):
+@pytest.mark.parametrize(
+    "words",
+    [
+        "figure a.csv --kind raster --out a.png",
+        "animate a.csv --out a.html",
+        "sweep gas --set n=4,5 --events 10 --out b.csv --figure a.png",
+        "validate two-disks --csv b.csv --figure a.png",
+        "stress graze --csv b.csv --out a.png",
+        "chart two-disks --csv b.csv --out a.png",
+    ],
+)
+def test_a_picture_is_refused_in_a_sentence_before_anything_is_run(log, words):
     done = called(log.parent, *words.split())
     assert done.returncode == 2
     assert NEEDED in done.stderr
     assert "Traceback" not in done.stderr
+    assert [path.name for path in log.parent.iterdir()] == ["a.csv"]
 
 
 def test_a_notebook_shows_text_instead_of_the_player(log):

@@ -13,9 +13,7 @@ from eventsim.scene.stage import stage_of
 
 
 def log_of(scene: es.Scene, **stop: float) -> es.EventLog:
-    log = es.simulate(scene, engine="reference", log=True, **stop).log
-    assert log is not None
-    return log
+    return es.simulate(scene, engine="reference", log=True, **stop).log
 
 
 def corridor_error(n: int, length: float, events: int) -> float:

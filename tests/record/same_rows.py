@@ -38,7 +38,6 @@ def verdict(name: str, rows: np.ndarray, corner: np.ndarray) -> str:
     """Compare the rows of a scene here with those of there; one line."""
     scene = stored(name)
     log = es.simulate(scene, engine="reference", log=True).log
-    assert log is not None
     if log.rows.tobytes() == rows.tobytes():
         return f"{name}: {len(rows)} rows, the same bytes"
     moved = np.array(stage_of(scene).corner) - corner

@@ -100,7 +100,6 @@ def test_a_log_that_grows_vouches_for_its_scene(tmp_path: Path, suffix: str) -> 
     from eventsim.record.files import open_sink
 
     log = es.simulate(table(), until=6.0, engine="reference", log=True).log
-    assert log is not None
     sink = open_sink(tmp_path / f"log{suffix.removesuffix('.part')}", log.provenance)
     sink.write(log.rows)
     sink.leave()
@@ -174,7 +173,6 @@ def test_a_format_that_nobody_knows_is_refused(tmp_path: Path) -> None:
 
 def test_a_compact_log_of_other_rules_says_so() -> None:
     log = es.simulate(table(), until=6.0, engine="reference", log=True).log
-    assert log is not None
     rows = log.rows.copy()
     rows["remainder"][1] *= 1.0 + 1e-15
     provenance = replace(log.provenance, compact=True, bits=BITS + 1, version="9.9")

@@ -94,7 +94,6 @@ def run_of(name: str) -> Run:
 def test_the_state_at_any_time_is_the_engine_s_own(name: str) -> None:
     scene, until = SCENES[name]
     run = run_of(name)
-    assert run.log is not None
     replay = Replay(run.log)
     assert_same(replay.final(), run.state)
     for time in np.linspace(scene.start_time, until, 12).tolist():
@@ -104,7 +103,6 @@ def test_the_state_at_any_time_is_the_engine_s_own(name: str) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_a_compact_log_expands_to_the_full_one(tmp_path: Path, name: str) -> None:
     log = run_of(name).log
-    assert log is not None
     log.save(tmp_path / "log.jsonl", compact=True)
     compact = load_log(tmp_path / "log.jsonl")
     assert compact.expand().rows.tobytes() == log.rows.tobytes()
@@ -122,7 +120,6 @@ KERNELS = [
 def test_kernels_expand_a_compact_log_to_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     log = run_of(name).log
-    assert log is not None
     monkeypatch.setattr("eventsim.replay.expand.first_engine", lambda *_: "fast")
     compact = EventLog(replace(log.provenance, compact=True), log.rows)
     assert compact.expand().rows.tobytes() == log.rows.tobytes()
@@ -143,7 +140,6 @@ def test_kernels_expand_a_log_with_kicks(uneven: bool, monkeypatch: pytest.Monke
 def test_kernels_refuse_rows_that_do_not_follow(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     log = run_of("periodic").log
-    assert log is not None
     rows = log.rows.copy()
     rows["remainder"][7] *= 1.0 + 1e-12
     monkeypatch.setattr("eventsim.replay.expand.first_engine", lambda *_: "fast")
@@ -154,7 +150,6 @@ def test_kernels_refuse_rows_that_do_not_follow(monkeypatch: pytest.MonkeyPatch)
 def test_the_racks_are_tests_of_clusters() -> None:
     for name in ("two onto one", "rack in a box", "rack on a torus", "a pair that meets twice at once"):
         log = run_of(name).log
-        assert log is not None
         assert (log.joint >= 0).any(), name
 
 
@@ -210,7 +205,6 @@ def test_a_compact_log_is_made_full_up_to_a_time(tmp_path: Path, suffix: str) ->
 
 def test_a_log_that_was_cut_inside_a_generation_ends_where_its_rows_end() -> None:
     log = run_of("rack in a box").log
-    assert log is not None
     cut = int(np.flatnonzero(log.joint >= 0)[1])
     assert log.joint[cut] < cut
     provenance = replace(log.provenance, compact=True, ending=None, rows=None)
@@ -230,7 +224,6 @@ def test_a_log_is_streamed_as_full_rows(tmp_path: Path) -> None:
 
 def test_what_differs_is_told_with_what_to_do() -> None:
     log = run_of("periodic").log
-    assert log is not None
     heavier = replace(log.scene, disks=replace(log.scene.disks, mass=np.where(np.arange(16) == 3, 2.0, 1.0)))
     here = replace(log.provenance, compact=True, scene=heavier)
     with pytest.raises(LogError, match=r"at event \d+: it has pair of disks .*, where the engine finds pair of .* changed"):

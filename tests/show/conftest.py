@@ -7,9 +7,7 @@ from eventsim.measure.studies import structure
 
 
 def log_of(name, **stop):
-    log = es.simulate(es.gallery(name), log=True, **stop).log
-    assert log is not None
-    return log
+    return es.simulate(es.gallery(name), log=True, **stop).log
 
 
 @pytest.fixture(scope="session")

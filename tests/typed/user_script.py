@@ -20,12 +20,11 @@ print(run.counters.events, run.stopped, run.residuals.energy, speed, energy, px,
 if run.measures is not None:
     print(run.measures["collision_rate"].value, run.measures.keys(), run.measures.table())
 log = run.log
-if log is not None:
-    first = log[0]
-    print(first.kind, first.xa, len(log[2:5]), log.time[0], log.digest())
-    log.save("log.csv")
-    frame = log.to_pandas()
-    print(frame)
+first = log[0]
+print(run.has_log, first.kind, first.xa, len(log[2:5]), log.time[0], log.digest())
+log.save("log.csv")
+frame = log.to_pandas()
+print(frame)
 axes = run.plot("speeds")
 print(axes)
 run.animate("run.gif", trails=True)

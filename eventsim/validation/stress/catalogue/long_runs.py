@@ -41,7 +41,6 @@ def _jammed(bench: Bench) -> float:
     start = bench.run(scene, events=1000)
     begun = with_disks(scene, Disks(start.state.position, start.state.velocity, 0.5))
     run = bench.run(begun, events=4000, log=True)
-    assert run.log is not None
     kinetic = 0.5 * float((run.state.velocity**2).sum())
     impulses = float(np.nansum(run.log.impulse))
     z = 1.0 + impulses / (2.0 * n * (kinetic / (n - 1)) * run.time)

@@ -43,7 +43,6 @@ def _bounce(gravity: float = 2.0) -> Scene:
 
 def _zeno(bench: Bench) -> float:
     run = bench.run(_bounce(), events=40, log=True)
-    assert run.log is not None
     return off(run.log.time[:40], [3.0 - 2.0 ** (2 - n) for n in range(1, 41)])
 
 
