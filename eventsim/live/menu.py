@@ -9,7 +9,9 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from eventsim.formulas.rough import SMOOTH
 from eventsim.scene import Scene
+from eventsim.scene.domain import BOUNDARY_NAMES
 from eventsim.scene.files import scene_from_dict
 
 MASSES = (1.0, 2.0, 4.0, 8.0, 16.0)
@@ -30,6 +32,8 @@ class Menu:
 
     width, height: of the box, pixels. count: disks. masses, radii: "equal" or "different". packing: fraction of the
     box that disks cover. speed: of each at the start, pixels / s. gravity: downwards, pixels / s^2.
+    temperature: at which walls are kept, kT in pixels^2 / s^2 of mass 1, 0: they only throw back. shaking: of the floor,
+    pixels / s; it does not heat then. roughness: tangential restitution, -1: smooth disks that do not spin.
     pace: a second of the scene lasts a second.
     """
 
@@ -42,6 +46,9 @@ class Menu:
     speed: float = 150.0
     gravity: float = 0.0
     restitution: float = 1.0
+    temperature: float = 0.0
+    shaking: float = 0.0
+    roughness: float = SMOOTH
     seed: int = 1
     pace: ClassVar[float] = 1.0
 
@@ -50,7 +57,7 @@ class Menu:
         tables = [table for table in self._gas_tables() if table["count"]]
         data: dict[str, object] = {
             "name": "disks in a box",
-            "domain": {"kind": "box", "size": [self.width, self.height]},
+            "domain": {"kind": "box", "size": [self.width, self.height], "walls": self._walls()},
             # The larger species first: the smaller ones find a place between them.
             "gas": tables[::-1],
         }
@@ -61,7 +68,16 @@ class Menu:
                 "restitution": self.restitution,
                 "contact_duration": RESTING_DURATION if self.gravity else CONTACT_DURATION,
             }
+        if self.temperature:
+            data["seed"] = self.seed
+        if self.roughness > SMOOTH:
+            data["tangential_restitution"] = self.roughness
         return scene_from_dict(data, seed=self.seed)
+
+    def _walls(self) -> dict[str, dict[str, float]]:
+        """What the sides of the box do besides throwing back."""
+        warm = {side: {"temperature": self.temperature} for side in BOUNDARY_NAMES if self.temperature}
+        return warm | ({"bottom": {"shaking": self.shaking}} if self.shaking else {})
 
     def _gas_tables(self) -> list[dict[str, object]]:
         species = len(MASSES) if "different" in (self.masses, self.radii) else 1

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from eventsim.errors import EventsimError
+from eventsim.formulas.rough import PERFECTLY_ROUGH, SMOOTH
 from eventsim.live.menu import Menu
 from eventsim.live.source import MOST_DISKS, BuiltIn, Source, Text
 
@@ -223,6 +224,9 @@ def _menu(fields: Fields) -> Menu:
         speed=fields.number("speed", 0.0, 10_000.0),
         gravity=fields.number("gravity", -10_000.0, 10_000.0),
         restitution=fields.number("restitution", 0.0, 1.0),
+        temperature=fields.number("temperature", 0.0, 1e8),
+        shaking=fields.number("shaking", 0.0, 10_000.0),
+        roughness=fields.number("roughness", SMOOTH, PERFECTLY_ROUGH),
         seed=fields.whole("seed", 0, 2**31 - 1),
     )
     fields.demand_empty()

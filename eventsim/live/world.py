@@ -156,7 +156,7 @@ class World:
             assert isinstance(box, Box)
             needed = (state.position + self.scene.disks.radius[:, None] - np.array(box.origin)).max(axis=0)
             width, height = np.maximum(message.size, np.nextafter(needed, np.inf)).tolist()
-            scene = self._scene_from(state, Box((width, height), box.origin))
+            scene = self._scene_from(state, replace(box, size=(width, height)))
             await self._begin(scene, self._rate, "resize", self.speed)
 
     async def log_to(self, path: str) -> None:

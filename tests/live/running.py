@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 MENU = {
     "width": 800, "height": 500, "count": 50, "masses": "equal", "radii": "equal", "packing": 0.2, "speed": 300,
-    "gravity": 0, "restitution": 1, "seed": 1,
+    "gravity": 0, "restitution": 1, "temperature": 0, "shaking": 0, "roughness": -1, "seed": 1,
 }  # fmt: skip
 
 

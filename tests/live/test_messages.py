@@ -5,9 +5,11 @@ import json
 import pytest
 
 from eventsim.errors import EventsimError, SceneError
+from eventsim.formulas.laws import Treatment
 from eventsim.live.menu import Menu
 from eventsim.live.messages import AddDisk, AddWall, MessageError, Open, Shown, Throw, read_message
 from eventsim.live.source import BuiltIn, Text
+from eventsim.scene.contact_law import law_of_scene
 from tests.live.running import menu
 
 
@@ -75,6 +77,21 @@ def test_the_menu_makes_the_scene_that_it_describes(masses, radii, count):
     assert (menu.scene().disks.position == disks.position).all()
 
 
+def test_the_menu_has_walls_that_heat_a_floor_that_shakes_and_disks_that_grip():
+    law = law_of_scene(Menu(width=900.0, height=600.0).scene())
+    assert (law.rough, law.drives, law.keeps_energy()) == (None, False, True)
+    warm = Menu(width=900.0, height=600.0, temperature=5000.0, shaking=20.0, roughness=0.5, seed=9).scene()
+    assert warm.seed == 9
+    assert warm.disks.spins().tolist() == [0.0] * 50
+    law = law_of_scene(warm)
+    assert law.rough == (0.5, 0.5)
+    assert [law.treatment(k) for k in range(4)] == [
+        *[Treatment(5000.0)] * 2, Treatment(shaking=20.0), Treatment(5000.0),
+    ]  # fmt: skip
+    with pytest.raises(MessageError, match="roughness = -2: must be a number from -1 to 1"):
+        read_message(json.dumps(menu(roughness=-2)))
+
+
 def test_a_dense_menu_uses_a_lattice_and_what_does_not_fit_is_refused():
     assert len(Menu(width=900.0, height=600.0, count=200, packing=0.7).scene().disks) == 200
     with pytest.raises(SceneError):
@@ -96,7 +113,11 @@ def test_a_scene_file_that_does_not_fit_a_live_view_is_refused(text, rule):
 
 
 def test_drawn_disks_and_walls_are_read_as_meant():
-    assert read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": 0.5}') == AddDisk(1.0, (3.0, 4.0), 0.5)
-    assert read_message('{"type": "wall", "time": 0, "start": [1, 2], "end": [3, 4]}') == AddWall(0.0, (1.0, 2.0), (3.0, 4.0))
+    assert read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": 0.5}') == AddDisk(
+        1.0, (3.0, 4.0), 0.5
+    )
+    assert read_message('{"type": "wall", "time": 0, "start": [1, 2], "end": [3, 4]}') == AddWall(
+        0.0, (1.0, 2.0), (3.0, 4.0)
+    )
     with pytest.raises(MessageError, match="radius = -1: must be a number from 0"):
         read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": -1}')

@@ -8,8 +8,10 @@ import pytest
 
 import eventsim as es
 from eventsim.measure.ensemble import ensemble_of
+from eventsim.replay.passage import Passage
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
+from eventsim.show.frames import frames_at
 from eventsim.validation.judge.matching import assigned
 from tests.live.driven import CLOSE, Page
 from tests.live.running import live_server
@@ -211,7 +213,9 @@ def test_side_by_side_with_the_per_frame_engine(page):
     page.open("count=40&speed=600&packing=0.3&seed=2&rate=30")
     page.wait("live.player.comparison && live.player.duration > 1.5")
     page.js("live.player.seek(1.5)")
-    page.wait("live.player.comparison.matching && live.player.view.time === 1.5 && live.part('differences').textContent")
+    page.wait(
+        "live.player.comparison.matching && live.player.view.time === 1.5 && live.part('differences').textContent"
+    )
     told = page.js("return live.part('differences').textContent")
     assert "per frame" in told
     astray, overlapping = page.js("const c = live.player.comparison; return [c.astray.size, c.overlapping]")
@@ -237,8 +241,12 @@ def test_another_opponent_knows_restitution_and_gravity(page, opponent):
     page.open(f"count=12&speed=200&gravity=300&restitution=0.9&seed=2&rate=240&opponent={opponent}")
     page.wait("live.player.comparison && live.player.duration > 0.5")
     page.js("live.player.seek(0.4)")
-    assert {"stepped": "fixed steps", "pymunk": "Chipmunk"}[opponent] in page.js("return live.part('differences').textContent")
-    assert "a contact within 0.02 of a disk's previous one is elastic" in page.js("return live.part('settings').textContent")
+    assert {"stepped": "fixed steps", "pymunk": "Chipmunk"}[opponent] in page.js(
+        "return live.part('differences').textContent"
+    )
+    assert "a contact within 0.02 of a disk's previous one is elastic" in page.js(
+        "return live.part('settings').textContent"
+    )
     assert "(TC model)" in page.js("return live.part('exact').textContent")
     assert page.js("return live.menu.field('opponent').value") == opponent
 
@@ -248,9 +256,9 @@ def test_the_page_matches_contacts_as_the_judgement_does(page):
     numbers = np.random.default_rng(5)
     for _ in range(20):
         exact, told = (sorted(numbers.integers(0, 30, numbers.integers(0, 5)).tolist()) for _ in range(2))
-        assert [tuple(pair) for pair in page.js("return assigned(arguments[0], arguments[1], 4)", exact, told)] == assigned(
-            exact, told, 4
-        )
+        assert [
+            tuple(pair) for pair in page.js("return assigned(arguments[0], arguments[1], 4)", exact, told)
+        ] == assigned(exact, told, 4)
 
 
 def test_two_windows_on_one_world(page):
@@ -312,3 +320,26 @@ def test_two_thousand_disks_play_for_a_minute_without_starving(page):
     )
     assert shown > 55
     assert script["starved"] < 100
+
+
+def test_walls_heat_and_shake_and_disks_grip(page, tmp_path):
+    page.open("count=30&speed=0&packing=0.2&temperature=20000&seed=4")
+    assert "walls heat, by chance, at kT = 20000" in page.js("return live.part('settings').textContent")
+    assert page.js("return live.player.world.state(0).angle") is None
+    page.fill(speed=100, shaking=40, roughness=0.5)
+    assert page.js("return live.part('notice').hidden")
+    for words in (
+        "walls heat, by chance, at kT = 20000",
+        "walls shake at 40",
+        "tangential restitution 0.5 between disks",
+    ):
+        assert words in page.js("return live.part('settings').textContent")
+    page.press("play")
+    page.wait("live.player.view.time > 1.0")
+    page.press("play")
+    log = es.load_log(page.fetch("log-file", tmp_path / "log.csv"))
+    assert np.abs(log.spin_a).max() > 0.0
+    page.assert_true_to(Replay(log))
+    angles = page.js("return Array.from(live.player.world.state(1).angle)")
+    (frame,) = frames_at(Passage(log), np.array([1.0]), 0.1)
+    assert angles == pytest.approx(frame.angle, abs=1e-9)

@@ -8,6 +8,7 @@ import pytest
 
 import eventsim as es
 from eventsim.replay.replay import Replay
+from eventsim.scene.roughness import TangentialRestitution
 from tests.live.running import Client, menu
 from tests.live.serving import log_of, run, worlds_alive
 
@@ -83,6 +84,26 @@ def test_moving_a_disk_and_resizing_begin_anew_from_what_is_shown(tmp_path):
         await client.tell({"type": "move", "time": 0.0, "disk": 0, "position": [50.0, 680.0]})
         third = await client.hear("opened")
         assert (third["why"], third["startTime"]) == ("move", 1.0)
+
+    run(story)
+
+
+def test_walls_keep_what_they_do_in_a_box_of_another_size(tmp_path):
+    async def story(connect, session, address):
+        client = await connect()
+        await client.tell(menu(temperature=4000.0, shaking=30.0, roughness=0.5))
+        assert "walls heat, by chance, at kT = 4000" in (await client.hear("opened"))["settings"]
+        await client.tell({"type": "resize", "time": 0.0, "size": [900.0, 700.0]})
+        opened = await client.hear("opened")
+        assert "walls heat, by chance, at kT = 4000; walls shake at 30" in opened["settings"]
+        log = await log_of(session, address, opened["world"], tmp_path)
+        assert log.scene.domain.size == (900.0, 700.0)
+        assert log.scene.tangential_restitution == TangentialRestitution(0.5, 0.5)
+        spins = log.scene.disks.spins()
+        await client.tell({"type": "disk", "time": 0.0, "position": [890.0, 690.0], "radius": 3.0})
+        opened = await client.hear("opened")
+        log = await log_of(session, address, opened["world"], tmp_path)
+        assert log.scene.disks.spins().tolist() == [*spins, 0.0]
 
     run(story)
 

@@ -92,7 +92,10 @@ def test_a_function_says_what_comes_back(laws, engine):
 def test_it_may_ask_for_all_that_is_known(laws):
     assert relative(es.simulate(named(laws, "by_all"), events=1, engine="reference")) == 2.0
     assert set(KNOWN) == {"restitution", "approach", "since", "mass"}
-    heavy = [{"position": [0, 0], "velocity": [4, 0], "radius": 0.5, "mass": 9}, {"position": [2, 0], "radius": 0.5, "mass": 9}]
+    heavy = [
+        {"position": [0, 0], "velocity": [4, 0], "radius": 0.5, "mass": 9},
+        {"position": [2, 0], "radius": 0.5, "mass": 9},
+    ]
     assert relative(es.simulate(named(laws, "by_all", disk=heavy), events=1, engine="reference")) == 4.0
 
 
@@ -118,6 +121,23 @@ def test_a_law_that_fails_at_a_contact_stops_the_run_before_it_in_a_sentence(law
     assert f"the law laws.py:{law}, at the contact of disks 0, 1 with the approach 4, {words}" in run.reason
     assert len(es.load_log(tmp_path / "log.npz")) == 0
     assert run.state.velocity.tolist() == [[4.0, 0.0], [0.0, 0.0]]
+
+
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+@pytest.mark.parametrize("wrong", ["1.0 / (approach - approach)", "-2.0"])
+def test_what_happened_before_a_law_fails_is_in_its_log(laws, wrong, engine, tmp_path):
+    """4, 2, 1: the third contact is the one at which it fails."""
+    if engine == "fast":
+        pytest.importorskip("numba")
+    box = {"domain": {"kind": "box", "size": [6, 6]}, "disk": [{"position": [1, 1], "velocity": [4, 0], "radius": 0.5}]}
+    told = []
+    for last in (wrong, "0.5"):
+        (laws / "laws.py").write_text(f"def law(approach):\n    return 0.5 if approach > 1.0 else {last}\n")
+        run = es.simulate(named(laws, "law", **box), events=3, engine=engine, log=tmp_path / "log.csv")
+        told.append((run.stopped, es.load_log(tmp_path / "log.csv").rows))
+    (stopped, kept), (whole, rows) = told
+    assert (stopped, len(kept), whole, len(rows)) == ("law", 2, "events", 3)
+    assert kept.tobytes() == rows[:2].tobytes()
 
 
 @pytest.mark.parametrize(

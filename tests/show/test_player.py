@@ -58,6 +58,30 @@ def test_positions_are_those_of_state_at(opened, name):
         assert_shows(shown(driver, moment), replay)
 
 
+def test_spokes_turn_as_their_disks_do(opened):
+    """By the angles, and by the pixels: away from the rim and the other spokes, ink is where the angle says."""
+    log = es.simulate(es.gallery("rough", n=25, spin=3.0), events=300, engine="reference", log=True).log
+    start, end = Replay(log).span
+    moments = np.linspace(0.0, end - start, 5)
+    driver = opened(log)
+    for moment, frame in zip(moments, frames_at(Passage(log), start + moments, 0.1), strict=True):
+        angles, inked, bare = driver.execute_script(
+            """
+            player.seek(arguments[0]);
+            const d = player.drawing, s = player.world.state(arguments[0]), r = player.world.disks.radius;
+            const ink = (i, angle) => {
+              const q = 0.6 * d.scale * r[i], x = d._x(s.x[i]) + q * Math.cos(angle), y = d._y(s.y[i]) - q * Math.sin(angle);
+              return Array.from(d.context.getImageData(Math.round(x), Math.round(y), 1, 1).data).join();
+            };
+            const each = Array.from(s.angle);
+            return [each, each.map((a, i) => ink(i, a)), each.map((a, i) => ink(i, a + Math.PI / 2))];
+            """,
+            float(moment),
+        )
+        assert angles == pytest.approx(frame.angle, abs=1e-9)
+        assert sum(one != other for one, other in zip(inked, bare, strict=True)) == 25
+
+
 def test_a_late_clock_and_a_kick_are_shown_too(opened):
     scene = scene_from_dict(
         {

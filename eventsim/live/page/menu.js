@@ -1,7 +1,7 @@
 "use strict";
 /* The menu: a form from which a scene is asked for, and the part of the page's address that says the same. */
 
-const NUMBERS = ["count", "packing", "speed", "gravity", "restitution", "seed"], WORDS = ["masses", "radii"];
+const NUMBERS = ["count", "packing", "speed", "gravity", "restitution", "temperature", "shaking", "roughness", "seed"], WORDS = ["masses", "radii"];
 const OWN = "", GIVEN = "?";
 const OPPONENTS = { frames: "per frame", stepped: "fixed steps", penalty: "springs", pymunk: "Chipmunk (pymunk)" };
 const OPPONENT_WORDS = {
