@@ -13,6 +13,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from eventsim.record.events import Floats
@@ -87,7 +88,8 @@ class Picture:
         self._disks = self._disk_artist()
         self._trails = Trails(passage, trail_frames) if look.trails else None
         self._trail = self._path_artist(self._palette.trail)
-        self._spokes = self._path_artist(self._palette.edge)
+        self._spokes = self._path_artist("black")
+        self._spokes.set_path_effects([withStroke(linewidth=2.6 * self.layout.unit, foreground="white")])  # seen on every colour
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
         self._bars = Bars(self._figure, self.layout, self._palette, name_of(log))
         self._bars.draw_key(self._colouring.key)

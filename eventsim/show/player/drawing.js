@@ -128,7 +128,7 @@ class Drawing {
     if (view.flash) this._drawGlow(state, view);
   }
 
-  /* A line from the middle of each disk to its edge, which turns with it. */
+  /* A line from the middle of each disk to its edge, which turns with it; dark in white, so that it is seen on every colour. */
   _drawSpokes(state) {
     const context = this.context, radii = this.world.disks.radius;
     context.beginPath();
@@ -140,7 +140,11 @@ class Drawing {
         context.lineTo(px + dx, py + dy);
       }
     }
-    context.stroke();
+    for (const [colour, width] of [["#ffffff", 2.6], ["#000000", 1.1]]) {
+      context.strokeStyle = colour;
+      context.lineWidth = width * this.ratio;
+      context.stroke();
+    }
   }
 
   _circle(x, y, r) {
