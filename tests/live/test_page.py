@@ -218,6 +218,7 @@ def test_side_by_side_with_the_per_frame_engine(page):
     )
     told = page.js("return live.part('differences').textContent")
     assert "per frame" in told
+    assert "energy unchanged" in told  # it keeps all but last bits: that is no -0.00 %
     astray, overlapping = page.js("const c = live.player.comparison; return [c.astray.size, c.overlapping]")
     assert f"{astray} of 40 astray" in told
     assert f"{overlapping} pairs overlap" in told

@@ -151,6 +151,14 @@ def test_a_setting_is_quoted_as_it_was_typed(tmp_path):
         assert write == f"write: {right}"
 
 
+def test_two_disks_in_single_brackets_are_told_like_one(tmp_path):
+    single = "[disk]\nposition = [0.3, 0.8]\nradius = 0.05\n"
+    (tmp_path / "scene.toml").write_text(f'[domain]\nkind = "open"\n{single}{single.replace("0.3", "1.3")}')
+    (problem,) = told(tmp_path / "scene.toml")
+    assert "line 6: [disk]" in problem
+    assert "write:  [[disk]]" in problem
+
+
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
 def test_a_mark_of_byte_order_is_no_part_of_a_scene(tmp_path, encoding):
     for name, text in (
