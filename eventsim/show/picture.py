@@ -89,7 +89,9 @@ class Picture:
         self._trails = Trails(passage, trail_frames) if look.trails else None
         self._trail = self._path_artist(self._palette.trail)
         self._spokes = self._path_artist("black")
-        self._spokes.set_path_effects([withStroke(linewidth=2.6 * self.layout.unit, foreground="white")])  # seen on every colour
+        self._spokes.set_path_effects(
+            [withStroke(linewidth=2.6 * self.layout.unit, foreground="white")]
+        )  # seen on every colour
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
         self._bars = Bars(self._figure, self.layout, self._palette, name_of(log))
         self._bars.draw_key(self._colouring.key)

@@ -35,9 +35,7 @@ def scene(*, n: int = 60, shaking: float = 1.0, restitution: float = 0.8, seed: 
             "restitution": {"pair": restitution, "wall": 1.0},
             "contact_duration": 1e-6,
             "domain": {"kind": "channel", "size": [40.0, 100.0], "walls": {"bottom": {"shaking": shaking}}},
-            "gas": [
-                {"count": n, "radius": 0.5, "temperature": 1.0, "region": [0.0, 0.0, 40.0, 20.0], "seed": seed}
-            ],
+            "gas": [{"count": n, "radius": 0.5, "temperature": 1.0, "region": [0.0, 0.0, 40.0, 20.0], "seed": seed}],
         },
         source="gallery scene vibrated",
     )
