@@ -110,7 +110,6 @@ class ChipmunkSession(SteppedSession):
         if not self._watched:
             for _ in range(steps):
                 self._space.step(self.dt)
-            self._read()
             return steps
         if not self._listening:
             self._space.on_collision(None, None, post_solve=self._solved)
@@ -143,6 +142,10 @@ class ChipmunkSession(SteppedSession):
         pull_x, pull_y = self.ground.gx * self.dt, self.ground.gy * self.dt
         self.found.sums[OUTER_X] += float(mass @ (m.vx - before[0] - pull_x))
         self.found.sums[OUTER_Y] += float(mass @ (m.vy - before[1] - pull_y))
+
+    def _read_back(self) -> None:
+        if not self._watched:
+            self._read()
 
     def _read(self) -> None:
         m = self.disks

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from time import thread_time
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,7 @@ VAIN_STEPS = 1_000_000
 class SteppedSession(Session):
     """A stepped engine in the middle of a run; engines add `_run`.
 
-    dt: the step, time; None: the usual one.
+    dt: the step, time; None: the usual one.  stepping_s: CPU seconds of its steps alone, without what is asked of them.
     Raises EventsimError for a step that is not a positive number, and for scenes that the engine does not know.
     """
 
@@ -51,6 +52,7 @@ class SteppedSession(Session):
         self.found: Found = nothing_found(BUFFER if keep_rows else 0)
         self.clock_of_steps = StepClock(stage, self.dt)
         self.trajectory: Trajectory = Trajectory(stage.gravity, stage.corner, stage.period)
+        self.stepping_s = 0.0
         self._keep_rows = keep_rows
         self._sampled = True
         self._blocks: list[Rows] = []
@@ -77,7 +79,10 @@ class SteppedSession(Session):
             steps = min(budget, FOREVER if left is None else left)
             if self._sampled:
                 steps = min(steps, self.trajectory.steps_to_next(clock.steps))
+            began = thread_time()
             done = self._run(steps, most_events)
+            self.stepping_s += thread_time() - began
+            self._read_back()
             clock.count(done)
             tell_counters(self.found, self.counters)
             self.counters.steps = clock.steps
@@ -88,6 +93,9 @@ class SteppedSession(Session):
             if vain is not None and self.counters.events == vain[1] and clock.steps > vain[0] + VAIN_STEPS:
                 return "quiet"
         return None
+
+    def _read_back(self) -> None:
+        """Take over what a library has moved, where steps do not."""
 
     def only_step(self) -> None:
         """Do from here on what the engine needs for its motion and nothing more, for a stopwatch: the trajectory ends here."""
