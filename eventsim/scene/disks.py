@@ -71,7 +71,11 @@ class Disks:
             raise SceneError(problems)
         count = len(centres)
         at_rest = np.zeros((count, 2))
-        given: dict[str, ArrayLike] = {"velocity": at_rest if velocity is None else velocity, "radius": radius, "mass": mass}
+        given: dict[str, ArrayLike] = {
+            "velocity": at_rest if velocity is None else velocity,
+            "radius": radius,
+            "mass": mass,
+        }
         given |= {key: value for key, value in (("spin", spin), ("moment", moment)) if value is not None}
         wanted = {**dict.fromkeys(given, (count,)), "velocity": (count, 2)}
         arrays = {"position": centres}
@@ -231,7 +235,7 @@ def _names(value: str | Sequence[str] | Names | None, count: int, problems: list
     wrong = [name for name in np.unique(names).tolist() if name and not (is_name(name) and "-" not in name)]
     problems += [f"disks.species = {name!r}: must be one line without control characters and hyphens" for name in wrong]
     names.setflags(write=False)
-    return names if names.any() else None
+    return names if (names != "").any() else None
 
 
 def _floats(value: ArrayLike, key: str, problems: list[str]) -> Floats:

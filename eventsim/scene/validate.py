@@ -39,6 +39,7 @@ from eventsim.scene.overlaps import (
 from eventsim.scene.restitution import Restitution
 from eventsim.scene.scale_rules import scale_problems
 from eventsim.scene.walls import Wall, parts_of, wall_names
+from eventsim.scene.walls.wall import MOST_PERIODS
 
 WRITTEN_OUT: ContextVar[int] = ContextVar("WRITTEN_OUT", default=3)
 """Of many problems of one kind so many are written out; the rest are counted."""
@@ -217,9 +218,12 @@ def _period_problems(wall: Wall, domain: Domain) -> Iterator[str]:
     """Rules of a wall in a domain that repeats."""
     if isinstance(domain, Open) or not is_place(domain.origin) or not all(map(is_length, domain.size)):
         return
-    for axis in (0, 1):
-        if domain.periodic[axis]:
-            yield from wall.period_problems(axis, domain.origin[axis], domain.size[axis])
+    axes = [axis for axis in (0, 1) if domain.periodic[axis]]
+    broken = [text for axis in axes for text in wall.period_problems(axis, domain.origin[axis], domain.size[axis])]
+    yield from broken
+    over = wall.most_periods([domain.size[axis] if axis in axes else math.inf for axis in (0, 1)])
+    if not broken and over > MOST_PERIODS:
+        yield f": must not stretch over more than {MOST_PERIODS} periods, counted in x times in y, and does over {over:.0f}"
 
 
 def number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -> list[str]:

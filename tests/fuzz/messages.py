@@ -3,8 +3,8 @@
     python -m tests.fuzz.messages [--messages N] [--seed S] [--pages P]
 
 Pages come and go, open scenes, throw, move and resize at all numbers that stand at a border.  Right is: every message is answered
-(`opened`, `done` or a sentence) in time, no exception reaches the log, and when all pages have left the worlds are gone and the
-memory is what it was.
+(`opened`, `done` or a sentence) in time, and no exception reaches the log.  After each ROUND of messages all pages leave: then
+the worlds are gone, and the memory levels off once what is loaded and compiled on demand has been asked for.
 """
 
 from __future__ import annotations
@@ -21,18 +21,40 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from eventsim.live.messages import OPPONENTS
 from tests.live.running import MENU, header_of
 from tests.live.serving import serving, worlds_alive
 
 PATIENCE = 300.0
 """Seconds within which a message is answered on a busy machine, where the first comparison compiles its engine."""
 
+ROUND = 2000
+"""Messages after which all pages leave, and the memory is looked at."""
+
+MORE = 30
+"""MB that the second half of the rounds may hold more than the second quarter."""
+
 BORDERS = (
     0, 1, -1, 0.5, 1e-9, 5e-324, -5e-324, 1e-300, 50.0, 1e4, 1e15, -1e15, 1.0000001e15, 1e308, 2**31, 2**53, 2**53 + 1, 10**30,
     True, None, "1", "", [], {}, [1, 2], "\ud800", float("nan"), float("inf"),
 )  # fmt: skip
-NAMES = ("gas", "break", "bounce", "sinai", "galperin", "collapse", "jar", "periodic-fluid", "newton-cradle", "tie", "cellar", "")
-KINDS = {"shown": 45, "throw": 20, "move": 10, "resize": 8, "control": 8, "open": 4, "join": 2, "broken": 3}
+NAMES = (
+    "gas",
+    "break",
+    "bounce",
+    "sinai",
+    "galperin",
+    "collapse",
+    "jar",
+    "periodic-fluid",
+    "newton-cradle",
+    "tie",
+    "cellar",
+    "",
+)
+KINDS = {
+    "shown": 45, "throw": 20, "move": 10, "resize": 8, "control": 8, "disk": 4, "wall": 4, "open": 4, "join": 2, "broken": 3,
+}  # fmt: skip
 BOX = '[domain]\nkind = "box"\nsize = [4, 4]\n'
 TEXTS = (
     '[domain]\nkind = "open"\n'
@@ -72,7 +94,12 @@ class Generator:
 
     def _shown(self, edition: int, time: float, world: str) -> dict[str, Any]:
         when = self._when(time + 0.05)
-        return {"edition": edition, "time": when, "events": self.chance.choice([0, 100, 2**53]), "speed": self._number(1.0)}
+        return {
+            "edition": edition,
+            "time": when,
+            "events": self.chance.choice([0, 100, 2**53]),
+            "speed": self._number(1.0),
+        }
 
     def _throw(self, edition: int, time: float, world: str) -> dict[str, Any]:
         velocity = [self._number(100.0), self._number(-100.0)]
@@ -82,6 +109,14 @@ class Generator:
         place = [self._number(400.0), self._number(250.0)]
         return {"time": self._when(time), "disk": self.chance.choice([0, 1, 7, 49]), "position": place}
 
+    def _disk(self, edition: int, time: float, world: str) -> dict[str, Any]:
+        place = [self._number(400.0), self._number(250.0)]
+        return {"time": self._when(time), "position": place, "radius": self._number(10.0)}
+
+    def _wall(self, edition: int, time: float, world: str) -> dict[str, Any]:
+        start, end = ([self._number(800.0), self._number(500.0)] for _ in range(2))
+        return {"time": self._when(time), "start": start, "end": end}
+
     def _resize(self, edition: int, time: float, world: str) -> dict[str, Any]:
         return {"time": self._when(time), "size": [self._number(800.0), self._number(500.0)]}
 
@@ -90,19 +125,21 @@ class Generator:
         return {"time": self._when(time), "speed": self._number(1.0), "direction": direction, "playing": playing}
 
     def _open(self, edition: int, time: float, world: str) -> dict[str, Any]:
-        rate = self.chance.choice([None, None, 60, self._number(60)])
+        beside: dict[str, Any] = {"rate": self.chance.choice([None, None, 60, self._number(60)])}
+        if self.chance.random() < 0.5:
+            beside["opponent"] = self.chance.choice([*OPPONENTS, "fast", 1])
         scene = self.chance.choice(["menu", "gallery", "text", "given"])
         if scene == "menu":
             menu = {**MENU, "count": self.chance.choice([1, 30, 80]), "seed": self.chance.randrange(9)}
             menu[self.chance.choice(list(menu))] = self.chance.choice([*BORDERS, *menu.values()])
-            return {"scene": scene, "menu": menu, "rate": rate}
+            return {"scene": scene, "menu": menu, **beside}
         if scene == "gallery":
             parameters = {self.chance.choice(["n", "seed", "mass_ratio", "name", "radius"]): self._number(16)}
             chosen = self.chance.choice([{}, parameters])
-            return {"scene": scene, "name": self.chance.choice(NAMES), "parameters": chosen, "rate": rate}
+            return {"scene": scene, "name": self.chance.choice(NAMES), "parameters": chosen, **beside}
         if scene == "text":
-            return {"scene": scene, "text": self.chance.choice(TEXTS), "rate": rate}
-        return {"scene": scene, "rate": rate}
+            return {"scene": scene, "text": self.chance.choice(TEXTS), **beside}
+        return {"scene": scene, **beside}
 
     def _join(self, edition: int, time: float, world: str) -> dict[str, Any]:
         return {"world": self.chance.choice([world, "nobody", "x" * 200])}
@@ -163,17 +200,23 @@ async def fuzz(messages: int, seed: int, pages: int, stay: int = 400) -> dict[st
     """Send so many messages, in turn from some pages, of which each leaves after `stay` messages; what came of it."""
     generator, alarm, heard = Generator(seed), Alarm(), Counter[str]()
     logging.getLogger().addHandler(alarm)
-    slowest, memory = 0.0, []
+    slowest, slow, held, worlds = 0.0, "", list[int](), 0
     try:
         async with serving() as (connect, _, _address):
             open_ = [Page((await connect()).socket) for _ in range(pages)]
             for number in range(messages):
                 place = number % pages
+                if number and number % ROUND == 0:
+                    for page in open_:
+                        heard += page.heard
+                        await page.leave()
+                    worlds += await left_alone(held)
+                    print(f"{number} messages: {held[-1]} MB", flush=True)
+                    open_ = [Page((await connect()).socket) for _ in range(pages)]
                 if number // pages % stay == stay - 1 - place:
                     heard += open_[place].heard
                     await open_[place].leave()
                     open_[place] = Page((await connect()).socket)
-                    memory.append(megabytes())
                 page = open_[place]
                 text, answered = generator.message(page.edition, page.time, generator.chance.choice(open_).world)
                 began = monotonic()
@@ -187,14 +230,30 @@ async def fuzz(messages: int, seed: int, pages: int, stay: int = 400) -> dict[st
             for page in open_:
                 heard += page.heard
                 await page.leave()
-            await asyncio.sleep(0.5)
-        gc.collect()
+            worlds += await left_alone(held)
     finally:
         logging.getLogger().removeHandler(alarm)
     return {
-        "said": alarm.said, "heard": dict(heard), "worlds": len(worlds_alive()), "memory": [*memory, megabytes()],
+        "said": alarm.said,
+        "heard": dict(heard),
+        "worlds": worlds,
+        "held": held,
         "slowest": (round(slowest, 2), slow),
-    }  # fmt: skip
+    }
+
+
+async def left_alone(held: list[int]) -> int:
+    """Note what the process holds when all pages have left; how many worlds are there all the same."""
+    await asyncio.sleep(0.5)
+    gc.collect()
+    held.append(megabytes())
+    return len(worlds_alive())
+
+
+def grows(held: list[int]) -> bool:
+    """Whether the memory goes on to grow after half of the rounds."""
+    quarter = len(held) // 4
+    return quarter > 0 and max(held[2 * quarter :]) > max(held[quarter : 2 * quarter]) + MORE
 
 
 def megabytes() -> int:
@@ -213,7 +272,7 @@ def main() -> int:
     found = asyncio.run(fuzz(asked.messages, asked.seed, asked.pages))
     for name, value in found.items():
         print(f"{name}: {value}")
-    return 1 if found["said"] or found["worlds"] else 0
+    return 1 if found["said"] or found["worlds"] or grows(found["held"]) else 0
 
 
 if __name__ == "__main__":

@@ -6,7 +6,12 @@ import pytest
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
 
-from tests.fuzz.messages import fuzz
+from eventsim.live.messages import READERS
+from tests.fuzz.messages import KINDS, fuzz
+
+
+def test_every_kind_of_message_is_sent():
+    assert set(KINDS) - {"broken"} == set(READERS)
 
 
 def test_messages_at_all_borders_are_answered():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
 from itertools import product
@@ -114,6 +114,11 @@ class Wall(Manner, ABC):
             letter = "xy"[axis]
             yield f": must not stretch over more than {MOST_PERIODS} periods in {letter} (an arc: its whole circle)"
 
+    def most_periods(self, period: Sequence[float]) -> float:
+        """Over how many periods (inf: none) a piece of it stretches at most, in x times in y."""
+        extents = [part.bounds() for part in self.parts("")]
+        return max(math.prod(max((high[k] - low[k]) / period[k], 1.0) for k in (0, 1)) for low, high in extents)
+
     def problems(self) -> Iterator[str]:
         """Every rule that the wall breaks, each problem beginning with the key that breaks it."""
         broken = list(self.number_problems({key: getattr(self, key) for key in keys_of(type(self))}))
@@ -180,7 +185,8 @@ def shifts(bounds: Bounds, corner: Point, period: Point, reach: float) -> list[P
         if math.isinf(length):
             return [0.0]
         low, high = (bound[axis] - corner[axis] for bound in bounds)
-        first, last = math.ceil((-reach - high) / length), math.floor((length + reach - low) / length)
+        near = min(reach, length)  # of what is wider than a period the nearest images tell all there is
+        first, last = math.ceil((-near - high) / length), math.floor((length + near - low) / length)
         return sorted((k * length for k in range(first, last + 1)), key=abs)
 
     return list(product(along(0), along(1)))
