@@ -67,6 +67,12 @@ BELOW = 2.0**-50
 Each of two places is rounded where its flight begins and where the gap is looked at, and the contact before was off by as much.
 """
 
+SLOWLY = 2.0**-30
+"""A flight of more than this part of an epoch is slow: contact times are to be right to 1e-9, however badly a gap is known."""
+
+LARGEST_PILE = 2.0**-42
+"""The most that errors are taken to pile up to, as a part of the places: a gap of that size is hardly slow to close in a gas."""
+
 
 def contact_doubt(size: Real, approach: Real, bend: Real, time: Real) -> Real:
     """How far a computed contact time may be from the exact one of the two flights; NEVER where even the contact is in doubt.
@@ -104,12 +110,32 @@ def round_size(places: Real, distance: Real, reach: Real, way: Real) -> Real:
     return places + 2.0 * distance + reach + way + distance * (far if far < FAR else FAR)
 
 
-def is_sunk(approach: Real, lag: Real, size: Real) -> Real:
+def piled_up(loss: float) -> float:
+    """The part of its places above which a gap of a losing series is known to a few per cent.
+
+    Each contact leaves a last bit or two in a gap.  It turns errors round with the velocities, so e of them is left: they pile
+    up to 1 / (1 - e) of one.  Gaps shrink faster than that: so the last ones are known worst.  As for bounces, FLOORS above it.
+
+    loss: 1 - e; 0 where nothing is lost, and nothing piles up to be feared.
+    """
+    return min(FLOORS * ROUNDED / loss, LARGEST_PILE) if loss > 0.0 else BELOW
+
+
+def is_sunk(approach: Real, lag: Real, size: Real, pile: float, slowly: float) -> Real:
     """Whether the gap that closed at speed `approach` for a time `lag` was one of the last bits of places of that size.
 
-    What closed at once was no open gap.
+    What closed at once was no open gap.  A flight that is not slow is right to last bits of the clock however badly its gap is
+    known, as long as the order is: so nearly simultaneous contacts in a gas end no run.
+
+    Args:
+        approach: the speed at which the gap closed.
+        lag: for so long.
+        size: of what the gap is a difference of.
+        pile: `piled_up` of the scene.
+        slowly: SLOWLY of its epoch.
     """
-    return (lag > 0.0) & (approach * lag <= BELOW * size)
+    gap = approach * lag
+    return (lag > 0.0) & ((gap <= BELOW * size) | ((lag > slowly) & (gap <= pile * size)))
 
 
 def tie_screen(size: float, slowest: float, between: float) -> float:

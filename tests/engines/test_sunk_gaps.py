@@ -1,6 +1,7 @@
 """Behind contacts that take energy a gap of a few last bits is no contact that anybody knows: the run stops and says so."""
 
 import math
+from decimal import Decimal, localcontext
 from itertools import pairwise
 
 import pytest
@@ -99,6 +100,50 @@ def test_a_disk_in_a_corner_meets_both_walls_however_small_the_gap(engine):
         seen += first < second
         assert second - first < 2.0**-48
     assert seen > 5
+
+
+def light_and_heavy(restitution, mass):
+    """A wall and a light disk that a heavy one drives against it."""
+    disks = es.Disks([(1.0, 0.0), (3.0, 0.0)], [(0.0, 0.0), (-1.0, 0.0)], 0.5, [1.0, mass])
+    wall = es.Segment((0.0, -9.0), (0.0, 9.0))
+    return es.Scene(disks, es.Open(), [wall], restitution=restitution)
+
+
+def flights(restitution, mass, most):
+    """(when it ends, how long it was) of the flights between their contacts, in 100 digits, from the floats."""
+    e, m = Decimal(restitution), Decimal(mass)
+    x, y, u, w = (Decimal(v) for v in (0.5, 1.5, 0.0, -1.0))  # gaps to the wall
+    time, found = Decimal(0), []
+    for _ in range(most):
+        lag = x / -u if u < 0 else (y - x) / (u - w)
+        x, y, time = x + u * lag, y + w * lag, time + lag
+        push = (1 + e) * (u - w) / (1 + m)
+        u, w = (-e * u, w) if u < 0 else (u - m * push, w + push)
+        found.append((time, lag))
+    return found
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("restitution", "critical"), [(0.1717, 1.0), (0.6, 15.0), (0.9, 360.0), (0.98, 9800.0)])
+def test_errors_that_pile_up_in_a_series_never_show_in_its_times(restitution, critical, engine):
+    """A gap is off by a few last bits over 1 - e; at the critical mass flights are long until then, whatever e."""
+    run = es.simulate(light_and_heavy(restitution, critical), until=1e9, engine=engine, log=True)
+    assert run.stopped in ("collapse", "digits")
+    assert len(run.log) > 30
+    with localcontext() as digits:
+        digits.prec = 100
+        true = flights(restitution, critical, len(run.log))
+    for time, (ends, lag) in zip(run.log.time.tolist(), true, strict=True):
+        assert abs(time - float(ends)) <= 0.05 * float(lag) + 2.0**-50 * time
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_near_tie_in_a_gas_is_no_sunk_gap(engine):
+    """Behind a contact that takes energy the next gap is 20 last bits: its contact comes at once, and is right to last bits."""
+    gap = 20.0 * 2.0**-52
+    disks = es.Disks([(-2.0, 0.0), (0.0, 0.0), (2.0 + gap, 0.0)], [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)], 0.5)
+    run = es.simulate(es.Scene(disks, es.Open(), restitution=0.9), events=2, engine=engine)
+    assert run.stopped == "events"
 
 
 ROUND = {

@@ -108,8 +108,8 @@ class Rules(NamedTuple):
     of chance.  classes: there are immovable disks or tracers.  features: number of wall shapes; shapes: of each of the kinds
     of `shapes` whether there is one; first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.
     still: see `stillness_of`, None where disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.
-    sinks: gaps can sink below the digits.  pair_roughness, wall_roughness: the tangential restitution, None where contacts
-    turn no disk.
+    sinks: the part of places that sunk gaps are, None where none sink.  pair_roughness, wall_roughness: the tangential
+    restitution, None where contacts turn no disk.
     """
 
     gx: object

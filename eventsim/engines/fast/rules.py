@@ -13,6 +13,7 @@ from eventsim.engines.fast.plan import Grids
 from eventsim.engines.fast.shapes import CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
 from eventsim.engines.reference.sunk import can_creep, can_sink
+from eventsim.formulas.doubt import piled_up
 from eventsim.formulas.laws import Law, Numbers, Own
 from eventsim.formulas.rough import SMOOTH
 from eventsim.record.events import Floats
@@ -55,7 +56,7 @@ def rules_of(stage: Stage) -> Rules:
         *instant_of(stage),
         stillness_of(stage),
         stage.tie_screen,
-        1 if can_sink(stage) or can_creep(stage) else None,
+        piled_up(stage.law.loss()) if can_sink(stage) or can_creep(stage) else None,
         *(None if beta == SMOOTH else beta for beta in stage.law.rough or (SMOOTH, SMOOTH)),
     )
 

@@ -19,13 +19,13 @@ WIDER = 2.0
 @inline
 def pair_may_be_sunk(m, rules, i, j, now, sinks):
     """Whether two disks that meet now were as good as in contact when the later of their flights began."""
-    return False if sinks is None else _pair_may_be_sunk(m, rules, i, j, now)
+    return False if sinks is None else _pair_may_be_sunk(m, rules, i, j, now, sinks)
 
 
 @inline
 def wall_may_be_sunk(m, rules, i, code, now, gx, sinks):
     """The same of a disk and the wall that the code of its event stands for; under gravity only of one that is round."""
-    return False if sinks is None else _wall_may_be_sunk(m, rules, i, code, now, gx)
+    return False if sinks is None else _wall_may_be_sunk(m, rules, i, code, now, gx, sinks)
 
 
 @inline
@@ -42,7 +42,7 @@ def _has_met_nothing(m, i, epoch):
 
 
 @part
-def _pair_may_be_sunk(m, rules, i, j, now):
+def _pair_may_be_sunk(m, rules, i, j, now, sinks):
     t, other = real(m.disks, i * REALS + T), real(m.disks, j * REALS + T)
     xi, yi = place(m, rules, i, now)
     xj, yj = place(m, rules, j, now)
@@ -52,11 +52,11 @@ def _pair_may_be_sunk(m, rules, i, j, now):
     dx, dy = (xi - xj) - shift_x, (yi - yj) - shift_y
     reach = real(m.disks, i * REALS + RADIUS) + real(m.disks, j * REALS + RADIUS)
     size = abs(dx) * max(abs(xi), abs(xj)) + abs(dy) * max(abs(yi), abs(yj)) + reach * reach
-    return is_sunk(-(dx * (ui - uj) + dy * (wi - wj)), now - max(t, other), WIDER * size)
+    return is_sunk(-(dx * (ui - uj) + dy * (wi - wj)), now - max(t, other), WIDER * size, sinks, 0.0)
 
 
 @part
-def _wall_may_be_sunk(m, rules, i, code, now, gx):
+def _wall_may_be_sunk(m, rules, i, code, now, gx, sinks):
     wall, side = (WALL - code) // 2, -1 if (WALL - code) % 2 else 1
     if gx is not None and (wall < rules.first_feature or not is_hollow(m, wall - rules.first_feature)):
         return False
@@ -64,4 +64,4 @@ def _wall_may_be_sunk(m, rules, i, code, now, gx):
     u, w = speed(m, rules, i, now)
     nx, ny = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
     size = abs(nx * x) + abs(ny * y) + max(abs(nx), abs(ny)) * real(m.disks, i * REALS + RADIUS)
-    return is_sunk(-(nx * u + ny * w), now - real(m.disks, i * REALS + T), WIDER * size)
+    return is_sunk(-(nx * u + ny * w), now - real(m.disks, i * REALS + T), WIDER * size, sinks, 0.0)

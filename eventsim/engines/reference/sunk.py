@@ -13,7 +13,7 @@ from eventsim.engines.collapse import named
 from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
-from eventsim.formulas.doubt import AT_ONCE, is_sunk
+from eventsim.formulas.doubt import AT_ONCE, BELOW, SLOWLY, is_sunk, piled_up
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.post import Post
 from eventsim.scene.stage import Stage
@@ -29,6 +29,7 @@ class Sunk:
         self._stage = stage
         self._state = state
         self._looks, self._creeps = can_sink(stage), can_creep(stage)
+        self._pile, self._slowly = piled_up(stage.law.loss()), SLOWLY * stage.epoch_length
         self._start = list(zip(stage.x.tolist(), stage.y.tolist(), strict=True))
 
     def reason(self, generation: list[Event]) -> str | None:
@@ -61,7 +62,7 @@ class Sunk:
         if event.b < 0 and self._stage.gravity is not None:
             return None  # disks come to rest there
         approach, size = self._of_pair(event) if event.b >= 0 else self._of_wall(event)
-        return approach * lag if is_sunk(approach, lag, size) else None
+        return approach * lag if is_sunk(approach, lag, size, self._pile, self._slowly) else None
 
     def _hop(self, event: Event) -> float | None:
         """The gap that closes where a disk that moves along a round wall meets it; None where it is known.
@@ -74,7 +75,8 @@ class Sunk:
         if state.met[i] and (self._stage.settles or all(met[0] != event.b for met in state.met[i])):
             return None  # where disks settle, a flight that begins on contact is known to
         (approach, size), lag = self._of_wall(event), float(event.time - state.t[i])
-        if not (is_sunk(approach, lag, size) and approach < ALONG * math.hypot(*state.speed(i, event.time))):
+        speed = math.hypot(*state.speed(i, event.time))
+        if not (is_sunk(approach, lag, size, BELOW, self._slowly) and approach < ALONG * speed):
             return None
         return approach * lag
 
@@ -84,7 +86,8 @@ class Sunk:
         kx = event.image[0] + state.wraps_x[a] - state.wraps_x[b]
         ky = event.image[1] + state.wraps_y[a] - state.wraps_y[b]
         return any(
-            state.contact_time[i] == state.t[i] and met in state.met[i] for i, met in ((a, (b, kx, ky)), (b, (a, -kx, -ky)))
+            state.contact_time[i] == state.t[i] and met in state.met[i]
+            for i, met in ((a, (b, kx, ky)), (b, (a, -kx, -ky)))
         )
 
     def _has_lost(self, i: int) -> bool:
