@@ -30,7 +30,7 @@ def is_endless(rows: Rows, stage: Stage) -> bool | None:
     """
     who = list(zip(rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True))
     period = next((p for p in range(1, LONGEST_ROUND + 1) if 3 * p <= len(who) and who[-2 * p : -p] == who[-p:]), None)
-    if period is None or stage.gravity is not None or stage.law.duration is not None:
+    if period is None or stage.gravity is not None or stage.law.duration is not None or any(stage.law.grips):
         return None
     disks = sorted({i for a, b, _ in who[-period:] for i in (a, b) if i >= 0})
     weight = np.ones(len(disks)) if stage.mass is None else np.array([_inverse(float(stage.mass[i])) for i in disks])
@@ -107,8 +107,8 @@ def _directions(
 
 def _restitution(contact: tuple[int, int, int], stage: Stage) -> float:
     """At low speeds."""
-    _, b, wall = contact
-    return stage.law.series(stage.law.pair if b >= 0 else stage.law.of_wall(wall))
+    a, b, wall = contact
+    return stage.law.series(stage.usual(a, b) if b >= 0 else stage.law.of_wall(wall))
 
 
 def _inverse(mass: float) -> float:

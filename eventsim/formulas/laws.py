@@ -8,7 +8,7 @@ what follows for contacts that pile up, for rest, for neighbouring runs.  Kernel
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple, Protocol
 
 from eventsim.formulas.impulse import contact_restitution
@@ -85,8 +85,8 @@ class Law:
         walls: the usual restitution of each wall, by its number in the log; None where `wall` is that of all.
         pairs: that of each two species, by their numbers; None where `pair` is that of all.
         treatments: what walls do besides, by their numbers in the log; None where none does anything.
-        by_speed: whether it looks at the speed of approach.  Then contacts of one instant that share disks are resolved only
-            where each is what it would be alone, and stepped engines do not know it.
+        by_speed: whether it looks at the speed of approach.  Then any contact may take energy, contacts of one instant that share
+            disks are resolved only where each is what it would be alone, and stepped engines do not know it.
         rough: the tangential restitution, where disks spin; None where they have no spin.
     """
 
@@ -141,24 +141,28 @@ class Law:
 
     def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
         """Whether contacts conserve energy: those between disks, those at walls."""
+        if self.by_speed:
+            return not (pairs or walls)
         normal = all(share == 1.0 for share in self.shares(pairs, walls)) and not (walls and self.drives)
         return normal and (self.rough is None or self.rough.keeps_energy(pairs, walls))
 
     def loses_energy(self) -> bool:
         """Whether contacts take energy, so that they can pile up."""
-        return any(share < 1.0 for share in self.shares()) or (self.rough is not None and not self.rough.keeps_energy())
+        if self.by_speed or any(share < 1.0 for share in self.shares()):
+            return True
+        return self.rough is not None and not self.rough.keeps_energy()
 
     def loss(self) -> float:
         """1 - e of the least inelastic contacts that take energy, at the lowest speeds; 0 where none does."""
         return min((1.0 - e for e in self.shares() if e < 1.0), default=0.0)
 
     def comes_to_rest(self) -> bool:
-        """Whether bounces become ever lower, so that under gravity disks end up lying on something."""
-        return any(share < 1.0 for share in self.shares())
+        """Whether bounces become ever lower, so that under gravity disks end up lying on something; with a duration none do."""
+        return self.duration is None and any(share < 1.0 for share in self.shares())
 
     def series(self, usual: float) -> float:
-        """The restitution of bounces that follow each other ever faster, at a wall with this usual one."""
-        return usual
+        """The restitution of slow contacts that follow each other ever faster, where this is the usual one; 1 with a duration."""
+        return usual if self.duration is None else 1.0
 
     @property
     def refusal(self) -> str | None:
@@ -251,14 +255,6 @@ class TimeOfContact(Law):
 
     __slots__ = ()
 
-    def comes_to_rest(self) -> bool:
-        """Bounces that are short enough keep their height."""
-        return False
-
-    def series(self, usual: float) -> float:
-        """1: in the end they are elastic."""
-        return 1.0
-
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts."""
         return (
@@ -285,22 +281,6 @@ class Yielding(Law):
     def numbers(self) -> Numbers:
         """Its speed, and the duration if it has one."""
         return Numbers(self.duration, self.yield_speed)
-
-    def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
-        """Fast contacts take some."""
-        return not (pairs or walls)
-
-    def loses_energy(self) -> bool:
-        """Yes, where they are fast."""
-        return True
-
-    def comes_to_rest(self) -> bool:
-        """If slow contacts take energy, however fast they follow each other."""
-        return self.duration is None and any(share < 1.0 for share in self.shares())
-
-    def series(self, usual: float) -> float:
-        """That of slow contacts, which follow each other ever faster."""
-        return usual if self.duration is None else 1.0
 
     def name(self) -> str:
         """What a sentence calls it."""
@@ -330,14 +310,6 @@ class Own(Law):
     def possible(self, usual: float, approach: float) -> tuple[float, ...] | None:
         """Nobody but the function knows."""
         return None
-
-    def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
-        """Nobody knows."""
-        return not (pairs or walls)
-
-    def loses_energy(self) -> bool:
-        """It may."""
-        return True
 
     def comes_to_rest(self) -> bool:
         """What slow bounces do, nobody knows: disks go on bouncing."""
@@ -375,40 +347,20 @@ LAWS: tuple[type[Law], ...] = (Elastic, Inelastic, TimeOfContact, Yielding, Own)
 """The table of laws."""
 
 
-def law_of(
-    restitution: Shares | None,
-    duration: float | None,
-    walls: tuple[float, ...] | None = None,
-    pairs: tuple[tuple[float, ...], ...] | None = None,
-    rough: Roughness | None = None,
-    own: UsersLaw | None = None,
-) -> Law:
-    """The law of a scene.
+def law_of(restitution: Shares | None, duration: float | None, own: UsersLaw | None = None) -> Law:
+    """The law that goes by the numbers of a scene, with nothing of single walls, species and spins.
 
     Args:
         restitution: of the scene, None where it is elastic.
         duration: a contact duration.
-        walls, pairs: the shares of walls, and of species.
-        rough: what turns disks; None where they are smooth.
         own: a law of the user's own.
     """
-    law = _smooth_law_of(restitution, duration, walls, pairs, own)
-    return law if rough is None else replace(law, rough=rough)
-
-
-def _smooth_law_of(
-    restitution: Shares | None,
-    duration: float | None,
-    walls: tuple[float, ...] | None,
-    pairs: tuple[tuple[float, ...], ...] | None,
-    own: UsersLaw | None,
-) -> Law:
     if own is not None:
         pair, wall = (1.0, 1.0) if restitution is None else (restitution.pair, restitution.wall)
-        return Own(pair, wall, duration, own, walls=walls, pairs=pairs)
+        return Own(pair, wall, duration, own)
     if restitution is None:
         return Elastic(1.0, 1.0, None)
     if restitution.yield_speed is not None:
-        return Yielding(restitution.pair, restitution.wall, duration, restitution.yield_speed, walls=walls, pairs=pairs)
+        return Yielding(restitution.pair, restitution.wall, duration, restitution.yield_speed)
     kind = Inelastic if duration is None else TimeOfContact
-    return kind(restitution.pair, restitution.wall, duration, walls=walls, pairs=pairs)
+    return kind(restitution.pair, restitution.wall, duration)

@@ -17,9 +17,20 @@ from eventsim.scene.walls import Wall
 
 def law_of_scene(scene: Scene) -> Law:
     """Return the law of a scene's contacts."""
-    done = tuple(treatment_of(one) for one in manners_of(scene.domain, scene.walls))
-    law = _law_without(scene)
-    return replace(law, treatments=done) if any(one != Treatment() for one in done) else law
+    manners, usual = manners_of(scene.domain, scene.walls), scene.restitution
+    own = any(one.restitution is not None for one in manners)
+    if own:
+        usual = usual or Restitution()
+    tangential = scene.tangential_restitution
+    done = tuple(treatment_of(one) for one in manners)
+    law = law_of(usual, scene.contact_duration, scene.law)
+    return replace(
+        law,
+        walls=tuple(law.wall if one.restitution is None else one.restitution for one in manners) if own else None,
+        pairs=_shares_of_species(scene, usual) if usual is not None and usual.pairs else None,
+        treatments=done if any(one != Treatment() for one in done) else None,
+        rough=None if tangential is None else Roughness(tangential.pair, tangential.wall),
+    )
 
 
 def treatment_of(manner: Manner) -> Treatment:
@@ -27,21 +38,11 @@ def treatment_of(manner: Manner) -> Treatment:
     return Treatment(manner.temperature, manner.velocity or 0.0, manner.shaking or 0.0)
 
 
-def _law_without(scene: Scene) -> Law:
-    """Return the law of contacts as if no wall did anything but throw back."""
-    own, usual = manners_of(scene.domain, scene.walls), scene.restitution
-    walls = None
-    if any(one.restitution is not None for one in own):
-        usual = usual or Restitution()
-        walls = tuple(usual.wall if one.restitution is None else one.restitution for one in own)
-    tangential = scene.tangential_restitution
-    rough = None if tangential is None else Roughness(tangential.pair, tangential.wall)
-    if usual is None or not usual.pairs:
-        return law_of(usual, scene.contact_duration, walls, rough=rough, own=scene.law)
+def _shares_of_species(scene: Scene, usual: Restitution) -> tuple[tuple[float, ...], ...]:
+    """Return the restitution of each two species, by their numbers."""
     names, _ = named_species(scene.disks)
     given = {pair: share for a, b, share in usual.pairs for pair in ((a, b), (b, a))}
-    pairs = tuple(tuple(given.get((a, b), usual.pair) for b in names) for a in names)
-    return law_of(usual, scene.contact_duration, walls, pairs, rough, scene.law)
+    return tuple(tuple(given.get((a, b), usual.pair) for b in names) for a in names)
 
 
 def manners_of(domain: Domain, walls: Sequence[Wall]) -> tuple[Manner, ...]:

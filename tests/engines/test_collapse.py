@@ -1,5 +1,6 @@
 """Contacts that pile up are diagnosed: time, disks, rounds and ratio, the remedy; or that the digits are spent."""
 
+import dataclasses
 import math
 import re
 
@@ -82,6 +83,15 @@ def test_a_series_is_called_endless_below_the_critical_restitution_and_never_abo
     for make, critical in ((wall_and_two, CRITICAL_AT_WALL), (three, CRITICAL_OF_THREE)):
         assert es.simulate(make(critical - below), until=1e6, engine="reference").stopped == "collapse"
         assert es.simulate(make(critical + below), until=1e6, engine="reference").stopped in ("digits", "quiet")
+
+
+def test_the_restitution_of_the_species_that_meet_tells_whether_a_series_ends():
+    alike = es.gallery("collapse", restitution=0.05)
+    disks = dataclasses.replace(alike.disks, species="b")
+    named = dataclasses.replace(alike, disks=disks, restitution=es.Restitution(0.9, pairs={"b-b": 0.05}))
+    reasons = [es.simulate(scene, engine="reference").reason for scene in (alike, named)]
+    assert reasons[0] == reasons[1]
+    assert "collapse" in reasons[0]
 
 
 def test_step_by_step_the_same_is_said():
