@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventsim.compiler import has_compiler
+from eventsim.engines import STEPPED
+from eventsim.engines.stepped import IN_A_ROW, StepOptions
 from eventsim.errors import EventsimError
 from eventsim.live.described import gas_of, settings_of
 from eventsim.live.messages import OPPONENTS, AddDisk, AddWall, Move, Open, Resize, Throw
@@ -182,7 +184,7 @@ class World:
         self.edition += 1
         self._rate, self.speed = rate, speed
         about = {"edition": self.edition, "world": self.id, "why": why, "notice": notice}
-        about |= {"rate": rate, "opponent": self._opponent}
+        about |= {"rate": rate, "opponent": self._opponent, **_lateness(self._opponent)}
         self.opened = packet("opened", columns, **header, **about, tracks=len(tracks))
         for viewer in self.viewers:
             viewer.begin(speed)
@@ -289,6 +291,13 @@ def _beside(scene: Scene, engine: str, frame: float) -> Track:
     if len(scene.disks) > MOST_PER_FRAME:
         raise EventsimError(f"a comparison is for at most {MOST_PER_FRAME} disks, and there are {len(scene.disks)}")
     return Track(scene, engine, returns=False, dt=frame)
+
+
+def _lateness(engine: str) -> dict[str, float]:
+    """The steps by which an engine may tell a contact late, and over which it may spread its rows."""
+    options = STEPPED[engine].options
+    assert issubclass(options, StepOptions)
+    return {"late": options.late, "spread": IN_A_ROW if options.spread else 0.0}
 
 
 def _resizable(scene: Scene) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -31,17 +32,24 @@ class Journal:
             self._read(json.dumps({"sweep": identity}).encode() + b"\n")
             self._file = self.path.open("a", encoding="utf-8")
         except OSError as error:
-            raise EventsimError(f"{self.path}: cannot be written ({error.strerror or error})") from None
+            raise self._unwritten(error) from None
+
+    def _unwritten(self, error: OSError) -> EventsimError:
+        return EventsimError(f"{self.path}: cannot be written ({error.strerror or error})")
 
     def add(self, task: Task, row: Row) -> None:
-        """Note that a task is done."""
+        """Note that a task is done; raise EventsimError where it cannot be written."""
         self.done[task.name] = row
-        self._file.write(json.dumps({"task": task.name, "row": row}) + "\n")
-        self._file.flush()
+        try:
+            self._file.write(json.dumps({"task": task.name, "row": row}) + "\n")
+            self._file.flush()
+        except OSError as error:
+            raise self._unwritten(error) from None
 
     def close(self, whole: bool) -> None:
         """Close it; where the table is whole it is not needed any more."""
-        self._file.close()
+        with suppress(OSError):  # of a line that could not be written, which was told
+            self._file.close()
         if whole:
             self._claim.remove()
             self.path.unlink(missing_ok=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventsim.engines import Engine
-from eventsim.engines.stepped import StepOptions
+from eventsim.engines.stepped import IN_A_ROW, StepOptions
 from eventsim.record.contacts import Key, contacts_of, keys_of
 from eventsim.record.events import Kind, Rows
 from eventsim.validation.follow import follow
@@ -24,9 +24,6 @@ RESTARTS = 12
 
 STRETCH = 0.5
 """Mean free times that it is followed for."""
-
-IN_A_ROW = 1.5
-"""Steps: two impulses of the same disks that are nearer are of one contact, where an engine spreads them."""
 
 FEW_STEPS = 3
 """Steps that a stretch has at least."""

@@ -15,6 +15,9 @@ from typing import ClassVar, Literal
 
 from eventsim.engines.options import Options, option
 
+IN_A_ROW = 1.5
+"""Steps: two impulses of the same disks that are nearer are of one contact, where an engine spreads them."""
+
 
 @dataclass(frozen=True, slots=True)
 class StepOptions(Options):

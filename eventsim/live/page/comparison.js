@@ -4,8 +4,9 @@
 const STUCK_FRAMES = 10, MISSED = "#d55e00", ASTRAY = "#e69f00";
 
 class Comparison {
-  /* exact, other: the two worlds; frame: the time of a step; name: of the other engine; given: what the scene has, in words. */
-  constructor(canvas, exact, other, stage, frame, name, given) {
+  /* exact, other: the two worlds; frame: the time of a step; name: of the other engine; late: the steps by which it may tell a
+     contact late; spread: those over which it may spread one; given: what the scene has, in words. */
+  constructor(canvas, exact, other, stage, { frame, name, late, spread, given }) {
     this.name = name;
     this.given = given;
     this.exact = exact;
@@ -15,7 +16,7 @@ class Comparison {
     this.begun = sums(other, other.state(0)).energy;
     const start = other.state(0), square = start.vx.reduce((sum, vx, i) => sum + vx * vx + start.vy[i] * start.vy[i], 0);
     const flown = square > 0 ? (0.2 * stage.usualRadius) / Math.sqrt(square / other.count) : 0;
-    this.matching = new Matching(exact, other, 2 * frame + flown, name === OPPONENTS.pymunk ? 1.5 * frame : 0);
+    this.matching = new Matching(exact, other, late * frame + flown, spread * frame);
     this.begunExact = sums(exact, exact.state(0)).energy;
   }
 

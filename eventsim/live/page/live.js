@@ -22,7 +22,9 @@ class LivePlayer extends Player {
     this.comparison = null;
     if (description.tracks > 1) {
       this.horizons.push(0);
-      this.comparison = new Comparison(this.part("frames"), world, description.begin(), this.stage, this.usualSpeed / description.rate, OPPONENTS[description.opponent], description.settings);
+      const { late, spread, rate, opponent, settings } = description;
+      const told = { frame: this.usualSpeed / rate, name: OPPONENTS[opponent], late, spread, given: settings };
+      this.comparison = new Comparison(this.part("frames"), world, description.begin(), this.stage, told);
     }
   }
 
