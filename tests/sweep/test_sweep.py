@@ -103,6 +103,25 @@ def test_an_interrupted_sweep_goes_on_where_it_was(plain, tmp_path):
     assert path.read_bytes() == plain
 
 
+def test_a_journal_that_cannot_be_written_is_told_and_what_was_done_stays(plain, tmp_path):
+    resource = pytest.importorskip("resource", reason="a limit for files is set")
+    path, limits, done = tmp_path / "t.csv", resource.getrlimit(resource.RLIMIT_FSIZE), []
+
+    def fill(count, total):
+        done.append(count)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (path.with_name("t.csv.journal").stat().st_size, limits[1]))
+
+    try:
+        with pytest.raises(es.EventsimError, match=r"t\.csv\.journal: cannot be written \(File too large\)"):
+            short(make, GRID, out=path, progress=fill)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert not path.exists()
+    short(make, GRID, out=path, progress=lambda count, total: done.append(count))
+    assert done == [1, 2, 3, 4]
+    assert path.read_bytes() == plain
+
+
 def test_a_journal_of_another_sweep_is_not_mixed_in(tmp_path):
     def interrupt(count, total):
         raise KeyboardInterrupt
@@ -195,9 +214,28 @@ def test_a_dask_scheduler_that_is_killed_is_told_and_what_was_done_stays(tmp_pat
     pytest.importorskip("distributed")
     scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard"]
     file = tmp_path / "scheduler.json"
-    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--no-dashboard", "--no-nanny"]
+    worker = [
+        sys.executable,
+        "-m",
+        "distributed.cli.dask_worker",
+        "--scheduler-file",
+        str(file),
+        "--no-dashboard",
+        "--no-nanny",
+    ]
     out = tmp_path / "t.csv"
-    words = ["sweep", "gas", "--set", "n=40,50,60,70,80,90", "--events", "6000", "--engine", "reference", "--out", str(out)]
+    words = [
+        "sweep",
+        "gas",
+        "--set",
+        "n=40,50,60,70,80,90",
+        "--events",
+        "6000",
+        "--engine",
+        "reference",
+        "--out",
+        str(out),
+    ]
     quiet = {"stderr": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
     with (
         ended(subprocess.Popen([*scheduler, "--scheduler-file", str(file)], **quiet)) as first,
