@@ -14,7 +14,6 @@ def page(chromium, address):
     assert chromium.get_log("browser") == []
 
 
-
 def key_on_page(page, name):
     page.js("document.body.dispatchEvent(new KeyboardEvent('keydown', {key: arguments[0], bubbles: true}))", name)
 
@@ -39,13 +38,33 @@ def test_a_throw_is_undone_and_reset_forgets_it(page):
     start = page.js("live.player.seek(0); return live.player.state()")
     assert page.js("return live.part('undo').disabled")
     for undo in ("undo", "reset"):
-        page.js("live.player.pause(); live.player.seek(0); live._act({type: 'throw', time: 0, disk: 0, velocity: [250, 125]})")
-        page.wait("live.link.pending === 0 && live.player.world.event.time.length > 0 && live.player.state().vx[0] === 250")
+        page.js(
+            "live.player.pause(); live.player.seek(0); live._act({type: 'throw', time: 0, disk: 0, velocity: [250, 125]})"
+        )
+        page.wait(
+            "live.link.pending === 0 && live.player.world.event.time.length > 0 && live.player.state().vx[0] === 250"
+        )
         edition = page.js("return live.edition")
         page.press(undo)
         page.wait(f"live.edition > {edition} && live.link.pending === 0 && live.player.duration > 0")
         assert page.js("live.player.seek(0); return live.player.state()") == start
         assert page.js("return live.part('undo').disabled")
+
+
+def test_the_size_of_the_window_is_nothing_to_take_back(page):
+    page.open("count=5&speed=100&packing=0.05&seed=3")
+    size = page.js("return live.player.stage.size.map((length) => length + 40)")
+    page.js("live._act({type: 'throw', time: 0, disk: 0, velocity: [250, 125]})")
+    page.js("live._act({type: 'resize', time: 0.25, size: arguments[0]})", size)
+    page.wait(f"live.link.pending === 0 && live.player.stage.size[0] === {size[0]}")
+    edition = page.js("return live.edition")
+    page.press("undo")
+    page.wait(f"live.edition > {edition} && live.link.pending === 0 && live.player.stage.size[0] === {size[0]}")
+    assert page.js("return live.acts.map((act) => act.type)") == ["resize"]
+    assert page.js("return live.part('undo').disabled")
+    assert page.js(
+        "live.player.seek(0); return Math.hypot(live.player.state().vx[0], live.player.state().vy[0])"
+    ) == pytest.approx(100)
 
 
 def test_energy_temperature_and_speeds_are_in_view(page):
@@ -75,6 +94,16 @@ def test_a_question_mark_shows_the_keys(page):
     key_on_page(page, "?")
     assert "reverse time" in page.js("return live.part('keys').textContent")
     assert not page.js("return live.part('keys').hidden")
+    for size in ((1280, 800), (844, 390), (390, 844)):
+        page.driver.set_window_size(*size)
+        edges = "const b = live.part('keys').getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom]"
+        box = page.js(edges) + page.js("return [innerWidth, innerHeight]")
+        assert box[0] >= 0
+        assert box[1] >= 0
+        assert box[2] <= box[4]
+        assert box[3] <= box[5]
+        assert box[2] - box[0] > 0.8 * min(box[4], 500)
+    page.driver.set_window_size(1280, 800)
     key_on_page(page, "Escape")
     assert page.js("return live.part('keys').hidden")
     page.press("help")

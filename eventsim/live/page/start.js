@@ -47,10 +47,14 @@ class LiveView {
     else { this.player.pause(); this.player.seek(0); }
   }
 
-  /* Take back the last throw or move: the same start and the acts before it give the world that was. */
+  /* Take back the last throw or move: the same start and the other acts give the world that was. */
   undo() {
-    if (this.acts.length && !this.joined) this._again(this.acts.slice(0, -1));
+    const last = this._last();
+    if (last >= 0 && !this.joined) this._again(this.acts.filter((_, k) => k !== last));
   }
+
+  /* The place of the last act of a hand; the window's size is none. */
+  _last() { return this.acts.findLastIndex(({ type }) => type !== "resize"); }
 
   _again(acts) {
     const last = acts.length < this.acts.length && acts.length ? acts[acts.length - 1] : null;
@@ -245,7 +249,7 @@ class LiveView {
     this._undoable();
   }
 
-  _undoable() { this.part("undo").disabled = this.joined || !this.acts.length; }
+  _undoable() { this.part("undo").disabled = this.joined || this._last() < 0; }
 
   _notice(text) {
     this.part("notice").hidden = text === null;
