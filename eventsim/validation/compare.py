@@ -109,11 +109,13 @@ def compare(
 ) -> Comparison:
     """Run a scene with every engine and step; steps are times, left out: USUAL_STEPS.
 
-    Raises EventsimError where the scene has no contact to compare.
+    Raises EventsimError where the scene has no contact to compare, and where none of the engines can simulate it.
     """
+    ready, left_out = able(competitors, stage_of(scene))
+    if competitors and not ready:
+        raise EventsimError(f"there is nothing to compare with: {'; '.join(left_out)}")
     tell("event-driven run")
     truth, checks, engine, whole = truth_to_compare(scene, until, TRUTH_SHARE * patience_s)
-    ready, left_out = able(competitors, truth.stage)
     if not whole:
         spent, end = f"{TRUTH_SHARE * patience_s:g} s", f"t = {truth.times[-1]:g}"
         left_out.append(f"what comes after {end} is left out: the event-driven run took {spent} until there")
@@ -137,7 +139,11 @@ def compare(
             run = follow(opened(), times, patience_s)
             taken = run.elapsed_s
             if run.stopped is not None:
-                reason = f"it was stopped after {patience_s:g} s" if run.stopped == "patience" else f"it stopped ({run.stopped})"
+                reason = (
+                    f"it was stopped after {patience_s:g} s"
+                    if run.stopped == "patience"
+                    else f"it stopped ({run.stopped})"
+                )
                 left_out.append(_given_up(competitor, sizes[place:], reason))
                 break
             found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt)

@@ -417,3 +417,17 @@ def test_a_scene_of_ones_own_is_called_by_its_name(tmp_path):
 
 def test_a_comparison_of_nothing_draws_no_verdict(gas):
     assert verdict(replace(gas, lines=[]))[0].startswith("Nothing was compared")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("rough", "stepped cannot simulate this scene: it knows no disks that spin"),
+        ("sheared", "stepped cannot simulate this scene: it knows no disks that spin"),
+        ("heat-flow", "stepped cannot simulate this scene: it knows no walls that heat, shake or slide"),
+    ],
+)
+def test_a_scene_that_no_engine_with_steps_can_simulate_is_refused_before_any_run(name, words):
+    with pytest.raises(es.EventsimError, match="there is nothing to compare with: ") as refused:
+        compare(es.gallery(name), chosen_competitors(()), tell=pytest.fail)
+    assert words in str(refused.value)

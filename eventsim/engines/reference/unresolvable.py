@@ -28,7 +28,7 @@ def endless(state: ExactState, stage: Stage, i: int) -> tuple[str, str]:
             "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
             f"on a round one); {stage.law.remedy()}"
         )
-    x, y = (float(at) for at in state.place(i, state.now))
+    x, y = (float(at) for at in state.place(pile[0], state.now))  # engines come to the pile by different disks
     x, y = x + stage.corner[0], y + stage.corner[1]
     return what, f"the contacts of {named(pile)} at ({x:g}, {y:g}) {cause}"
 
