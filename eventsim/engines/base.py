@@ -33,7 +33,7 @@ class Snapshot:
     """All that the future of a run depends on, whichever engine holds it; see `EngineState` for the meaning of the names.
 
     low_vx, low_vy: empty where velocities have no low parts; sides: where no disk is a point to a wall; spin: where disks have
-    none; draws: where walls do not heat.
+    none; contacts: where chance does not hang on their number.
     Calendars and cells are no part of it: they follow from the flights.
     """
 
@@ -55,7 +55,7 @@ class Snapshot:
     low_vy: tuple[float, ...] = ()
     sides: tuple[Any, ...] = ()
     spin: tuple[float, ...] = ()
-    draws: tuple[int, ...] = ()
+    contacts: tuple[int, ...] = ()
 
 
 @dataclass(slots=True)

@@ -30,7 +30,8 @@ class ExactState(ABC):
     -inf: never, LONG_AGO: never, but it was kicked).  at_once: its contacts at that very time, to see that an instant does
     not end.  number: makes a number of the engine's type from a float.  low_parts: whether velocities carry what their
     rounding at a contact left, in low_vx and low_vy, which are empty otherwise; numbers of another type than float need none.
-    spin: angular velocities, None where disks have none; contacts change them.  draws: how often each asked chance.
+    spin: angular velocities, None where disks have none; contacts change them.  contacts: how many each disk has had, None where
+    no chance hangs on that.
     gravity_x, gravity_y: the acceleration of each disk, None without gravity.  sides: of walls that points are on, None where
     no disk is one.  window: the exponent of its length; window_end: where the window ends, later where it stayed open because
     it had no row (opened).
@@ -60,7 +61,7 @@ class ExactState(ABC):
     low_vx: MutableSequence[float]
     low_vy: MutableSequence[float]
     spin: Any = None
-    draws: Any = None
+    contacts: Any = None
     gravity_x: Any
     gravity_y: Any
     supports: Any

@@ -1,4 +1,4 @@
-"""Chance in laws of contacts: numbers that are a function of a seed, a disk and how often chance has been asked of it.
+"""Chance in laws of contacts: numbers that are a function of a seed, a disk and how many contacts it has had before.
 
 So engines, threads, a pause, a resume and a replay find the same ones.  Samplers use integers, + - * /, square roots and
 comparisons alone: each machine has the same bits.
@@ -25,7 +25,7 @@ GOLDEN, ROOT = 0x9E3779B9, 0xBB67AE85
 """What is added to the words of the key after each round."""
 
 Key: TypeAlias = tuple[int, int, int]
-"""(seed, disk, number): whose chance it is; the seed below 2^64, the others below 2^32."""
+"""(seed, disk, number of contacts): whose chance it is; the seed below 2^64, the disk below 2^32, the number modulo that."""
 
 
 def philox(a: int, b: int, c: int, d: int, key: int, second: int) -> tuple[int, int, int, int]:
@@ -40,7 +40,7 @@ def philox(a: int, b: int, c: int, d: int, key: int, second: int) -> tuple[int, 
 def uniform(key: Key, place: int) -> float:
     """The number at a place of the sequence of a key: a multiple of 2^-53 from 0 to below 1."""
     seed, disk, number = key
-    a, b, c, d = philox(place >> 1, number, disk, 0, seed & WORD, (seed >> 32) & WORD)
+    a, b, c, d = philox(place >> 1, number & WORD, disk, 0, seed & WORD, (seed >> 32) & WORD)
     high, low = (c, d) if place & 1 else (a, b)
     return ((high >> 5) * 67108864.0 + (low >> 6)) * 2.0**-53
 

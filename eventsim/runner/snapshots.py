@@ -104,7 +104,7 @@ def demand_fit(snapshot: Snapshot, stage: Stage) -> None:
 def _demand_columns(snapshot: Snapshot, stage: Stage) -> None:
     """One number for each disk, finite, low parts where the stage has them; only who never met anybody did so at -inf."""
     low = {"low_vx": stage.low_parts, "low_vy": stage.low_parts, "sides": stage.points, "spin": stage.spin is not None}
-    low["draws"] = stage.seed is not None
+    low["contacts"] = stage.seed is not None
     for item in fields(Snapshot):
         column = getattr(snapshot, item.name)
         if not isinstance(column, tuple):

@@ -1,9 +1,12 @@
 """Walls that shake, heat and slide: what they do to a disk, where their way is, and what is refused."""
 
+import math
+
 import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.formulas.chance import flux
 from eventsim.scene.contact_law import law_of_scene
 
 FAST = 2.0**20
@@ -35,7 +38,9 @@ def test_a_wall_that_shakes_throws_back_as_one_that_comes_to_meet(engine):
 
 
 def test_a_corner_of_walls_that_shake_is_two_contacts():
-    scene = one([3.0, 3.0], [-4.0, -4.0], domain=box(left={"shaking": 1.0, "restitution": 0.5}, bottom={"shaking": 2.0}))
+    scene = one(
+        [3.0, 3.0], [-4.0, -4.0], domain=box(left={"shaking": 1.0, "restitution": 0.5}, bottom={"shaking": 2.0})
+    )
     run = es.simulate(scene, events=2, engine="reference", log=True)
     assert run.state.velocity.tolist() == [[3.5, 8.0]]
     assert run.log.joint.tolist() == [0, 0]
@@ -94,9 +99,27 @@ def test_what_a_wall_draws_is_the_flux_of_its_temperature():
     assert np.mean(2.0 * (velocity[:, 0] - 3.0) ** 2) == pytest.approx(1.0, abs=np.sqrt(2.0) * bar)
 
 
+def test_what_a_wall_draws_follows_from_the_number_of_contacts_that_the_log_shows():
+    disks = es.Disks([[1.0, 1.0], [4.0, 2.0], [2.0, 4.5]], [[-3.0, 1.0], [-2.0, 0.5], [1.0, -2.0]], 0.5)
+    scene = es.Scene(disks, box(left={"temperature": 2.0}), restitution={"pair": 0.9}, seed=2**40 + 5)
+    log = es.simulate(scene, events=200, engine="reference", log=True).log
+    before, drawn = [0, 0, 0], 0
+    for row, wall in zip(log.rows, log.wall_name, strict=True):
+        if wall == "left":
+            out, along, _ = flux((2**40 + 5, int(row["a"]), before[row["a"]]))
+            assert (row["vxa"], abs(row["vya"])) == (math.sqrt(2.0) * out, math.sqrt(2.0) * abs(along))
+            drawn += 1
+        for i in (row["a"], row["b"]):
+            if i >= 0:
+                before[i] += 1
+    assert drawn > 20
+
+
 def test_disks_of_other_seeds_leave_otherwise():
     def found(seed):
-        return after(one([3.0, 3.0], [1.0, 0.5], domain=box(right={"temperature": 1.0}), seed=seed)).state.velocity.tolist()
+        return after(
+            one([3.0, 3.0], [1.0, 0.5], domain=box(right={"temperature": 1.0}), seed=seed)
+        ).state.velocity.tolist()
 
     assert found(1) == found(1)
     assert found(1) != found(2)

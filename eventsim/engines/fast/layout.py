@@ -73,10 +73,9 @@ class Arrays(NamedTuple):
     several: whom disks met in joint contacts, (partner, kx, ky, next) each.  near: room for a list of neighbours.  low: the low
     parts of velocities, (vx, vy) each.  sides: of points, one number for each shape
     (`scene.sides`); images: see `rules.images_of`.  levels: the table of `cells`.  shares: see
-    `rules.shares_of`.  species: of each disk; pairs: see
-    `rules.pairs_of`.  draws: how often each disk asked chance.  rows: the log's buffer, bytes.  spin: the angular velocity
-    and the moment of each disk; spin_rows: what rows have of spins, two numbers each.  near_walls: see
-    `wall_cells.shapes_in_cells`.
+    `rules.shares_of`.  species: of each disk; pairs: see `rules.pairs_of`.  contacts: how many each disk has had, where chance
+    hangs on that.  rows: the log's buffer, bytes.  spin: the angular velocity and the moment of each disk; spin_rows: what rows
+    have of spins, two numbers each.  near_walls: see `wall_cells.shapes_in_cells`.
     """
 
     disks: object
@@ -93,7 +92,7 @@ class Arrays(NamedTuple):
     shares: object
     species: object
     pairs: object
-    draws: object
+    contacts: object
     rows: object
     spin: object
     spin_rows: object

@@ -91,7 +91,7 @@ def pointers(a):
         pointer(a.shares),
         pointer(a.species),
         pointer(a.pairs),
-        pointer(a.draws),
+        pointer(a.contacts),
         pointer(a.rows),
         pointer(a.spin),
         pointer(a.spin_rows),

@@ -265,7 +265,7 @@ class Machine:
                 self._shares,
                 self._species,
                 self._pairs,
-                self.state.draws_in_memory,
+                self.state.contacts_in_memory,
                 self._buffer.view(np.uint8) if self.keep_rows else None,
                 None if state.turning is None else state.turning.reshape(-1),
                 self._spins,

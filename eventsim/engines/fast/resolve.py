@@ -299,6 +299,8 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot, posts):
     remember(m, b, a, -ux, -uy)
     _note_time(m, rules, a, t, q == 0.0, still, rules.instant)
     _note_time(m, rules, b, t, q == 0.0, still, rules.instant)
+    _count(a, m.contacts)
+    _count(b, m.contacts)
     reduced = _reduced(a, b, m.mass, rules.common_mass)
     distance = sqrt(dx * dx + dy * dy)
     reach = real(m.disks, a * REALS + RADIUS) + real(m.disks, b * REALS + RADIUS)
@@ -309,6 +311,13 @@ def resolve_pair(m, rules, sums, i, j, t, clock, number, slot, posts):
     write_pair(m, number, slot, a, b, flight_a, flight_b, strength, t, clock, m.rows)
     write_spins(m, slot, a, b, m.spin_rows)
     return overlap if _is_finite(a, m.mass) and _is_finite(b, m.mass) else 0.0
+
+
+@inline
+def _count(i, contacts):
+    """Count a contact of disk i, where chance hangs on the number of contacts."""
+    if contacts is not None:
+        store(contacts, i, word(contacts, i) + 1)
 
 
 @inline
@@ -446,6 +455,7 @@ def resolve_wall(m, rules, sums, i, code, t, clock, number, slot):
     anchor(m, i, t, x, y, u, w)
     remember(m, i, -1 - place_, side, 0)
     _note_time(m, rules, i, t, u == u0 and w == w0, still, SERIES_AT_ONCE if ends else rules.instant)
+    _count(i, m.contacts)
     mass = mass_of(i, m.mass, rules.common_mass)
     if not math.isinf(mass):
         sums[OUTER_X] += mass * (u - u0)
@@ -480,9 +490,7 @@ def _drawn(m, rules, i, place_, side, x, y, u, w, u0, w0, seed):
     temperature = real(m.shares, OWN_OF_WALL * place_ + TEMPERATURE)
     if temperature == 0.0:
         return u, w
-    number = word(m.draws, i)
-    out, sideways, other = flux((seed, word(m.disks, i * WORDS + LABEL), number))
-    store(m.draws, i, number + 1)
+    out, sideways, other = flux((seed, word(m.disks, i * WORDS + LABEL), word(m.contacts, i)))
     mass = mass_of(i, m.mass, rules.common_mass)
     _draw_spin(m, i, other, temperature, mass, m.spin)
     thermal = sqrt(temperature / mass)

@@ -118,12 +118,12 @@ class FastState(ExactState):
         self.low_parts = stage.low_parts
         self.low: Floats = np.zeros((n if stage.low_parts else 0, 2))
         self.low_vx, self.low_vy = Column(self.low[:, 0], self.place_of), Column(self.low[:, 1], self.place_of)
-        self.draws = self.draws_in_memory = None
+        self.contacts = self.contacts_in_memory = None
         if stage.seed is not None:
-            self.draws_in_memory = np.zeros(n, np.int32)
-            self.draws = Column(self.draws_in_memory, self.place_of)
-        drawn = () if self.draws is None else ("draws",)
-        self._columns = (*COLUMNS, *(LOW_COLUMNS if stage.low_parts else ()), *drawn)
+            self.contacts_in_memory = np.zeros(n, np.int32)
+            self.contacts = Column(self.contacts_in_memory, self.place_of)
+        counted = () if self.contacts is None else ("contacts",)
+        self._columns = (*COLUMNS, *(LOW_COLUMNS if stage.low_parts else ()), *counted)
         self.spin = self.turning = None
         if stage.spin is not None and stage.moment is not None:
             self.turning = np.ascontiguousarray(np.stack([stage.spin, stage.moment], axis=1)[order])
@@ -199,8 +199,8 @@ class FastState(ExactState):
         for name in ("x", "y", "vx", "vy", *(() if self.spin is None else ("spin",))):
             getattr(self, name).set_all(getattr(stage, name))
         self.contact_time.set_all(-np.inf)
-        if self.draws is not None:
-            self.draws.set_all(0)
+        if self.contacts is not None:
+            self.contacts.set_all(0)
         self.forget_all()
         self.set_sides(())
 

@@ -134,8 +134,15 @@ class Resolver:
             strength = grip_strength(q, k, reduced, distance)
         self._ledger.book_pair(a, b, jx, jy)
         self._counters.pair_contacts += 1
+        self._count(a, b)
         self._ledger.log(t, Kind.PAIR, a, b, -1, strength, -1)
         return [a, b]
+
+    def _count(self, *disks: int) -> None:
+        """Count a contact of these disks, where chance hangs on the number of contacts."""
+        if self._state.contacts is not None:
+            for i in disks:
+                self._state.contacts[i] += 1
 
     def _turn_pair(self, a: int, b: int, dx: Real, dy: Real, before: tuple[Real, Real, Real, Real]) -> Real:
         """Let two disks, with these velocities before their contact, turn each other; k as from `pair_grip`."""
@@ -218,6 +225,7 @@ class Resolver:
         self._instants.note(i, t, (u, w) == before, still, series and self._instants.ends(place))
         impulse = self._ledger.book_wall(i, u - before[0], w - before[1])
         self._counters.wall_contacts += 1
+        self._count(i)
         self._ledger.log(t, Kind.WALL, i, -1, stage.surfaces[place].wall, impulse, -1)
         return [i]
 
@@ -232,8 +240,7 @@ class Resolver:
     ) -> tuple[Real, Real]:
         """The velocity of disk i behind a wall that heats, and slides: drawn; so is its spin, if it has one."""
         state, stage, mass = self._state, self._stage, self._masses.of(i)
-        out, sideways, other = flux((stage.seed or 0, i, state.draws[i]))
-        state.draws[i] += 1
+        out, sideways, other = flux((stage.seed or 0, i, state.contacts[i]))
         speed = sqrt(temperature / mass)
         slide = (stage.turns[place] * side) * velocity
         if state.spin is not None:
@@ -244,7 +251,11 @@ class Resolver:
     def _launched(self, i: int, place: int, side: int) -> Real:
         """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""
         state = self._state
-        if state.supports is None or state.supports[place] is None or not has_struck(state.supports, state.met[i], place):
+        if (
+            state.supports is None
+            or state.supports[place] is None
+            or not has_struck(state.supports, state.met[i], place)
+        ):
             return 0.0
         nx, ny = self._stage.normal(place, side, state.x[i], state.y[i])
         fall = nx * state.gravity_x[i] + ny * state.gravity_y[i]
@@ -347,7 +358,8 @@ class Resolver:
             disks = sorted({i for event in component for i in disks_of(event)})
             raise joint_under("the law of walls that heat or shake", disks)
         shifts = [
-            along(*self._towards(event, *at[0], *before[0]), one.shaking) for event, one in zip(component, done, strict=True)
+            along(*self._towards(event, *at[0], *before[0]), one.shaking)
+            for event, one in zip(component, done, strict=True)
         ]
         return sum(shift[0] for shift in shifts), sum(shift[1] for shift in shifts)
 
@@ -364,11 +376,13 @@ class Resolver:
             self._ledger.note_overlap(a, b, distance, self._radius[a] + self._radius[b])
             self._ledger.book_pair(a, b, jx, jy)
             self._counters.pair_contacts += 1
+            self._count(a, b)
             self._ledger.log(t, Kind.PAIR, a, b, -1, impulse, first)
         else:
             if not self._masses.is_immovable(a):  # such a disk has no momentum to speak of
                 self._ledger.book(jx, jy)
             self._counters.wall_contacts += 1
+            self._count(a)
             self._ledger.log(t, Kind.WALL, a, -1, self._stage.surfaces[-1 - b].wall, impulse, first)
 
     def _met(self, event: Event, i: int) -> tuple[int, int, int]:

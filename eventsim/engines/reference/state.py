@@ -36,7 +36,7 @@ class EngineState(ExactState):
         self.low_parts = stage.low_parts and number is float
         self.low_vx = [0.0] * n if self.low_parts else []
         self.low_vy = [0.0] * n if self.low_parts else []
-        self.draws: Any = None if stage.seed is None else [0] * stage.n
+        self.contacts: Any = None if stage.seed is None else [0] * stage.n
         self.spin: Any = None if stage.spin is None else [number(value) for value in stage.spin.tolist()]
         self.gravity_x, self.gravity_y = _accelerations(stage)
         self._free_x, self._free_y = self.gravity_x, self.gravity_y
@@ -116,7 +116,7 @@ class EngineState(ExactState):
             low_vy=tuple(self.low_vy),
             sides=self.sides_of_all(),
             spin=() if self.spin is None else tuple(self.spin),
-            draws=() if self.draws is None else tuple(self.draws),
+            contacts=() if self.contacts is None else tuple(self.contacts),
         )
 
     def restore(self, saved: Snapshot) -> None:
@@ -131,7 +131,7 @@ class EngineState(ExactState):
         self.low_vx, self.low_vy = list(saved.low_vx), list(saved.low_vy)
         self.set_sides(saved.sides)
         self.spin = None if self.spin is None else list(saved.spin)
-        self.draws = None if self.draws is None else list(saved.draws)
+        self.contacts = None if self.contacts is None else list(saved.contacts)
         self.count = [count + 1 for count in self.count]
         if self.supports is not None:
             for i in range(self.n):
