@@ -10,10 +10,13 @@ import pytest
 import eventsim as es
 from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Stop
+from eventsim.engines.fast.rules import pairs_of, rules_of, shares_of
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.record.events import row_of
 from eventsim.scene.stage import stage_of
 from tests.engines.law_scenes import LAWS, own, random_scene
+from tests.engines.scenes import lattice_gas
 
 pytest.importorskip("numba")
 
@@ -54,6 +57,28 @@ def assert_one_log(seed, law):
         for name in (name for name in rows.dtype.names if name not in anew):
             assert np.array_equal(found[name], rows[name], equal_nan=rows.dtype[name].kind == "f"), name
     return len(rows)
+
+
+def of_laws(scene):
+    """What kernels are told of laws, the usual restitutions left out; None is compiled away."""
+    stage = stage_of(scene)
+    rules, state = rules_of(stage), FastSession(stage).state
+    names = ("law", "by_speed", "own", "driven", "seed", "pair_roughness", "wall_roughness")
+    told = {name: getattr(rules, name) for name in names} | {"shares": shares_of(stage), "pairs": pairs_of(stage)}
+    return told | {"spin": state.spin, "contacts": state.contacts, "columns": row_of(stage.spin is not None).names}
+
+
+def test_a_scene_without_laws_has_nothing_of_them():
+    for bare in (lattice_gas(12, 0.1), lattice_gas(12, 0.1, restitution=0.9)):
+        told = of_laws(bare)
+        columns = told.pop("columns")
+        assert set(told.values()) == {None}
+        assert not [name for name in columns if "spin" in name]
+
+
+@pytest.mark.parametrize("law", [law for law in LAWS if law != "restitution"])
+def test_a_scene_with_a_law_has_something_of_it(law):
+    assert any(value is not None for name, value in of_laws(random_scene(0, law)).items() if name != "columns")
 
 
 @pytest.mark.kernels
