@@ -168,7 +168,7 @@ def latest_tie(time: Real, screen: float) -> Real:
 
 def may_tie(one: Real, other: Real, screen: float) -> Real:
     """Whether two contact times are so close that their order has to be looked at exactly; without a branch."""
-    return (one <= latest_tie(other, screen)) & (other <= latest_tie(one, screen))
+    return max(one, other) <= latest_tie(min(one, other), screen)
 
 
 def kept_up_instant(loss: float) -> float:

@@ -25,6 +25,7 @@ from eventsim.engines.fast.layout import (
     WORDS,
 )
 from eventsim.formulas.doubt import latest_tie, may_tie
+from eventsim.formulas.real import NEVER
 
 NO_DAY = 1 << 62
 """A deadline that does not come."""
@@ -122,25 +123,24 @@ def empty_room(m, grid, day, look_ahead):
 def first(m, grid, day, limit, deadline, screen):
     """(disk, day, others, deadline): the earliest event, which stays in the calendar, and how many others are within the screen.
 
-    They are counted from event to event, so they may seem more than they are, but never none.  The end of the day counts as
-    an event: what follows on the next day may be near.
+    Two stands for more than one.  The end of the day counts as an event: what follows on the next day may be near.
     disk -1: nothing is due up to `limit`; -2: many days without any event.  deadline: see `push_later`.
     """
     quiet = 0
     while True:
         head = word(m.disks, bucket(grid, day))
-        earliest, others, i = -1, 0, head  # all updated without branches, which could not be foreseen
-        time = float(day + 1) * grid.day_length
+        earliest, i = -1, head  # all updated without branches, which could not be foreseen
+        time, second, third = float(day + 1) * grid.day_length, NEVER, NEVER
         while i != grid.n:
             due = real(m.disks, i * REALS + DUE)
-            sooner = due < time
-            near = may_tie(due, time, screen)
-            others = (0 if sooner & ~near else others) + near
-            earliest = i if sooner else earliest
-            time = due if sooner else time
+            earliest = i if due < time else earliest
+            time, later = min(time, due), max(time, due)
+            second, later = min(second, later), max(second, later)
+            third = min(third, later)
             i = word(m.disks, i * WORDS + NEXT)
         if earliest >= 0:
-            return earliest, day, others, deadline
+            latest = latest_tie(time, screen)
+            return earliest, day, (second <= latest) + (third <= latest), deadline
         if float(day - 1) * grid.day_length > limit:  # a day less: the day of a time is rounded
             return -1, day, 0, deadline
         quiet += 1

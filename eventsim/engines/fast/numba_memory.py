@@ -17,7 +17,7 @@ from numba.core import cgutils
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
-from eventsim.engines.fast.layout import REALS
+from eventsim.engines.fast.layout import REALS, VX, T, X
 from eventsim.formulas.contact import DIGITS_LOST, NEAR, SMALLEST
 from eventsim.formulas.doubt import CLOCK_BITS
 
@@ -166,18 +166,18 @@ def gather_disks(typing, slots, start, limit, near, count, empty, me, skip):
     return i64(slots, i64, i64, near, i64, i64, i64, i64), codegen
 
 
-def _transposed(builder, rows, odd):
-    """Three columns of eight lines: x, vx, t (odd = 0) or y, vy, radius (odd = 1)."""
-    alternate = [lane + odd for lane in (0, 8, 2, 10, 4, 12, 6, 14)]
-    pairs = [_mix(builder, rows[k], rows[k + 1], alternate) for k in (0, 2, 4, 6)]
-    low = [_mix(builder, pairs[k], pairs[k + 1], [0, 1, 2, 3, 8, 9, 10, 11]) for k in (0, 2)]
-    high = [_mix(builder, pairs[k], pairs[k + 1], [4, 5, 6, 7, 12, 13, 14, 15]) for k in (0, 2)]
-    outer, inner = [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]
-    return (
-        _mix(builder, low[0], low[1], outer),
-        _mix(builder, low[0], low[1], inner),
-        _mix(builder, high[0], high[1], outer),
-    )
+V2 = ir.VectorType(F64, 2)
+
+
+def _two_columns(builder, lines, at):
+    """Columns `at` and `at + 1` of eight lines.
+
+    They are put together as they are loaded, two numbers at a time: shuffles of whole registers have one port, loads have two.
+    """
+    pairs = [builder.load(builder.bitcast(builder.gep(line, [I64(at)]), V2.as_pointer()), align=16) for line in lines]
+    fours = [_mix(builder, pairs[k], pairs[k + 2], range(4)) for k in (0, 4, 1, 5)]
+    even, odd = _mix(builder, fours[0], fours[1], range(8)), _mix(builder, fours[2], fours[3], range(8))
+    return tuple(_mix(builder, even, odd, [lane + one for lane in (0, 8, 2, 10, 4, 12, 6, 14)]) for one in (0, 1))
 
 
 @intrinsic
@@ -217,13 +217,11 @@ def contact_of_eight(
 
         x, y, vx, vy, t, r, now, floor, x_now, y_now, length_x, length_y = map(every, arguments[3:15])
         gx, gy = map(every, arguments[17:19]) if falls else (None, None)
-        rows = []
+        lines = []
         for lane in range(8):
             disk = b.sext(b.load(b.gep(ids, [I64(lane)])), I64)
-            line = b.gep(b.bitcast(arguments[0], F64.as_pointer()), [b.mul(disk, I64(REALS))])
-            rows.append(b.load(b.bitcast(line, V8.as_pointer()), align=64))
-        other_x, other_vx, other_t = _transposed(b, rows, 0)
-        other_y, other_vy, other_r = _transposed(b, rows, 1)
+            lines.append(b.gep(b.bitcast(arguments[0], F64.as_pointer()), [b.mul(disk, I64(REALS))]))
+        (other_x, other_y), (other_vx, other_vy), (other_t, other_r) = (_two_columns(b, lines, at) for at in (X, VX, T))
         begin = b.select(less(other_t, t), t, other_t)
         lag, other_lag = sub(begin, t), sub(begin, other_t)
         dx = sub(position(x, vx, lag, gx), position(other_x, other_vx, other_lag, gx))
