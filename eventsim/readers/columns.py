@@ -24,7 +24,7 @@ def samples_of(named: Columns, source: str, dt: float | None = None) -> Samples:
     if "position" in named or ("x" in named and named["x"].ndim == 2):
         return _of_arrays(named, source, dt)
     if "x" in named and "y" in named:
-        return _of_rows(named, source)
+        return _of_rows(named, source, dt)
     if "x0" in named and "y0" in named:
         return _of_times(named, source, dt)
     raise EventsimError(
@@ -59,10 +59,12 @@ def _per_disk(named: Columns, name: str, source: str) -> Floats | None:
     return _numbers(named, name, source) if name in named and named[name].ndim == 1 else None
 
 
-def _of_rows(named: Columns, source: str) -> Samples:
-    """A row for each disk and time."""
+def _of_rows(named: Columns, source: str, dt: float | None) -> Samples:
+    """A row for each disk and time, or frame."""
+    if "time" not in named and "frame" in named and dt is not None:
+        named = {**named, "time": dt * _numbers(named, "frame", source)}
     if "time" not in named:
-        raise EventsimError(f"{source}: lacks a column time")
+        raise EventsimError(f"{source}: lacks a column time (or frame, with the time between two of them: --dt)")
     demand_alike(named, ("time", "disk", "x", "y", "vx", "vy", "radius", "mass"), source)
     time = _numbers(named, "time", source)
     if len(time) == 0:
@@ -130,10 +132,14 @@ def numbers_of(column: Column, name: str, source: str) -> Floats:
             try:
                 float(value)
             except (ValueError, TypeError):
-                raise EventsimError(f"{source}: row {row}: {name} = {value!r}: must be a number{_hint(value)}") from None
+                raise EventsimError(
+                    f"{source}: row {row}: {name} = {value!r}: must be a number{_hint(value)}"
+                ) from None
         raise EventsimError(f"{source}: {name} must be numbers") from None
 
 
 def _hint(value: object) -> str:
     """What to say of a number with a decimal comma."""
-    return ", with a decimal point" if isinstance(value, str) and re.fullmatch(r"[-+]?\d*,\d+(e[-+]?\d+)?", value) else ""
+    return (
+        ", with a decimal point" if isinstance(value, str) and re.fullmatch(r"[-+]?\d*,\d+(e[-+]?\d+)?", value) else ""
+    )

@@ -148,13 +148,21 @@ def test_a_small_file_that_stands_for_more_than_the_memory_is_refused(tmp_path, 
 def test_frames_without_times_are_a_step_apart(tmp_path):
     (tmp_path / "a.xyz").write_text("1\n\nAr 0 0 0\n1\n\nAr 1 0 0\n")
     assert read_samples(tmp_path / "a.xyz", dt=0.5).times.tolist() == [0.0, 0.5]
+    (tmp_path / "a.csv").write_text("frame,id,x,y\n0,0,1,2\n2,0,3,4\n")
+    assert read_samples(tmp_path / "a.csv", dt=0.5).times.tolist() == [0.0, 1.0]
+    with pytest.raises(es.EventsimError, match=r"lacks a column time \(or frame, .*--dt\)"):
+        read_samples(tmp_path / "a.csv")
 
 
 def test_contacts_are_read_from_a_table_and_from_a_log(tmp_path):
     (tmp_path / "a.csv").write_text("time,a,b,wall\n2.0,3,1,\n1.0,0,-1,left\n3,2,,top\n")
     told = read_contacts(tmp_path / "a.csv", 4)
     assert told.time.tolist() == [1.0, 2.0, 3.0]
-    assert list(zip(told.a.tolist(), told.b.tolist(), told.wall, strict=True)) == [(0, -1, "left"), (1, 3, ""), (2, -1, "top")]
+    assert list(zip(told.a.tolist(), told.b.tolist(), told.wall, strict=True)) == [
+        (0, -1, "left"),
+        (1, 3, ""),
+        (2, -1, "top"),
+    ]
     run = es.simulate(es.gallery("bounce"), log=True)
     run.log.save(tmp_path / "bounce.csv")
     told = read_contacts(tmp_path / "bounce.csv", 1)
