@@ -44,8 +44,9 @@ SETTLING = 0.1
 LOOKERS = 2
 """States that are looked at at once: each takes memory."""
 
-SHORT_BLOCK = 48
-"""Disks whose waves are multiplied together: few enough for the nearest cache, and for no library to begin threads of its own."""
+SHORT_BLOCK, TOGETHER = 48, 40
+"""Disks whose waves are multiplied together, few enough for no library to begin threads of its own; and blocks made at once,
+few enough for the nearest caches and enough for the other looker to go on meanwhile."""
 
 BIN, FARTHEST = 0.01, 4.0
 """Width of a bin of g(r), and how far it goes, in diameters."""
@@ -155,6 +156,15 @@ def _entry(name: str, series: Floats, note: str | None, expected: Expected | Non
     return beside(entry if note is None else replace(entry, error=math.nan), expected)
 
 
+def _waves(phase: Floats, steps: Indices) -> Floats:
+    """Cosines and sines in turn (blocks, SHORT_BLOCK, 2 steps) of multiples of the phases of disks; 0 behind the last one."""
+    waves = np.zeros((-(-len(phase) // SHORT_BLOCK) * SHORT_BLOCK, len(steps), 2))
+    multiples = np.outer(phase, steps)
+    np.cos(multiples, out=waves[: len(phase), :, 0])
+    np.sin(multiples, out=waves[: len(phase), :, 1])
+    return waves.reshape(-1, SHORT_BLOCK, 2 * len(steps))
+
+
 class _Looker:
     """Looks at states of the disks of an ensemble that carry energy."""
 
@@ -237,12 +247,11 @@ class _Looker:
         """|sum of exp(i k r)|^2 / N at the chosen wave vectors: the waves along x times those along y, as one product."""
         up = self._along_y[self._along_y >= 0]
         products = np.zeros((2 * len(self._along_x), 2 * len(up)))
-        for first in range(0, len(place), SHORT_BLOCK):
-            x, y = (2.0 * math.pi / self._size * place[first : first + SHORT_BLOCK]).T
-            phases = np.outer(x, self._along_x), np.outer(y, up)
-            waves_x, waves_y = (np.hstack([np.cos(phase), np.sin(phase)]) for phase in phases)
-            products += waves_x.T @ waves_y
-        (cc, cs), (sc, ss) = ((half[:, : len(up)], half[:, len(up) :]) for half in np.vsplit(products, 2))
+        for first in range(0, len(place), SHORT_BLOCK * TOGETHER):
+            phase = 2.0 * math.pi / self._size * place[first : first + SHORT_BLOCK * TOGETHER]
+            waves_x, waves_y = _waves(phase[:, 0], self._along_x), _waves(phase[:, 1], up)
+            products += (waves_x.transpose(0, 2, 1) @ waves_y).sum(axis=0)
+        (cc, cs), (sc, ss) = products.reshape(len(self._along_x), 2, len(up), 2).transpose(1, 3, 0, 2)
         falling, rising = (cc + ss) ** 2 + (sc - cs) ** 2, (cc - ss) ** 2 + (sc + cs) ** 2  # k_y below 0, and from 0 on
         factor: Floats = np.hstack([falling[:, :0:-1], rising]).ravel()[self._chosen] / len(place)
         return factor
