@@ -60,6 +60,7 @@ Keys of --json:
   table                     {{area, perimeter}} that the centre of a lone disk or of tracers sees, else null
   duration, discarded       of the run; at its beginning; discard_given: whether it was asked for
   steady, equilibrated      can there be a steady state; was it reached, as far as one can tell
+  driven                    walls keep up the steady state, which need be no equilibrium
   doubts                    reasons against it, sentences
   quantities                name -> {{value, error, unit, doubt, theory, accuracy, deviation, source, fixed, blocks,
                             block_length}}; value null: no meaning, for the reason in doubt; error null: none can be
@@ -241,6 +242,10 @@ def measures_text(asked: str, measures: Measures) -> str:
 def _verdict(measures: Measures) -> str:
     if not measures.steady:
         return f"  no steady state: {measures.doubts[0]}; --series tells it along the run"
+    if measures.driven:
+        if not measures.doubts:
+            return "  settled, as far as this run can tell: walls drive the gas, which need be in no equilibrium"
+        return "  NOT known to have settled, in the steady state of a driven gas: " + ";\n    ".join(measures.doubts)
     if measures.disks < 2:
         return f"  no equilibrium to come to: {measures.doubts[0]}"
     if not measures.doubts:

@@ -131,19 +131,34 @@ class Ensemble:
         return self.elastic and not self.kicked and not self.pushed and self.scene.gravity is None
 
     @cached_property
-    def unsteady(self) -> str | None:
+    def no_equilibrium(self) -> str | None:
         """Why no equilibrium can be reached, a clause; None where it can: elastic, not driven, and held together."""
         if self.kicked:
             return "kicks change the energy"
         if self.law.drives:
             return "walls heat, shake or slide"
         if not self.elastic:
-            return "contacts turn disks, and spins take energy and give it" if any(self.law.grips) else "contacts take energy"
+            return (
+                "contacts turn disks, and spins take energy and give it"
+                if any(self.law.grips)
+                else "contacts take energy"
+            )
         if self.pushed:
             return "moving obstacles change the energy"
         if not self.held:
             return "on the open plane disks fly apart"
         return "along the period disks fall for ever" if self.falls else None
+
+    @cached_property
+    def driven(self) -> bool:
+        """Whether walls give and take energy for ever, so that the gas comes to a steady state that is no equilibrium."""
+        sinks = self.law.heats or self.law.loses_energy()
+        return self.law.drives and sinks and not self.kicked and not self.pushed and self.held and not self.falls
+
+    @property
+    def unsteady(self) -> str | None:
+        """Why no steady state can be reached, a clause; None where one can."""
+        return None if self.driven else self.no_equilibrium
 
     @property
     def falls(self) -> bool:
@@ -159,8 +174,8 @@ class Ensemble:
         """Why no run of the scene has a temperature, a clause; None where one may."""
         if not self.n:
             return "tracers carry no energy"
-        if self.unsteady is not None:
-            return self.unsteady
+        if self.no_equilibrium is not None:
+            return self.no_equilibrium
         if self.n == 1:
             return "one disk shares its energy with nobody"
         if self.drowned:
@@ -184,7 +199,7 @@ class Ensemble:
 
     @property
     def steady(self) -> bool:
-        """Whether an equilibrium can be reached at all."""
+        """Whether a steady state can be reached at all."""
         return self.unsteady is None
 
     @cached_property
@@ -197,13 +212,14 @@ class Ensemble:
     @property
     def simple(self) -> bool:
         """Whether theory for a homogeneous gas applies: alone, elastic, without gravity, held."""
-        return self.alone and self.steady and self.scene.gravity is None
+        return self.alone and self.no_equilibrium is None and self.scene.gravity is None
 
     @property
     def billiard(self) -> bool:
         """Whether those who move never meet: tracers alone, or one disk, flying straight among what stands still."""
         movers = self.n if self.n else 0 if self.tracers is None else self.species[self.tracers].number
-        return (self.n == 0 or movers == 1) and movers > 0 and self.steady and self.scene.gravity is None
+        alone = (self.n == 0 or movers == 1) and movers > 0
+        return alone and self.no_equilibrium is None and self.scene.gravity is None
 
     @cached_property
     def integrable(self) -> bool:
@@ -392,7 +408,9 @@ def ensemble_of(scene: Scene, kicked: bool = False) -> Ensemble:
     found = species_among(disks.select(np.flatnonzero(counted)))
     species_of = np.full(len(disks), -1, dtype=np.int64)
     if len(found.count) <= MOST_SPECIES:
-        species = list(map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist(), found.name.tolist()))
+        species = list(
+            map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist(), found.name.tolist())
+        )
         species_of[counted] = found.of
     else:
         species = [Species(math.nan, math.nan, int(counted.sum()))]

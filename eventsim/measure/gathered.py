@@ -14,6 +14,7 @@ from eventsim.measure.quantities import quantities_of
 from eventsim.measure.records import FEWEST_CONTACTS, Records
 from eventsim.measure.series import series_of
 from eventsim.measure.speeds import speed_histograms
+from eventsim.record.events import Floats
 
 
 def measures_of(records: Records) -> Measures:
@@ -33,6 +34,7 @@ def measures_of(records: Records) -> Measures:
         discarded=records.discarded,
         discard_given=records.discard is not None,
         steady=ensemble.steady,
+        driven=ensemble.driven,
         doubts=tuple(found),
         quantities=quantities,
         speeds=speed_histograms(records),
@@ -46,14 +48,14 @@ def measures_of(records: Records) -> Measures:
 def _doubts(records: Records) -> list[str]:
     """Reasons why there is no steady state, or why the run cannot tell."""
     ensemble = records.ensemble
-    if records.no_temperature is not None:
+    if records.no_temperature is not None and not ensemble.driven:
         return [records.no_temperature]
-    if not records.mixed:
-        if records.shared < FEWEST_CONTACTS:
-            return [f"{records.shared:.2g} contacts of a disk are too few to tell (at least {FEWEST_CONTACTS:g})"]
-        if records.groups > 1:
-            return [f"the disks fall into {records.groups} groups that have not met"]
-        few, kind = records.exchanged
+    if records.shared < FEWEST_CONTACTS:
+        return [f"{records.shared:.2g} contacts of a disk are too few to tell (at least {FEWEST_CONTACTS:g})"]
+    if records.groups > 1:
+        return [f"the disks fall into {records.groups} groups that have not met"]
+    few, kind = records.exchanged
+    if few < FEWEST_CONTACTS:
         return [
             f"species {kind} has shared its energy as in {few:.2g} contacts of equal disks:"
             f" too few to tell (at least {FEWEST_CONTACTS:g})"
@@ -63,19 +65,29 @@ def _doubts(records: Records) -> list[str]:
     way = np.hypot(*(records.sums.disks[ensemble.counted, sums.WX : sums.WY + 1] - records.end * ensemble.drift).T)
     longest = float(way.max())
     moved = longest * float(np.sqrt(((way / longest) ** 2).mean())) if longest > 0.0 else 0.0
-    return doubts(ensemble, rates, block_average(rates), late, moved) + _exchanging(records)
+    return doubts(ensemble, rates, block_average(rates), late, moved) + _heating(records) + _exchanging(records)
+
+
+def _halves(records: Records, energy: Floats) -> float:
+    """By how many standard errors the mean energies of the halves of the run differ."""
+    half = len(records.time) // 2
+    first, second = (
+        records.ratio(energy[part], records.time[part], remembered=True) for part in (slice(half), slice(half, None))
+    )
+    spread = math.hypot(first.error, second.error)
+    return abs(first.mean - second.mean) / spread if spread > 0.0 else 0.0
+
+
+def _heating(records: Records) -> list[str]:
+    """A clause where walls still give more energy than they take, or less."""
+    away = _halves(records, records.channel(sums.ENERGY)) if records.ensemble.driven else 0.0
+    return [f"the energy drifts: its halves differ by {away:.1f} standard errors"] if away > DRIFT else []
 
 
 def _exchanging(records: Records) -> list[str]:
     """A clause where one species still gives energy to others."""
     for kind in records.everyone if records.ensemble.kinds > 1 else ():
-        square, half = records.species(kind, sums.SPEED2), len(records.time) // 2
-        first, second = (
-            records.ratio(square[part], records.time[part], remembered=True)
-            for part in (slice(half), slice(half, None))
-        )
-        spread = math.hypot(first.error, second.error)
-        if abs(first.mean - second.mean) > DRIFT * spread > 0.0:
+        if _halves(records, records.species(kind, sums.SPEED2)) > DRIFT:
             return [
                 f"species {kind} still exchanges energy with others: its mean v^2 differs between the halves of the run"
             ]

@@ -90,6 +90,7 @@ class Measures:
         duration: of the run.
         discarded: at its beginning, time; discard_given: whether that was asked for.
         steady: whether the scene can have a steady state at all.
+        driven: whether walls keep it up, so that it need not be an equilibrium.
         doubts: reasons why it cannot be, or may not have been, reached.
         quantities: in order.
         speeds: histograms, one a species.
@@ -106,6 +107,7 @@ class Measures:
     discarded: float
     discard_given: bool
     steady: bool
+    driven: bool
     doubts: tuple[str, ...]
     quantities: tuple[Measure, ...]
     speeds: tuple[SpeedHistogram, ...]
@@ -119,7 +121,8 @@ class Measures:
 
     def _repr_html_(self) -> str:
         rows = [
-            (q.name, q.value, q.error, "" if q.theory is None else q.theory, q.unit, q.doubt or "") for q in self.quantities
+            (q.name, q.value, q.error, "" if q.theory is None else q.theory, q.unit, q.doubt or "")
+            for q in self.quantities
         ]
         return html_table(repr(self), ("", "value", "error", "theory", "unit", "doubt"), rows)
 
@@ -158,6 +161,7 @@ class Measures:
             "discarded": self.discarded,
             "discard_given": self.discard_given,
             "steady": self.steady,
+            "driven": self.driven,
             "equilibrated": self.equilibrated,
             "doubts": list(self.doubts),
             "quantities": {quantity.name: quantity.to_dict() for quantity in self.quantities},

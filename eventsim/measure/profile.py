@@ -190,7 +190,7 @@ class Profiler:
         """
         ensemble, scene = self._ensemble, self._scene
         gravity, size, along = scene.gravity, scene.domain.size, AXES.index(self.axis)
-        if gravity is None or size is None or not ensemble.alone or not ensemble.equal or not ensemble.steady:
+        if gravity is None or size is None or not ensemble.alone or not ensemble.equal or ensemble.no_equilibrium:
             return None
         if self._wraps or gravity[1 - along] != 0.0 or gravity[along] == 0.0 or ensemble.n < FEWEST or not kt > 0.0:
             return None

@@ -12,8 +12,8 @@ from eventsim.measure.blocking import block_average
 from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.entries import Expected, average, beside, dash
 from eventsim.measure.measures import Measure
-from eventsim.measure.quantities.cooling import MOST_FLOWING, flowing
-from eventsim.measure.records import FEW, Records
+from eventsim.measure.quantities.cooling import CHANGED, MOST_FLOWING, flowing
+from eventsim.measure.records import FEW, FEWEST_CONTACTS, Records
 
 PARTS = 16
 """Stretches of equal numbers of contacts, of the second half of a run, whose means are averaged."""
@@ -54,22 +54,36 @@ def _ratio(records: Records) -> Measure:
     if not (flights > 0.0).all():
         return dash("rotation_ratio", "1", "rounding leaves no digits of the energy of flights")
     ratios = 2.0 * points[-whole:, sums.POINT_TURNING] / ensemble.n / flights
-    bar = block_average(ratios.reshape(PARTS, -1).mean(axis=1))
+    parts = ratios.reshape(PARTS, -1).mean(axis=1)
+    bar = block_average(parts)
     contacts = 2.0 * (count - whole) * int(records.sums.counts[sums.STRIDE]) / ensemble.n
-    error = bar.error if bar.error > 0.0 else math.nan
-    entry = Measure(bar.mean, error, unit="1", name="rotation_ratio", blocks=bar.blocks)
-    return beside(entry, _expected(ensemble, contacts))
+    expected, decays = _expected(ensemble, contacts)
+    first, second = parts[: PARTS // 2], parts[PARTS // 2 :]
+    spread = math.sqrt((first.var(ddof=1) + second.var(ddof=1)) / (PARTS // 2))
+    note = None
+    if decays < SETTLED:
+        note = f"it has not settled: {contacts:.2g} contacts of a disk before are {decays:.2g} of its decays"
+    elif math.isinf(decays) and contacts < FEWEST_CONTACTS:
+        note = f"it may not have settled: {contacts:.2g} contacts of a disk before (at least {FEWEST_CONTACTS:g})"
+    elif expected is None and abs(first.mean() - second.mean()) > CHANGED * spread:
+        note = "it still changes in the second half of the run"
+    error = bar.error if bar.error > 0.0 and note is None else math.nan
+    entry = Measure(bar.mean, error, unit="1", doubt=note, name="rotation_ratio", blocks=bar.blocks)
+    return beside(entry, expected)
 
 
-def _expected(ensemble: Ensemble, contacts: float) -> Expected | None:
-    """The ratio in a homogeneous gas that has had so many contacts of a disk; None where theory does not speak of it."""
+def _expected(ensemble: Ensemble, contacts: float) -> tuple[Expected | None, float]:
+    """(the ratio in a homogeneous gas, how often what it begins with has decayed) after so many contacts of a disk.
+
+    None where theory does not speak of it, or not yet; inf decays where nobody knows.
+    """
     law, disks = ensemble.law, ensemble.scene.disks
     moments = np.unique(disks.moments()[ensemble.counted])
     plain = not law.by_speed and law.pairs is None and law.duration is None and ensemble.scene.gravity is None
     alone = ensemble.torus and ensemble.alone and ensemble.equal and ensemble.n >= FEW and len(moments) == 1
     if not plain or not alone or law.rough is None or ensemble.kicked:
-        return None
+        return None, math.inf
     ratio, decay, loss = theory.rotation_ratio(law.pair, law.rough.pair, float(moments[0]))
     if decay * contacts < SETTLED or flowing(ensemble, 2.0 * contacts, loss) > MOST_FLOWING:
-        return None
-    return Expected(ratio, ACCURACY * ratio, "Luding et al. 1998, homogeneous")
+        return None, decay * contacts
+    return Expected(ratio, ACCURACY * ratio, "Luding et al. 1998, homogeneous"), decay * contacts

@@ -28,7 +28,7 @@ def measures(records: Records) -> Iterator[Measure]:
 
 def with_drift(records: Records) -> str | None:
     """What to say of speeds and ways where all drift together."""
-    if records.ensemble.at_rest or not records.ensemble.steady:
+    if records.ensemble.at_rest or records.ensemble.no_equilibrium is not None:
         return None
     x, y = records.ensemble.drift.tolist()
     return f"the common drift ({x:.4g}, {y:.4g}) included"

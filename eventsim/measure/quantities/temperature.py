@@ -19,7 +19,7 @@ def measures(records: Records) -> Iterator[Measure]:
         for name, energy in ends.items():
             yield Measure(energy, unit="energy", name=name, fixed=True)
     why = records.no_temperature
-    if ensemble.n and why is not None and ensemble.scene.gravity is not None:
+    if ensemble.n and why is not None and (ensemble.driven or ensemble.scene.gravity is not None):
         yield average(records, "kinetic_energy", records.channel(sums.ENERGY), records.time, "energy", remembered=True)
     if why is not None:
         yield dash("temperature", "energy", why)
