@@ -131,7 +131,10 @@ def boundary_map(log: AnyLog) -> BoundaryMap | str:
     scene = log.scene
     ensemble = ensemble_of(scene, bool(log.provenance.kicks))
     if not ensemble.billiard:
-        why = ensemble.no_equilibrium or "a boundary map is of points or one disk that fly straight among what stands still"
+        why = (
+            ensemble.no_equilibrium
+            or "a boundary map is of points or one disk that fly straight among what stands still"
+        )
         return f"no billiard: {why}"
     if ensemble.table is None:
         return "the centre sees no closed table of straight and round sides"

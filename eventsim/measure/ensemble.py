@@ -150,6 +150,13 @@ class Ensemble:
         return "along the period disks fall for ever" if self.falls else None
 
     @cached_property
+    def called(self) -> tuple[str, ...]:
+        """What the species that carry energy are called: by their names where each has one of its own, else by number."""
+        names = tuple(one.name for one in self.species[: self.kinds])
+        alone = all(names) and len(set(names)) == len(names)
+        return names if alone else tuple(map(str, range(self.kinds)))
+
+    @cached_property
     def driven(self) -> bool:
         """Whether walls give and take energy for ever, so that the gas comes to a steady state that is no equilibrium."""
         sinks = self.law.heats or self.law.loses_energy()

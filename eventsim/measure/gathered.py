@@ -57,7 +57,7 @@ def _doubts(records: Records) -> list[str]:
     few, kind = records.exchanged
     if few < FEWEST_CONTACTS:
         return [
-            f"species {kind} has shared its energy as in {few:.2g} contacts of equal disks:"
+            f"species {ensemble.called[kind]} has shared its energy as in {few:.2g} contacts of equal disks:"
             f" too few to tell (at least {FEWEST_CONTACTS:g})"
         ]
     rates = records.channel(sums.VIRIAL) / records.time
@@ -89,6 +89,7 @@ def _exchanging(records: Records) -> list[str]:
     for kind in records.everyone if records.ensemble.kinds > 1 else ():
         if _halves(records, records.species(kind, sums.SPEED2)) > DRIFT:
             return [
-                f"species {kind} still exchanges energy with others: its mean v^2 differs between the halves of the run"
+                f"species {records.ensemble.called[kind]} still exchanges energy with others:"
+                " its mean v^2 differs between the halves of the run"
             ]
     return []

@@ -279,3 +279,10 @@ def test_energy_that_walls_still_bring_is_told():
         scene_to_dict(gas) | {"domain": {"kind": "box", "size": list(gas.domain.size), "walls": walls}, "seed": 1}
     )
     assert any("drift" in doubt or "still" in doubt for doubt in measured(scene, events=600).doubts)
+
+
+def test_species_with_names_are_called_by_them():
+    disks = es.Disks([[1, 1], [3, 1], [1, 3], [3, 3]], [[1, 0.3], [0, 1], [1, 1], [-1, 0]], [0.4, 0.4, 0.3, 0.3],
+                     species=["big", "big", "small", "small"])  # fmt: skip
+    names = list(measured(es.Scene(disks, es.Periodic((4.0, 4.0))), events=40))
+    assert {"temperature_big", "mean_speed_small", "collision_rate_big_small"} <= set(names)

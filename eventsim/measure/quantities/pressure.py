@@ -81,7 +81,12 @@ def _mixture_z(records: Records) -> Expected | None:
     """Z of a mixture in a periodic domain; None where no theory holds."""
     ensemble, parts = records.ensemble, mixture_of(records.ensemble)
     eta = ensemble.packing_fraction
-    if parts is None or eta is None or eta > theory.MIXTURE_UP_TO or not (records.mixed and ensemble.simple and ensemble.torus):
+    if (
+        parts is None
+        or eta is None
+        or eta > theory.MIXTURE_UP_TO
+        or not (records.mixed and ensemble.simple and ensemble.torus)
+    ):
         return None
     z = theory.mixture_compressibility_factor(parts)
     return Expected(z, theory.MIXTURE_ACCURACY * z, MIXTURE)
@@ -104,4 +109,11 @@ def _contact_values(records: Records, kt: float) -> Iterator[Measure]:
             g = theory.mixture_contact_value(parts, i, j)
             expected = Expected(g, theory.MIXTURE_ACCURACY * g, MIXTURE) if known else None
             met = records.met(i, j) / one.number
-            yield average(records, f"contact_value_{i}_{j}", met, alone * records.time, "1", expected)
+            yield average(
+                records,
+                f"contact_value_{ensemble.called[i]}_{ensemble.called[j]}",
+                met,
+                alone * records.time,
+                "1",
+                expected,
+            )

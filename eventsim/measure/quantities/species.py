@@ -14,12 +14,15 @@ from eventsim.measure.records import Records
 
 
 def measures(records: Records) -> Iterator[Measure]:
-    """Yield temperature_I, mean_speed_I, collision_rate_I and collision_rate_I_J: contacts of a disk of I with disks of J."""
+    """Yield temperature_I, mean_speed_I, collision_rate_I and collision_rate_I_J: contacts of a disk of I with disks of J.
+
+    I, J: what species are called.
+    """
     ensemble = records.ensemble
     if ensemble.kinds < 2:
         return
     for kind, species in enumerate(ensemble.species[: ensemble.kinds]):
-        flown = species.number * records.time
+        flown, called = species.number * records.time, ensemble.called[kind]
         share = ensemble.thermal_share(species.mass)
         if share > 0.0 and records.no_temperature is None and ensemble.angular_momentum is None:
             common = 2.0 * ensemble.drift_energy / ensemble.total_mass
@@ -27,20 +30,20 @@ def measures(records: Records) -> Iterator[Measure]:
             even = None
             if records.mixed and ensemble.simple:
                 even = Expected(records.found["temperature"], 0.0, "equipartition")
-            yield average(records, f"temperature_{kind}", heat, flown, "energy", even, remembered=True)
+            yield average(records, f"temperature_{called}", heat, flown, "energy", even, remembered=True)
         path = records.species(kind, sums.PATH)
         speed = expected_speed(records, kind)
         drift = with_drift(records)
-        yield average(records, f"mean_speed_{kind}", path, flown, "length / time", speed, drift, remembered=True)
+        yield average(records, f"mean_speed_{called}", path, flown, "length / time", speed, drift, remembered=True)
         expected = _rates(records, kind)
         met = records.contacts(kind) / species.number
         total = sum(expected.values()) if expected else math.nan
-        yield average(records, f"collision_rate_{kind}", met, records.time, "1 / time", _expected(total))
+        yield average(records, f"collision_rate_{called}", met, records.time, "1 / time", _expected(total))
         for other in range(ensemble.kinds):
             if other == kind and species.number == 1:
                 continue
             met = records.met(kind, other) / species.number
-            name = f"collision_rate_{kind}_{other}"
+            name = f"collision_rate_{called}_{ensemble.called[other]}"
             yield average(records, name, met, records.time, "1 / time", _expected(expected.get(other, math.nan)))
 
 

@@ -269,7 +269,7 @@ class _Looker:
         entries: list[Measure] = []
         columns: Columns = {}
         for place, (i, j) in enumerate(self._pairs):
-            end = f"_{i}_{j}" if len(counts) > 1 else ""
+            end = f"_{self._ensemble.called[i]}_{self._ensemble.called[j]}" if len(counts) > 1 else ""
             ideal = (0.5 * counts[i] * (counts[i] - 1) if i == j else counts[i] * counts[j]) / float(self._size.prod())
             known = int(np.sum(edges[1:] * self._reach[place] <= self._far))
             if ideal == 0.0 or known < FITTED:
