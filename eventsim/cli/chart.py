@@ -119,12 +119,9 @@ def seeded_task(name: str) -> Task:
 
 def _text(chart: Chart) -> str:
     """Who was left out, the answers, and the table of advantages."""
+    from eventsim.cli.folding import tables
     from eventsim.validation.advantages import table
     from eventsim.validation.conclusions import conclusions
 
-    head, rows = table(chart)
-    widths = [max(len(line[k]) for line in (head, *rows)) for k in range(len(head))]
     lines = [*chart.left_out, *([""] if chart.left_out else []), *map(str, conclusions(chart)), "", TABLE]
-    for row in (head, *rows):
-        lines.append("  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip())
-    return "\n".join(lines)
+    return "\n".join([*lines, *tables(*table(chart))])

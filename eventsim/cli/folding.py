@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from textwrap import fill
 
@@ -14,6 +15,21 @@ LAST_COLUMN = 60
 
 COLUMN = re.compile(r"(?<=[^ .;:]) {2,}(?=\S)")
 """What parts columns; two blanks behind a full stop part sentences."""
+
+
+def tables(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """The lines of a table; columns that do not fit beside each other stand below, with the first column again."""
+    widths = [max(len(line[k]) for line in (head, *rows)) for k in range(len(head))]
+    begun = 1
+    while begun < len(head):
+        columns = [0, begun]
+        while columns[-1] + 1 < len(head) and sum(widths[k] + 2 for k in (*columns, columns[-1] + 1)) - 2 <= WIDTH:
+            columns.append(columns[-1] + 1)
+        if begun > 1:
+            yield ""
+        for row in (head, *rows):
+            yield "  ".join(row[k].ljust(widths[k]) for k in columns).rstrip()
+        begun = columns[-1] + 1
 
 
 def folded(text: str) -> str:
@@ -40,8 +56,12 @@ def _folded(line: str) -> str:
 def reflowed(text: str) -> str:
     """Return a text whose paragraphs, lines of one indent, are broken anew to fit a terminal."""
     found = []
-    for (empty, indent), lines in groupby(text.split("\n"), lambda line: (not line.strip(), len(line) - len(line.lstrip(" ")))):
+    for (empty, indent), lines in groupby(
+        text.split("\n"), lambda line: (not line.strip(), len(line) - len(line.lstrip(" ")))
+    ):
         words, left = " ".join(line.strip() for line in lines), " " * indent
-        broken = fill(words, WIDTH, initial_indent=left, subsequent_indent=left, break_long_words=False, break_on_hyphens=False)
+        broken = fill(
+            words, WIDTH, initial_indent=left, subsequent_indent=left, break_long_words=False, break_on_hyphens=False
+        )
         found.append("" if empty else broken)
     return "\n".join(found)

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from eventsim.cli import main
-from eventsim.cli.folding import folded, reflowed
+from eventsim.cli.folding import folded, reflowed, tables
 from eventsim.cli.program import VERBS
 
 PRINTED = (
@@ -54,6 +54,16 @@ def test_a_long_line_goes_on_below_its_last_column():
     assert first.startswith("  label   word")
     assert all(other.startswith(" " * 10 + "word") for other in others)
     assert " ".join(folded(text).split()) == " ".join(text.split())
+
+
+def test_columns_that_do_not_fit_stand_below_with_the_first_one():
+    head, rows = ["engine", *(f"{k}".rjust(30, "-") for k in range(3))], [["a", "1", "2", "3"], ["b", "4", "5", "6"]]
+    lines = list(tables(head, rows))
+    assert max(map(len, lines)) <= 80
+    assert [line.split() for line in lines] == [
+        ["engine", *head[1:3]], ["a", "1", "2"], ["b", "4", "5"], [], ["engine", head[3]], ["a", "3"], ["b", "6"],
+    ]  # fmt: skip
+    assert list(tables(["engine", "x"], [["a", "1"]])) == ["engine  x", "a       1"]
 
 
 def test_paragraphs_are_broken_anew():
