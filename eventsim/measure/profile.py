@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.errors import EventsimError
-from eventsim.measure.blocking import ratio_average
+from eventsim.measure.blocking import FEWEST_BLOCKS, ErrorBar, ratio_average
 from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.theory import KOLAFA_ROTTNER_UP_TO, fluid
 from eventsim.record.events import Floats
@@ -155,14 +155,14 @@ class Profiler:
             if not here[:, COUNT].any():
                 continue
             for axis, column in enumerate((VX, VY)):
-                bar = ratio_average(here[:, column], here[:, COUNT])
+                bar = _average(here[:, column], here[:, COUNT])
                 velocity[k, axis], velocity_error[k, axis] = bar.mean, bar.error
             if heavy:
                 vx, vy = velocity[k]
                 square = (
                     here[:, V2] - 2.0 * (vx * here[:, VX] + vy * here[:, VY]) + (vx * vx + vy * vy) * here[:, COUNT]
                 )
-                bar = ratio_average(0.5 * one.mass / share * square, here[:, COUNT])
+                bar = _average(0.5 * one.mass / share * square, here[:, COUNT])
                 temperature[k], temperature_error[k] = bar.mean, bar.error
         mean = np.array([bar.mean for bar in density]) / areas
         error = np.array([bar.error if bar.error > 0.0 else math.nan for bar in density]) / areas
@@ -220,6 +220,12 @@ class Profiler:
         theory = np.full(SLICES, np.nan)
         theory[free] = found.reshape(-1, FINE).mean(axis=1) / share
         return theory
+
+
+def _average(above: Floats, count: Floats) -> ErrorBar:
+    """A mean over disks by blocks of time, without a bar where a few passages are all that was seen."""
+    bar = ratio_average(above, count)
+    return bar if np.count_nonzero(count) >= FEWEST_BLOCKS else bar._replace(error=math.nan)
 
 
 def barometric_density(number: float, height: float, radius: float, scale: float, count: int) -> Floats | None:

@@ -9,6 +9,7 @@ import pytest
 import eventsim as es
 from eventsim.measure import measure
 from eventsim.measure.ensemble import ensemble_of
+from eventsim.measure.profile import _average
 from eventsim.measure.quantities.cooling import flowing
 from eventsim.measure.theory import cooling_exponent
 from eventsim.scene.files import scene_from_dict, scene_to_dict
@@ -286,3 +287,11 @@ def test_species_with_names_are_called_by_them():
                      species=["big", "big", "small", "small"])  # fmt: skip
     names = list(measured(es.Scene(disks, es.Periodic((4.0, 4.0))), events=40))
     assert {"temperature_big", "mean_speed_small", "collision_rate_big_small"} <= set(names)
+
+
+def test_a_slice_that_few_passages_saw_has_no_bar():
+    count = np.zeros(64)
+    count[[3, 40]] = 1.0
+    above = np.random.default_rng(1).normal(size=64)
+    assert math.isnan(_average(above * count, count).error)
+    assert _average(above, np.ones(64)).error > 0.0
