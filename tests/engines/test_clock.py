@@ -181,11 +181,13 @@ def test_who_only_wraps_keeps_its_digits(engine: str, until: float, most: float)
     assert session.counters.turnovers < 0.01 * session.counters.wraps
 
 
-def test_a_disk_far_smaller_than_its_table_has_a_clock() -> None:
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_disk_far_smaller_than_its_table_has_a_clock(engine: str) -> None:
+    skip_without(engine)
     for radius in (1e-9, 1e-18):
         for domain, walls in ((es.Open(), [es.Circle((0.0, 0.0), 1.0)]), (es.Box((2.0, 2.0), origin=(-1.0, -1.0)), [])):
             scene = es.Scene(es.Disks([(0.25, 0.0)], [(1000.0, 0.0)], radius), domain, walls)
-            run = es.simulate(scene, until=1e7, events=200, engine="reference")
+            run = es.simulate(scene, until=1e7, events=200, engine=engine)
             assert (run.stopped, run.counters.events) == ("events", 200)
             assert run.time == pytest.approx((0.75 + 199 * 2.0) / 1000.0, rel=1e-6)
             assert run.counters.turnovers < 100
