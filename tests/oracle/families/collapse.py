@@ -97,4 +97,26 @@ def slanted(rng: np.random.Generator) -> Case:
     return Case(made, to_the_end=not lasting)
 
 
-FAMILIES = {"P4-three": three, "P4-wall": wall_and_two, "P4-four": four, "P4-slanted": slanted}
+def heavy(rng: np.random.Generator) -> Case:
+    """A light disk between a wall and a heavy one, near the mass at which its contacts never end.
+
+    A round turns approach velocities by a map of determinant e^2, whose trace is 2 e at that mass.
+    """
+    restitution = 1.0 - float(10.0 ** rng.uniform(-1.3, -0.2))
+    mass = 4.0 * restitution / (1.0 - restitution) ** 2
+    gap = (float(rng.uniform(0.2, 2.0)), float(rng.uniform(0.3, 2.0)))
+    made = scene(
+        position=[(0.5 + gap[0], 0.0), (1.5 + sum(gap), 0.0)],
+        velocity=[(0.0, 0.0), (-1.0, 0.0)],
+        radius=0.5,
+        mass=[1.0, _near(rng, mass)],
+        domain=es.Open(),
+        walls=[es.Segment((0.0, -9.0), (0.0, 9.0))],
+        restitution=restitution,
+        until=1e6,
+        events=3000,
+    )
+    return Case(made, to_the_end=True)
+
+
+FAMILIES = {"P4-three": three, "P4-wall": wall_and_two, "P4-four": four, "P4-slanted": slanted, "P4-heavy": heavy}
