@@ -114,11 +114,12 @@ def piled_up(loss: float) -> float:
     """The part of its places above which a gap of a losing series is known to a few per cent.
 
     Each contact leaves a last bit or two in a gap.  It turns errors round with the velocities, so e of them is left: they pile
-    up to 1 / (1 - e) of one.  Gaps shrink faster than that: so the last ones are known worst.  As for bounces, FLOORS above it.
+    up to 1 / (1 - e) of one.  Gaps shrink faster than that: so the last ones are known worst.  As for bounces, FLOORS above a
+    last bit of it errors are some per cent.
 
     loss: 1 - e; 0 where nothing is lost, and nothing piles up to be feared.
     """
-    return min(FLOORS * ROUNDED / loss, LARGEST_PILE) if loss > 0.0 else BELOW
+    return min(FLOORS * UNIT / loss, LARGEST_PILE) if loss > 0.0 else BELOW
 
 
 def is_sunk(approach: Real, lag: Real, size: Real, pile: float, slowly: float) -> Real:
