@@ -111,15 +111,14 @@ def round_size(places: Real, distance: Real, reach: Real, way: Real) -> Real:
 
 
 def piled_up(loss: float) -> float:
-    """The part of its places above which a gap of a losing series is known to a few per cent.
+    """The part of its places above which a gap of a losing series is known to some per cent.
 
     Each contact leaves a last bit or two in a gap.  It turns errors round with the velocities, so e of them is left: they pile
-    up to 1 / (1 - e) of one.  Gaps shrink faster than that: so the last ones are known worst.  As for bounces, FLOORS above a
-    last bit of it errors are some per cent.
+    up to 1 / (1 - e) of one.  Gaps shrink faster than that: so the last ones are known worst.  Twice that leaves the order sure.
 
     loss: 1 - e; 0 where nothing is lost, and nothing piles up to be feared.
     """
-    return min(FLOORS * UNIT / loss, LARGEST_PILE) if loss > 0.0 else BELOW
+    return min(2.0 * BELOW / loss, LARGEST_PILE) if loss > 0.0 else BELOW
 
 
 def is_sunk(approach: Real, lag: Real, size: Real, pile: float, slowly: float) -> Real:

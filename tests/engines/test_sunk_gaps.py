@@ -134,7 +134,7 @@ def test_errors_that_pile_up_in_a_series_never_show_in_its_times(restitution, cr
         digits.prec = 100
         true = flights(restitution, critical, len(run.log))
     for time, (ends, lag) in zip(run.log.time.tolist(), true, strict=True):
-        assert abs(time - float(ends)) <= 0.05 * float(lag) + 2.0**-50 * time
+        assert abs(time - float(ends)) <= 0.15 * float(lag) + 2.0**-50 * time
 
 
 @pytest.mark.parametrize("engine", ENGINES)
