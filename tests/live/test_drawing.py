@@ -5,6 +5,7 @@ import pytest
 
 import eventsim as es
 from tests.live.driven import Page
+from tests.show.browser import said
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
 
@@ -19,7 +20,7 @@ def page(request, chromium, address):
     chromium.set_window_size(*request.param)
     yield Page(chromium, address)
     chromium.set_window_size(1280, 800)
-    assert chromium.get_log("browser") == []
+    assert said(chromium) == []
 
 
 def drag(page, start, end):

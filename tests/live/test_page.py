@@ -15,6 +15,7 @@ from eventsim.show.frames import frames_at
 from eventsim.validation.judge.matching import assigned
 from tests.live.driven import CLOSE, Page
 from tests.live.running import live_server
+from tests.show.browser import said
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
 
@@ -24,7 +25,7 @@ def page(chromium, address):
     """The page of a server; in the end the console must have said nothing."""
     chromium.set_window_size(1100, 760)
     yield Page(chromium, address)
-    assert chromium.get_log("browser") == []
+    assert said(chromium) == []
 
 
 @pytest.mark.parametrize(("masses", "radii"), [("equal", "equal"), ("different", "different")])

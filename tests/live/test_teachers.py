@@ -3,6 +3,7 @@
 import pytest
 
 from tests.live.driven import Page
+from tests.show.browser import said
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
 
@@ -11,7 +12,7 @@ pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live 
 def page(chromium, address):
     chromium.set_window_size(1280, 800)
     yield Page(chromium, address)
-    assert chromium.get_log("browser") == []
+    assert said(chromium) == []
 
 
 def key_on_page(page, name):

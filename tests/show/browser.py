@@ -38,3 +38,10 @@ def browser(profile: Path) -> Iterator[Any]:
         yield opened
     finally:
         opened.quit()
+
+
+def said(chromium: Any) -> list[Any]:
+    """What the console of a page has said, which is left then: it would go on to look for a server that has ended."""
+    lines: list[Any] = chromium.get_log("browser")
+    chromium.get("about:blank")
+    return lines

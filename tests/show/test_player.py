@@ -14,6 +14,7 @@ from eventsim.replay.replay import Replay
 from eventsim.scene.files import scene_from_dict
 from eventsim.show.frames import frames_at
 from eventsim.show.player.page import notebook_frame, page
+from tests.show.browser import said
 
 CLOSE = 1e-9
 """Of the scene's size: the bound that positions keep; what is reached is nearer to 1e-14."""
@@ -30,7 +31,7 @@ def opened(chromium, tmp_path):
         return chromium
 
     yield open_log
-    assert chromium.get_log("browser") == []
+    assert said(chromium) == []
 
 
 def shown(driver, moment):

@@ -115,7 +115,7 @@ class Wall(Manner, ABC):
             yield f": must not stretch over more than {MOST_PERIODS} periods in {letter} (an arc: its whole circle)"
 
     def most_periods(self, period: Sequence[float]) -> float:
-        """Over how many periods (inf: none) a piece of it stretches at most, in x times in y."""
+        """Over how many periods a piece of it stretches at most, in x times in y; period: of each axis, inf where it has none."""
         extents = [part.bounds() for part in self.parts("")]
         return max(math.prod(max((high[k] - low[k]) / period[k], 1.0) for k in (0, 1)) for low, high in extents)
 
