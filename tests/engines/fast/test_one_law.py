@@ -68,6 +68,7 @@ def of_laws(scene):
     return told | {"spin": state.spin, "contacts": state.contacts, "columns": row_of(stage.spin is not None).names}
 
 
+@pytest.mark.kernels
 def test_a_scene_without_laws_has_nothing_of_them():
     for bare in (lattice_gas(12, 0.1), lattice_gas(12, 0.1, restitution=0.9)):
         told = of_laws(bare)
@@ -76,6 +77,7 @@ def test_a_scene_without_laws_has_nothing_of_them():
         assert not [name for name in columns if "spin" in name]
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "restitution"])
 def test_a_scene_with_a_law_has_something_of_it(law):
     assert any(value is not None for name, value in of_laws(random_scene(0, law)).items() if name != "columns")
