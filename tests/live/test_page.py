@@ -300,6 +300,7 @@ def test_a_page_whose_server_is_gone_says_so_and_takes_no_other_for_it(chromium)
         time.sleep(2.0)  # more than one try of the page
         assert not page.js("return live.link.open")
         assert not page.js("return live.part('notice').hidden")
+        said(chromium)  # that there is no connection
 
 
 @pytest.mark.slow

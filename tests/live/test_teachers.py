@@ -52,6 +52,7 @@ def test_a_throw_is_undone_and_reset_forgets_it(page):
         assert page.js("return live.part('undo').disabled")
 
 
+@pytest.mark.slow  # the page may take on the size of the window meanwhile
 def test_the_size_of_the_window_is_nothing_to_take_back(page):
     page.open("count=5&speed=100&packing=0.05&seed=3")
     size = page.js("return live.player.stage.size.map((length) => length + 40)")
