@@ -39,6 +39,7 @@ def meeting(
     dw: Any,
     gx: float = 0.0,
     gy: float = 0.0,
+    away: float = 0.0,
 ) -> Meeting:
     """Return how a neighbour meets.
 
@@ -48,6 +49,7 @@ def meeting(
         curvature: 1 / distance from the centre of curvature, 1 / length; below 0 where the wall is met from inside.
         dx, dy, du, dw: the relative deviation of place and velocity.
         gx, gy: the relative acceleration.
+        away: the speed along the normal at which a wall meets it that shakes, and stays where it is.
     """
     approach = nx * ux + ny * uy
     shift = -(nx * dx + ny * dy) / approach
@@ -55,7 +57,8 @@ def meeting(
     turn = curvature * along
     sideways = nx * uy - ny * ux
     change = nx * (du + gx * shift) + ny * (dw + gy * shift) + turn * sideways
-    return Meeting(shift, change * nx - approach * turn * ny, change * ny + approach * turn * nx)
+    met = approach - away
+    return Meeting(shift, change * nx - met * turn * ny, change * ny + met * turn * nx)
 
 
 def after(
@@ -65,7 +68,7 @@ def after(
 
     Args:
         part: its velocity changes by -part (n u) n; 1 + e at a wall.
-        approach: (n u), below 0.
+        approach: (n u), below 0; less `away` at a wall that shakes.
         nx, ny: as in `meeting`.
         how: what `meeting` gave.
         x, y, u, w: its deviation before.

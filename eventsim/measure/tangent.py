@@ -155,9 +155,10 @@ class Tangent:
         if normal is None or not approach < 0.0:
             return 0.0
         nx, ny = normal
-        how = meeting(nx, ny, ax, ay, self._curvature(wall, i, place, normal), dx, dy, du, dw, *self._pull[i])
-        part = -(nx * (vx - ax) + ny * (vy - ay)) / approach
-        self.off[i] = after(part, approach, nx, ny, how, dx, dy, du, dw)
+        away = self._stage.law.treatment(wall).shaking
+        how = meeting(nx, ny, ax, ay, self._curvature(wall, i, place, normal), dx, dy, du, dw, *self._pull[i], away)
+        part = -(nx * (vx - ax) + ny * (vy - ay)) / (approach - away)
+        self.off[i] = after(part, approach - away, nx, ny, how, dx, dy, du, dw)
         return how.shift
 
     def _curvature(self, wall: int, i: int, place: Vector, normal: Vector) -> float:

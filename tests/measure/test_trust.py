@@ -10,6 +10,7 @@ import eventsim as es
 from eventsim.measure.tangent import Tangent
 from eventsim.measure.trust import HELD, TrustLine, smallest_reach
 from eventsim.scene.stage import stage_of
+from tests.engines.law_scenes import random_scene
 from tests.measure.trust_table import compared, generic_scene
 
 STEP = 2.0**-34
@@ -31,6 +32,9 @@ SCENES = {
     "round wall": (generic_scene(3), 60),
     "a post": (generic_scene(4), 60),
     "falling": (generic_scene(0), 60),
+    "vibrated": (es.gallery("vibrated", n=6), 60),
+    "shaken box": (random_scene(9, "walls that shake"), 60),
+    "shaken arc": (random_scene(11, "walls that shake"), 60),
 }
 
 
