@@ -15,6 +15,6 @@ def test_every_kind_of_message_is_sent():
 
 
 def test_messages_at_all_borders_are_answered():
-    found = asyncio.run(fuzz(150, seed=3, pages=2, stay=40))
+    found = asyncio.run(fuzz(60, seed=3, pages=2, stay=20))
     assert found["said"] == []
     assert found["worlds"] == 0

@@ -236,7 +236,7 @@ def test_side_by_side_with_the_per_frame_engine(page):
     assert page.js("return live.player.comparison === null && live.part('beside').hidden")
 
 
-@pytest.mark.parametrize("opponent", ["stepped", "pymunk"])
+@pytest.mark.parametrize("opponent", [pytest.param("stepped", marks=pytest.mark.slow), "pymunk"])
 def test_another_opponent_knows_restitution_and_gravity(page, opponent):
     if opponent == "pymunk":
         pytest.importorskip("pymunk")
