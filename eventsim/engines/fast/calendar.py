@@ -140,7 +140,7 @@ def first(m, grid, day, limit, deadline, screen):
             i = word(m.disks, i * WORDS + NEXT)
         if earliest >= 0:
             latest = latest_tie(time, screen)
-            return earliest, day, (second <= latest) + (third <= latest), deadline
+            return earliest, day, int(second <= latest) + int(third <= latest), deadline
         if float(day - 1) * grid.day_length > limit:  # a day less: the day of a time is rounded
             return -1, day, 0, deadline
         quiet += 1
