@@ -240,13 +240,7 @@ def test_the_script_of_a_user_runs(tmp_path):
     pytest.importorskip("pandas")
     environment = {**os.environ, "PYTHONPATH": str(SCRIPT.parents[2]), "MPLBACKEND": "Agg"}
     done = subprocess.run(
-        [sys.executable, str(SCRIPT)],
-        cwd=tmp_path,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=280,
-        check=False,
+        [sys.executable, str(SCRIPT)], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=280, check=False
     )
     assert done.returncode == 0, done.stderr
     assert "no such file" in done.stdout

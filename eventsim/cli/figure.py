@@ -33,9 +33,7 @@ Exit codes: 0 done; 2 bad usage, scene or file, or a log without what the figure
 
 @click.command(help=HELP)
 @scene_options(required=True, metavar="LOG|SCENE")
-@click.option(
-    "--kind", type=click.Choice(tuple(TITLES)), required=True, metavar="KIND", help="Which figure, one of these."
-)
+@click.option("--kind", type=click.Choice(tuple(TITLES)), required=True, metavar="KIND", help="Which figure, one of these.")
 @click.option("--out", required=True, metavar="FILE", help="FILE.png, .svg or .pdf.")
 @stop_options
 @json_option

@@ -56,12 +56,8 @@ def _folded(line: str) -> str:
 def reflowed(text: str) -> str:
     """Return a text whose paragraphs, lines of one indent, are broken anew to fit a terminal."""
     found = []
-    for (empty, indent), lines in groupby(
-        text.split("\n"), lambda line: (not line.strip(), len(line) - len(line.lstrip(" ")))
-    ):
+    for (empty, indent), lines in groupby(text.split("\n"), lambda line: (not line.strip(), len(line) - len(line.lstrip(" ")))):
         words, left = " ".join(line.strip() for line in lines), " " * indent
-        broken = fill(
-            words, WIDTH, initial_indent=left, subsequent_indent=left, break_long_words=False, break_on_hyphens=False
-        )
+        broken = fill(words, WIDTH, initial_indent=left, subsequent_indent=left, break_long_words=False, break_on_hyphens=False)
         found.append("" if empty else broken)
     return "\n".join(found)

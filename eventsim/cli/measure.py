@@ -85,13 +85,9 @@ def study_options(verb: Verb) -> Verb:
     """Add the options of all studies."""
     for one in reversed(STUDIES):
         kinds = tuple(kind for _, kind in one.values)
-        how: dict[str, Any] = (
-            {"type": kinds[0] if len(kinds) == 1 else kinds} if kinds else {"is_flag": True, "default": None}
-        )
+        how: dict[str, Any] = {"type": kinds[0] if len(kinds) == 1 else kinds} if kinds else {"is_flag": True, "default": None}
         words = f"Also {one.words}."
-        verb = click.option(
-            f"--{one.name}", metavar=" ".join(name for name, _ in one.values) or None, help=words, **how
-        )(verb)
+        verb = click.option(f"--{one.name}", metavar=" ".join(name for name, _ in one.values) or None, help=words, **how)(verb)
     return verb
 
 
@@ -102,9 +98,7 @@ def study_options(verb: Verb) -> Verb:
 @click.option("--series", is_flag=True, help="Also energy, temperature, pressure and collision rate along the run.")
 @click.option("--profile", type=click.Choice(["x", "y"]), help="Also density, velocity and temperature along an axis.")
 @study_options
-@click.option(
-    "--out", metavar="FILE.csv", help="Write the series, else the profile, else the tables of studies, to a file."
-)
+@click.option("--out", metavar="FILE.csv", help="Write the series, else the profile, else the tables of studies, to a file.")
 @json_option
 @quiet_option
 def command(
@@ -125,9 +119,7 @@ def command(
     target = writable(out, "--out", (".csv",))
     asked = {one: _given(studies[one.name]) for one in STUDIES if studies[one.name] is not None}
     if target is not None and not series and profile is None and not asked:
-        raise click.UsageError(
-            "--out is the file of the series, the profile or the tables of studies: ask for one of them"
-        )
+        raise click.UsageError("--out is the file of the series, the profile or the tables of studies: ask for one of them")
     measures, found = measured(scene, settings, seed, until, events, discard, profile, asked, quiet)
     columns = series_columns(measures) if series else profile_columns(measures) or study_columns(found.values())
     if target is not None:

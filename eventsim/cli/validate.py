@@ -15,10 +15,7 @@ from eventsim.cli.output import FAILED, say, say_data
 if TYPE_CHECKING:
     from eventsim.validation.compare import Comparison, Line
 
-PATIENCE_HELP = (
-    "CPU seconds for one run at most; ten times that for the event-driven one, whose end all others then share."
-)
-
+PATIENCE_HELP = "CPU seconds for one run at most; ten times that for the event-driven one, whose end all others then share."
 
 @click.command()
 @scene_options(required=True)

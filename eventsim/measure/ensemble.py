@@ -138,11 +138,7 @@ class Ensemble:
         if self.law.drives:
             return "walls heat, shake or slide"
         if not self.elastic:
-            return (
-                "contacts turn disks, and spins take energy and give it"
-                if any(self.law.grips)
-                else "contacts take energy"
-            )
+            return "contacts turn disks, and spins take energy and give it" if any(self.law.grips) else "contacts take energy"
         if self.pushed:
             return "moving obstacles change the energy"
         if not self.held:
@@ -415,9 +411,7 @@ def ensemble_of(scene: Scene, kicked: bool = False) -> Ensemble:
     found = species_among(disks.select(np.flatnonzero(counted)))
     species_of = np.full(len(disks), -1, dtype=np.int64)
     if len(found.count) <= MOST_SPECIES:
-        species = list(
-            map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist(), found.name.tolist())
-        )
+        species = list(map(Species, found.radius.tolist(), found.mass.tolist(), found.count.tolist(), found.name.tolist()))
         species_of[counted] = found.of
     else:
         species = [Species(math.nan, math.nan, int(counted.sum()))]

@@ -121,8 +121,7 @@ class Measures:
 
     def _repr_html_(self) -> str:
         rows = [
-            (q.name, q.value, q.error, "" if q.theory is None else q.theory, q.unit, q.doubt or "")
-            for q in self.quantities
+            (q.name, q.value, q.error, "" if q.theory is None else q.theory, q.unit, q.doubt or "") for q in self.quantities
         ]
         return html_table(repr(self), ("", "value", "error", "theory", "unit", "doubt"), rows)
 

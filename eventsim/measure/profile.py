@@ -168,14 +168,7 @@ class Profiler:
         error = np.array([bar.error if bar.error > 0.0 else math.nan for bar in density]) / areas
         heat = float(np.nansum(temperature * mean * areas) / max(float((mean * areas).sum()), 1e-300))
         return SpeciesProfile(
-            kind,
-            mean,
-            error,
-            velocity,
-            velocity_error,
-            temperature,
-            temperature_error,
-            self._barometric(kind, heat, mean),
+            kind, mean, error, velocity, velocity_error, temperature, temperature_error, self._barometric(kind, heat, mean)
         )
 
     def _areas(self) -> Floats:

@@ -71,11 +71,7 @@ class Disks:
             raise SceneError(problems)
         count = len(centres)
         at_rest = np.zeros((count, 2))
-        given: dict[str, ArrayLike] = {
-            "velocity": at_rest if velocity is None else velocity,
-            "radius": radius,
-            "mass": mass,
-        }
+        given: dict[str, ArrayLike] = {"velocity": at_rest if velocity is None else velocity, "radius": radius, "mass": mass}
         given |= {key: value for key, value in (("spin", spin), ("moment", moment)) if value is not None}
         wanted = {**dict.fromkeys(given, (count,)), "velocity": (count, 2)}
         arrays = {"position": centres}

@@ -139,11 +139,7 @@ def compare(
             run = follow(opened(), times, patience_s)
             taken = run.elapsed_s
             if run.stopped is not None:
-                reason = (
-                    f"it was stopped after {patience_s:g} s"
-                    if run.stopped == "patience"
-                    else f"it stopped ({run.stopped})"
-                )
+                reason = f"it was stopped after {patience_s:g} s" if run.stopped == "patience" else f"it stopped ({run.stopped})"
                 left_out.append(_given_up(competitor, sizes[place:], reason))
                 break
             found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt)

@@ -14,9 +14,7 @@ NEEDED = "pictures need matplotlib: pip install 'eventsim-disks[figures]'"
 def called(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     command = [sys.executable, "-c", PROGRAM, *words]
-    return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False
-    )
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False)
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +55,5 @@ def test_a_notebook_shows_text_instead_of_the_player(log):
     code = "import sys; sys.modules['matplotlib'] = None; import eventsim as es; "
     code += "print(es.simulate(es.gallery('two-disks'), log=True)._repr_html_())"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout == "None\n"

@@ -55,9 +55,7 @@ def _compact(log: es.EventLog) -> tuple:
     rows = log.rows.copy()
     for name in ("xa", "ya", "vxa", "vya", "xb", "yb", "vxb", "vyb", "impulse"):
         rows[name] = np.nan
-    kicks = tuple(
-        zip(*(log.rows[log.rows["kind"] == 3][name].tolist() for name in ("event", "vxa", "vya")), strict=True)
-    )
+    kicks = tuple(zip(*(log.rows[log.rows["kind"] == 3][name].tolist() for name in ("event", "vxa", "vya")), strict=True))
     return replace(log.provenance, compact=True, kicks=kicks), rows
 
 
@@ -144,11 +142,7 @@ def test_a_state_in_an_idle_spell_has_the_same_bits_however_one_comes_there(name
                 sim.restore(saved)
         return sim, states
 
-    (once, _), (stops, states), (resumed, again) = (
-        lived([], False),
-        lived(sorted(times), False),
-        lived(sorted(times), True),
-    )
+    (once, _), (stops, states), (resumed, again) = lived([], False), lived(sorted(times), False), lived(sorted(times), True)
     assert once.log.digest() == stops.log.digest() == resumed.log.digest()
     assert once.log.provenance.ending == stops.log.provenance.ending
     assert states == again
@@ -273,9 +267,7 @@ def test_a_log_of_the_clock_before_is_still_read() -> None:
     old = es.EventLog(replace(sim.log.provenance, ending=Ending(0, 164.0, "until")), rows)
     replay = Replay(old)
     assert isinstance(replay.windows, DoublingWindows) or replay.windows.start == [0]
-    assert replay.state_at(164.0).position[0].tolist() == pytest.approx(
-        [9.220230471767364, 8.483998910860148], abs=1e-9
-    )
+    assert replay.state_at(164.0).position[0].tolist() == pytest.approx([9.220230471767364, 8.483998910860148], abs=1e-9)
 
 
 @pytest.mark.parametrize("radius", [0.0, 1e-18])
@@ -320,8 +312,6 @@ def small_polygon(seed: int) -> es.Scene:
 def test_a_window_goes_on_behind_the_contact_that_the_clock_has_jumped_to(seed: int) -> None:
     """The engines have the same rows, and none is passed over."""
     skip_without("fast")
-    reference, fast = (
-        es.simulate(small_polygon(seed), events=20, engine=engine, log=True) for engine in ("reference", "fast")
-    )
+    reference, fast = (es.simulate(small_polygon(seed), events=20, engine=engine, log=True) for engine in ("reference", "fast"))
     assert fast.log.digest() == reference.log.digest()
     assert len(fast.log) == 20

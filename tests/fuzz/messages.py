@@ -94,12 +94,7 @@ class Generator:
 
     def _shown(self, edition: int, time: float, world: str) -> dict[str, Any]:
         when = self._when(time + 0.05)
-        return {
-            "edition": edition,
-            "time": when,
-            "events": self.chance.choice([0, 100, 2**53]),
-            "speed": self._number(1.0),
-        }
+        return {"edition": edition, "time": when, "events": self.chance.choice([0, 100, 2**53]), "speed": self._number(1.0)}
 
     def _throw(self, edition: int, time: float, world: str) -> dict[str, Any]:
         velocity = [self._number(100.0), self._number(-100.0)]

@@ -113,11 +113,7 @@ def test_a_scene_file_that_does_not_fit_a_live_view_is_refused(text, rule):
 
 
 def test_drawn_disks_and_walls_are_read_as_meant():
-    assert read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": 0.5}') == AddDisk(
-        1.0, (3.0, 4.0), 0.5
-    )
-    assert read_message('{"type": "wall", "time": 0, "start": [1, 2], "end": [3, 4]}') == AddWall(
-        0.0, (1.0, 2.0), (3.0, 4.0)
-    )
+    assert read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": 0.5}') == AddDisk(1.0, (3.0, 4.0), 0.5)
+    assert read_message('{"type": "wall", "time": 0, "start": [1, 2], "end": [3, 4]}') == AddWall(0.0, (1.0, 2.0), (3.0, 4.0))
     with pytest.raises(MessageError, match="radius = -1: must be a number from 0"):
         read_message('{"type": "disk", "time": 1, "position": [3, 4], "radius": -1}')

@@ -214,9 +214,7 @@ def test_side_by_side_with_the_per_frame_engine(page):
     page.open("count=40&speed=600&packing=0.3&seed=2&rate=30")
     page.wait("live.player.comparison && live.player.duration > 1.5")
     page.js("live.player.seek(1.5)")
-    page.wait(
-        "live.player.comparison.matching && live.player.view.time === 1.5 && live.part('differences').textContent"
-    )
+    page.wait("live.player.comparison.matching && live.player.view.time === 1.5 && live.part('differences').textContent")
     told = page.js("return live.part('differences').textContent")
     assert "per frame" in told
     assert "energy unchanged" in told  # it keeps all but last bits: that is no -0.00 %
@@ -243,12 +241,8 @@ def test_another_opponent_knows_restitution_and_gravity(page, opponent):
     page.open(f"count=12&speed=200&gravity=300&restitution=0.9&seed=2&rate=240&opponent={opponent}")
     page.wait("live.player.comparison && live.player.duration > 0.5")
     page.js("live.player.seek(0.4)")
-    assert {"stepped": "fixed steps", "pymunk": "Chipmunk"}[opponent] in page.js(
-        "return live.part('differences').textContent"
-    )
-    assert "a contact within 0.02 of a disk's previous one is elastic" in page.js(
-        "return live.part('settings').textContent"
-    )
+    assert {"stepped": "fixed steps", "pymunk": "Chipmunk"}[opponent] in page.js("return live.part('differences').textContent")
+    assert "a contact within 0.02 of a disk's previous one is elastic" in page.js("return live.part('settings').textContent")
     assert "(TC model)" in page.js("return live.part('exact').textContent")
     assert page.js("return live.menu.field('opponent').value") == opponent
 
@@ -258,9 +252,9 @@ def test_the_page_matches_contacts_as_the_judgement_does(page):
     numbers = np.random.default_rng(5)
     for _ in range(20):
         exact, told = (sorted(numbers.integers(0, 30, numbers.integers(0, 5)).tolist()) for _ in range(2))
-        assert [
-            tuple(pair) for pair in page.js("return assigned(arguments[0], arguments[1], 4)", exact, told)
-        ] == assigned(exact, told, 4)
+        assert [tuple(pair) for pair in page.js("return assigned(arguments[0], arguments[1], 4)", exact, told)] == assigned(
+            exact, told, 4
+        )
 
 
 def test_two_windows_on_one_world(page):

@@ -39,12 +39,8 @@ def test_a_throw_is_undone_and_reset_forgets_it(page):
     start = page.js("live.player.seek(0); return live.player.state()")
     assert page.js("return live.part('undo').disabled")
     for undo in ("undo", "reset"):
-        page.js(
-            "live.player.pause(); live.player.seek(0); live._act({type: 'throw', time: 0, disk: 0, velocity: [250, 125]})"
-        )
-        page.wait(
-            "live.link.pending === 0 && live.player.world.event.time.length > 0 && live.player.state().vx[0] === 250"
-        )
+        page.js("live.player.pause(); live.player.seek(0); live._act({type: 'throw', time: 0, disk: 0, velocity: [250, 125]})")
+        page.wait("live.link.pending === 0 && live.player.world.event.time.length > 0 && live.player.state().vx[0] === 250")
         edition = page.js("return live.edition")
         page.press(undo)
         page.wait(f"live.edition > {edition} && live.link.pending === 0 && live.player.duration > 0")

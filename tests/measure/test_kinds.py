@@ -123,9 +123,7 @@ def test_a_gas_that_has_cooled_below_the_digits_of_its_momentum_has_no_temperatu
     start = ensemble.start_energy
     assert ensemble.temperature(1e-27 * start) == pytest.approx(1e-27 * start / 24.0, rel=1e-3)
     assert math.isnan(ensemble.temperature(1e-29 * start))
-    moving = es.Scene(
-        es.Disks(disks.position, disks.velocity + np.array([3.0, 1.0]), disks.radius), gas.domain, restitution=0.9
-    )
+    moving = es.Scene(es.Disks(disks.position, disks.velocity + np.array([3.0, 1.0]), disks.radius), gas.domain, restitution=0.9)
     left = ensemble_of(moving).drift_energy
     assert ensemble_of(moving).temperature(left + 1e-3) == pytest.approx(1e-3 / 24.0, rel=1e-9)
     assert math.isnan(ensemble_of(moving).temperature(left * (1.0 + 1e-13)))
@@ -170,9 +168,7 @@ def test_the_histogram_of_speeds_grows_with_the_speeds():
     """A gas that begins slow and falls from a height, and one that is kicked: all of the time is in the bins."""
     gas = lattice_gas(16, 0.1, es.Box, seed=3)
     side, disks = gas.domain.size[0], es.Disks(gas.disks.position, 0.01 * gas.disks.velocity, gas.disks.radius)
-    run = es.simulate(
-        es.Scene(disks, es.Box((side, side)), gravity=(0.0, -5.0)), events=600, engine="reference", log=True
-    )
+    run = es.simulate(es.Scene(disks, es.Box((side, side)), gravity=(0.0, -5.0)), events=600, engine="reference", log=True)
     (one,) = measure(run.log, discard=0.0).speeds
     assert (one.density * np.diff(one.edges)).sum() == pytest.approx(1.0, rel=1e-9)
     fastest = max(float(np.hypot(run.log.vxa, run.log.vya).max()), 0.0)

@@ -51,9 +51,7 @@ def test_plain_python_and_machine_code_sum_spins_alike():
     scene = gallery("rough", n=49)
     log = es.simulate(scene, events=300, engine="reference", log=True).log
     told = np.stack([log.spin_a, log.spin_b], axis=1)
-    block = sums.Block(
-        log.epoch * log.provenance.epoch_length + log.remainder, *(log.rows[n] for n in sums.Block._fields[1:])
-    )
+    block = sums.Block(log.epoch * log.provenance.epoch_length + log.remainder, *(log.rows[n] for n in sums.Block._fields[1:]))
     held = []
     for kernel in (PLAIN, kernels(1 << 20)):
         meter = Meter(scene)

@@ -97,9 +97,7 @@ def test_a_point_that_hits_a_vertex_exactly_turns_round(engine):
     run = run_of(one((0.0, 3.0), (0.5, -1.0), domain=es.Open(), walls=(chain,), restitution=0.5), engine, 4.0)
     assert run.log.time.tolist() == [2.0]
     assert run.state.velocity[0].tolist() == [-0.25, 0.5]
-    end = run_of(
-        one((0.0, 0.0), (1.0, 0.0), domain=es.Open(), walls=(es.Segment((1.0, 0.0), (2.0, 0.0)),)), engine, 3.0
-    )
+    end = run_of(one((0.0, 0.0), (1.0, 0.0), domain=es.Open(), walls=(es.Segment((1.0, 0.0), (2.0, 0.0)),)), engine, 3.0)
     assert end.log.time.tolist() == [1.0]
     assert end.state_at(3.0).position[0].tolist() == [-1.0, 0.0]
 
@@ -135,9 +133,7 @@ def test_a_nearly_flat_arc_is_met_where_it_is(sagitta, gravity, engine):
         way = 1 + bulge - radius + mpmath.sqrt(radius**2 - mpmath.mpf("0.25")) - mpmath.mpf("0.25")
         time = way if gravity is None else speed - mpmath.sqrt(speed**2 - 2 * way)
         assert abs(run.log.time[0] - time) < 1e-12
-        assert run.log.vxa[0] == pytest.approx(
-            float(2 * speed / radius) * 0.5 if gravity is None else run.log.vxa[0], rel=1e-3
-        )
+        assert run.log.vxa[0] == pytest.approx(float(2 * speed / radius) * 0.5 if gravity is None else run.log.vxa[0], rel=1e-3)
 
 
 def test_an_arc_whose_bulge_is_below_the_digits_is_refused():
@@ -151,9 +147,7 @@ def test_arcs_of_any_size_have_their_circle(size):
     from eventsim.formulas.walls.arc import arc
 
     shape = arc(size, size, 2.0 * size, 2.0 * size, 3.0 * size, size)
-    assert (shape.ux / size, shape.uy / size, shape.radius / size) == pytest.approx(
-        (1.0, 0.0, 1.0), rel=1e-15, abs=1e-15
-    )
+    assert (shape.ux / size, shape.uy / size, shape.radius / size) == pytest.approx((1.0, 0.0, 1.0), rel=1e-15, abs=1e-15)
 
 
 @pytest.mark.parametrize("family", AIMS)
@@ -181,9 +175,7 @@ def test_engines_agree_on_points_and_compact_logs_hold(family, tmp_path, monkeyp
     from tests.points import families
 
     def both(scene, until, engine):
-        one, other = (
-            es.simulate(scene, until=until, events=3000, engine=name, log=True) for name in ("reference", "fast")
-        )
+        one, other = (es.simulate(scene, until=until, events=3000, engine=name, log=True) for name in ("reference", "fast"))
         assert one.log.digest() == other.log.digest()
         assert one.stopped == other.stopped
         one.log.save(tmp_path / "log.npz", compact=True)

@@ -158,11 +158,7 @@ def test_contacts_are_read_from_a_table_and_from_a_log(tmp_path):
     (tmp_path / "a.csv").write_text("time,a,b,wall\n2.0,3,1,\n1.0,0,-1,left\n3,2,,top\n")
     told = read_contacts(tmp_path / "a.csv", 4)
     assert told.time.tolist() == [1.0, 2.0, 3.0]
-    assert list(zip(told.a.tolist(), told.b.tolist(), told.wall, strict=True)) == [
-        (0, -1, "left"),
-        (1, 3, ""),
-        (2, -1, "top"),
-    ]
+    assert list(zip(told.a.tolist(), told.b.tolist(), told.wall, strict=True)) == [(0, -1, "left"), (1, 3, ""), (2, -1, "top")]
     run = es.simulate(es.gallery("bounce"), log=True)
     run.log.save(tmp_path / "bounce.csv")
     told = read_contacts(tmp_path / "bounce.csv", 1)

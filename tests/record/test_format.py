@@ -27,9 +27,7 @@ from tests.record.logs import random_rows
 
 def table() -> es.Scene:
     """Three disks and a wall on the open plane."""
-    disks = es.Disks(
-        [(1.0, 1.0), (4.0, 1.25), (6.0, 4.0)], [(1.0, 0.0), (0.0, 0.0), (-0.5, -1.0)], 0.5, [1.0, 2.0, 1.0]
-    )
+    disks = es.Disks([(1.0, 1.0), (4.0, 1.25), (6.0, 4.0)], [(1.0, 0.0), (0.0, 0.0), (-0.5, -1.0)], 0.5, [1.0, 2.0, 1.0])
     return es.Scene(disks, es.Open(), walls=(es.Segment((-1.0, -2.0), (8.0, -2.0), name="floor"),), name="table")
 
 

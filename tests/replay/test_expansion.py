@@ -226,13 +226,9 @@ def test_what_differs_is_told_with_what_to_do() -> None:
     log = run_of("periodic").log
     heavier = replace(log.scene, disks=replace(log.scene.disks, mass=np.where(np.arange(16) == 3, 2.0, 1.0)))
     here = replace(log.provenance, compact=True, scene=heavier)
-    with pytest.raises(
-        LogError, match=r"at event \d+: it has pair of disks .*, where the engine finds pair of .* changed"
-    ):
+    with pytest.raises(LogError, match=r"at event \d+: it has pair of disks .*, where the engine finds pair of .* changed"):
         EventLog(here, log.rows).expand()
-    with pytest.raises(
-        LogError, match=r"made by version 0\.0\.9 under other rules \(bits 1, here 2\), or changed since: read"
-    ):
+    with pytest.raises(LogError, match=r"made by version 0\.0\.9 under other rules \(bits 1, here 2\), or changed since: read"):
         EventLog(replace(here, version="0.0.9", bits=1), log.rows).expand()
     with pytest.raises(LogError, match="the log of the engine stepped has to be a full one"):
         EventLog(replace(here, engine="stepped"), log.rows).expand()

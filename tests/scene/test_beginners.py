@@ -193,9 +193,7 @@ def test_every_key_of_a_scene_has_an_example():
 
 def test_a_proposal_stands_alone_without_a_guess_that_says_otherwise(tmp_path):
     path = tmp_path / "scene.toml"
-    path.write_text(
-        SCENE.replace("restitution = 0.9\n", "").replace("radius = 0.05", "radius = 0.05\nrestitution = 0.5")
-    )
+    path.write_text(SCENE.replace("restitution = 0.9\n", "").replace("radius = 0.05", "radius = 0.05\nrestitution = 0.5"))
     with pytest.raises(SceneError) as error:
         load_scene(path)
     assert "it stands above the first table" in str(error.value)

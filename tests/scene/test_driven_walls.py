@@ -38,9 +38,7 @@ def test_a_wall_that_shakes_throws_back_as_one_that_comes_to_meet(engine):
 
 
 def test_a_corner_of_walls_that_shake_is_two_contacts():
-    scene = one(
-        [3.0, 3.0], [-4.0, -4.0], domain=box(left={"shaking": 1.0, "restitution": 0.5}, bottom={"shaking": 2.0})
-    )
+    scene = one([3.0, 3.0], [-4.0, -4.0], domain=box(left={"shaking": 1.0, "restitution": 0.5}, bottom={"shaking": 2.0}))
     run = es.simulate(scene, events=2, engine="reference", log=True)
     assert run.state.velocity.tolist() == [[3.5, 8.0]]
     assert run.log.joint.tolist() == [0, 0]
@@ -117,9 +115,7 @@ def test_what_a_wall_draws_follows_from_the_number_of_contacts_that_the_log_show
 
 def test_disks_of_other_seeds_leave_otherwise():
     def found(seed):
-        return after(
-            one([3.0, 3.0], [1.0, 0.5], domain=box(right={"temperature": 1.0}), seed=seed)
-        ).state.velocity.tolist()
+        return after(one([3.0, 3.0], [1.0, 0.5], domain=box(right={"temperature": 1.0}), seed=seed)).state.velocity.tolist()
 
     assert found(1) == found(1)
     assert found(1) != found(2)

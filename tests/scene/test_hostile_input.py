@@ -136,10 +136,7 @@ def test_a_wall_over_many_periods_both_ways_is_refused_at_once():
         ({"velocity": [0.0, -1e-76]}, "the larger 1e-75 to 1e.75, or both 0"),
         ({"velocity": [math.nan, 0.0]}, "must be two finite numbers"),
         ({"velocity": [1e70, 0.0], "mass": 1e200}, "mass: 1e.200, and the energy of such a disk"),
-        (
-            {"velocity": [1e70, 0.0], "mass": 1e120, "radius": 1e-140},
-            "momentum of such a disk over the shortest length",
-        ),
+        ({"velocity": [1e70, 0.0], "mass": 1e120, "radius": 1e-140}, "momentum of such a disk over the shortest length"),
         (
             {"velocity": [1e70, 0.0], "position": [1e90, 0.0], "gravity": 1.0},
             "times the largest length, 1e.90, .* gravity",
@@ -251,15 +248,15 @@ def test_a_row_at_the_end_of_time_is_refused_at_once(tmp_path):
         log.expand()
 
 
-@pytest.mark.parametrize(("speed", "unit"), [(1e-75, 1e-101), (1e-75, 1e100), (1e75, 1e-101), (1e75, 1e100)])
+@pytest.mark.parametrize(
+    ("speed", "unit"), [(1e-75, 1e-101), (1e-75, 1e100), (1e75, 1e-101), (1e75, 1e100)]
+)
 def test_contacts_at_the_ends_of_speeds_and_lengths_are_right(speed, unit):
     disks = [
         {"position": [-5.0 * unit, 0.0], "velocity": [speed, 0.0], "radius": unit},
         {"position": [2.5 * unit, 0.5 * unit], "velocity": [0.0, 0.0], "radius": unit},
     ]
-    log = es.simulate(
-        scene_from_dict({"domain": {"kind": "open"}, "disk": disks}), events=1, engine="reference", log=True
-    ).log
+    log = es.simulate(scene_from_dict({"domain": {"kind": "open"}, "disk": disks}), events=1, engine="reference", log=True).log
     assert log.vxb[0] == pytest.approx(0.9375 * speed, rel=1e-12)
 
 
@@ -270,9 +267,7 @@ def test_a_disk_without_room_between_walls_may_not_move_there(domain, axis):
         "domain": {"kind": domain, "size": [4.0, 1.0] if axis else [1.0, 4.0]},
         "disk": [{"position": [0.5, 0.5], "velocity": velocity, "radius": 0.5}],
     }
-    with pytest.raises(
-        es.SceneError, match=rf"disk\[0\] is as wide as the domain, 1.0, and has a velocity along {'xy'[axis]}"
-    ):
+    with pytest.raises(es.SceneError, match=rf"disk\[0\] is as wide as the domain, 1.0, and has a velocity along {'xy'[axis]}"):
         scene_from_dict(tables)
     velocity[axis] = 0.0
     assert scene_from_dict(tables).disks.radius.tolist() == [0.5]

@@ -92,10 +92,7 @@ def test_a_function_says_what_comes_back(laws, engine):
 def test_it_may_ask_for_all_that_is_known(laws):
     assert relative(es.simulate(named(laws, "by_all"), events=1, engine="reference")) == 2.0
     assert set(KNOWN) == {"restitution", "approach", "since", "mass"}
-    heavy = [
-        {"position": [0, 0], "velocity": [4, 0], "radius": 0.5, "mass": 9},
-        {"position": [2, 0], "radius": 0.5, "mass": 9},
-    ]
+    heavy = [{"position": [0, 0], "velocity": [4, 0], "radius": 0.5, "mass": 9}, {"position": [2, 0], "radius": 0.5, "mass": 9}]
     assert relative(es.simulate(named(laws, "by_all", disk=heavy), events=1, engine="reference")) == 4.0
 
 

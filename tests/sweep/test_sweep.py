@@ -214,28 +214,9 @@ def test_a_dask_scheduler_that_is_killed_is_told_and_what_was_done_stays(tmp_pat
     pytest.importorskip("distributed")
     scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard"]
     file = tmp_path / "scheduler.json"
-    worker = [
-        sys.executable,
-        "-m",
-        "distributed.cli.dask_worker",
-        "--scheduler-file",
-        str(file),
-        "--no-dashboard",
-        "--no-nanny",
-    ]
+    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--no-dashboard", "--no-nanny"]
     out = tmp_path / "t.csv"
-    words = [
-        "sweep",
-        "gas",
-        "--set",
-        "n=40,50,60,70,80,90",
-        "--events",
-        "6000",
-        "--engine",
-        "reference",
-        "--out",
-        str(out),
-    ]
+    words = ["sweep", "gas", "--set", "n=40,50,60,70,80,90", "--events", "6000", "--engine", "reference", "--out", str(out)]
     quiet = {"stderr": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
     with (
         ended(subprocess.Popen([*scheduler, "--scheduler-file", str(file)], **quiet)) as first,

@@ -107,9 +107,7 @@ def test_what_a_library_does_first_is_charged_to_nobody(monkeypatch):
         return step(session, steps, most_events)
 
     monkeypatch.setattr(FixedStepSession, "_run", slow_at_first)
-    found = compare(
-        es.gallery("two-disks"), chosen_competitors(["stepped"]), steps=(0.2, 0.1), until=12.0, patience_s=0.2
-    )
+    found = compare(es.gallery("two-disks"), chosen_competitors(["stepped"]), steps=(0.2, 0.1), until=12.0, patience_s=0.2)
     assert loaded
     assert found.left_out == []
     assert [line.dt for line in found.lines] == [0.2, 0.1]
@@ -128,9 +126,7 @@ def test_positions_are_looked_at_from_the_first_contact_on():
 
 
 def test_no_step_is_dropped_without_a_line():
-    found = compare(
-        es.gallery("gas", n=60), chosen_competitors(["stepped"]), steps=(0.02, 1e-6), until=0.2, patience_s=0.05
-    )
+    found = compare(es.gallery("gas", n=60), chosen_competitors(["stepped"]), steps=(0.02, 1e-6), until=0.2, patience_s=0.05)
     (sentence,) = found.left_out
     assert "stepped with dt = 1e-06 is left out" in sentence
     assert found.settings == {"stepped": "locate False"}

@@ -251,11 +251,7 @@ class Resolver:
     def _launched(self, i: int, place: int, side: int) -> Real:
         """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""
         state = self._state
-        if (
-            state.supports is None
-            or state.supports[place] is None
-            or not has_struck(state.supports, state.met[i], place)
-        ):
+        if state.supports is None or state.supports[place] is None or not has_struck(state.supports, state.met[i], place):
             return 0.0
         nx, ny = self._stage.normal(place, side, state.x[i], state.y[i])
         fall = nx * state.gravity_x[i] + ny * state.gravity_y[i]
@@ -358,8 +354,7 @@ class Resolver:
             disks = sorted({i for event in component for i in disks_of(event)})
             raise joint_under("the law of walls that heat or shake", disks)
         shifts = [
-            along(*self._towards(event, *at[0], *before[0]), one.shaking)
-            for event, one in zip(component, done, strict=True)
+            along(*self._towards(event, *at[0], *before[0]), one.shaking) for event, one in zip(component, done, strict=True)
         ]
         return sum(shift[0] for shift in shifts), sum(shift[1] for shift in shifts)
 

@@ -86,8 +86,7 @@ class Sunk:
         kx = event.image[0] + state.wraps_x[a] - state.wraps_x[b]
         ky = event.image[1] + state.wraps_y[a] - state.wraps_y[b]
         return any(
-            state.contact_time[i] == state.t[i] and met in state.met[i]
-            for i, met in ((a, (b, kx, ky)), (b, (a, -kx, -ky)))
+            state.contact_time[i] == state.t[i] and met in state.met[i] for i, met in ((a, (b, kx, ky)), (b, (a, -kx, -ky)))
         )
 
     def _has_lost(self, i: int) -> bool:

@@ -81,12 +81,7 @@ def _mixture_z(records: Records) -> Expected | None:
     """Z of a mixture in a periodic domain; None where no theory holds."""
     ensemble, parts = records.ensemble, mixture_of(records.ensemble)
     eta = ensemble.packing_fraction
-    if (
-        parts is None
-        or eta is None
-        or eta > theory.MIXTURE_UP_TO
-        or not (records.mixed and ensemble.simple and ensemble.torus)
-    ):
+    if parts is None or eta is None or eta > theory.MIXTURE_UP_TO or not (records.mixed and ensemble.simple and ensemble.torus):
         return None
     z = theory.mixture_compressibility_factor(parts)
     return Expected(z, theory.MIXTURE_ACCURACY * z, MIXTURE)

@@ -114,9 +114,7 @@ def found(log: AnyLog, discard: float | None) -> Found:
         _entry("coordination", np.array([sample.near for sample in samples]), note),
         _entry("sixfold", np.array([sample.sixfold for sample in samples]), note),
     )
-    told = (
-        f"{len(samples)} states from t = {begun:.6g} to {end:.6g}; coordination: disks nearer than {NEAR:g} diameters"
-    )
+    told = f"{len(samples)} states from t = {begun:.6g} to {end:.6g}; coordination: disks nearer than {NEAR:g} diameters"
     return Found((*contacts, *waves, *quantities), {"g": g, "S": s}, (told,))
 
 
@@ -294,8 +292,7 @@ class _Looker:
         if not ensemble.equal and eta <= theory.MIXTURE_UP_TO:
             area = float(self._size.prod())
             mixture = [
-                theory.Component(kind.number / area, 2.0 * kind.radius, kind.mass)
-                for kind in ensemble.species[: ensemble.kinds]
+                theory.Component(kind.number / area, 2.0 * kind.radius, kind.mass) for kind in ensemble.species[: ensemble.kinds]
             ]
             value = theory.mixture_contact_value(mixture, i, j)
             return Expected(value, theory.MIXTURE_ACCURACY * value, "Jenkins & Mancini 1987")

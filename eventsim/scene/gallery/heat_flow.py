@@ -42,13 +42,7 @@ def scene(*, n: int = 200, warm: float = 2.0, cold: float = 1.0, seed: int = 1) 
                 "walls": {"bottom": {"temperature": warm}, "top": {"temperature": cold}},
             },
             "gas": [
-                {
-                    "count": n,
-                    "packing_fraction": 0.1,
-                    "temperature": 0.5 * (warm + cold),
-                    "arrangement": "random",
-                    "seed": seed,
-                }
+                {"count": n, "packing_fraction": 0.1, "temperature": 0.5 * (warm + cold), "arrangement": "random", "seed": seed}
             ],
         },
         source="gallery scene heat-flow",
