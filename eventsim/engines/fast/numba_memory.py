@@ -23,6 +23,7 @@ from eventsim.formulas.doubt import CLOCK_BITS
 
 F64, I64, I32, I8 = ir.DoubleType(), ir.IntType(64), ir.IntType(32), ir.IntType(8)
 V8 = ir.VectorType(F64, 8)
+V2 = ir.VectorType(F64, 2)
 i64, f64 = types.int64, types.float64
 
 
@@ -164,9 +165,6 @@ def gather_disks(typing, slots, start, limit, near, count, empty, me, skip):
         return builder.add(arguments[4], builder.zext(kept, I64))
 
     return i64(slots, i64, i64, near, i64, i64, i64, i64), codegen
-
-
-V2 = ir.VectorType(F64, 2)
 
 
 def _two_columns(builder, lines, at):
