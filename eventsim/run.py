@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from eventsim.engines import ENGINES as TABLE
 from eventsim.engines import Engine
 from eventsim.engines.base import Stop
-from eventsim.errors import LogError
 from eventsim.replay.past import PastRun
 from eventsim.runner.loop import run_scene
 from eventsim.runner.options import RunOptions
@@ -58,9 +57,7 @@ class Run(PastRun):
         """
         from eventsim.show.animate import animate_with  # loaded by who wants a picture
 
-        if not self.has_log:
-            raise LogError("animate needs the log of the run: simulate(..., log=True)")
-        animate_with(self.log, path, **options)
+        animate_with(self._log_for("animate"), path, **options)
 
     def plot(self, kind: str, ax: Axes | None = None) -> Axes:
         """Draw a figure of the run, a `kind` of `eventsim figure` (trajectories, speeds, ...); its axes, the first of several.
@@ -70,9 +67,7 @@ class Run(PastRun):
         """
         from eventsim.show.figures.write import plot  # loaded by who wants a picture
 
-        if not self.has_log:
-            raise LogError("plot needs the log of the run: simulate(..., log=True)")
-        return plot(self.log, kind, ax)
+        return plot(self._log_for("plot"), kind, ax)
 
     def _repr_html_(self) -> str | None:
         """Return the player for a notebook; None, so plain text, without a log, with too large a one, or without matplotlib."""

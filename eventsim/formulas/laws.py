@@ -85,8 +85,8 @@ class Law:
         walls: the usual restitution of each wall, by its number in the log; None where `wall` is that of all.
         pairs: that of each two species, by their numbers; None where `pair` is that of all.
         treatments: what walls do besides, by their numbers in the log; None where none does anything.
-        by_speed: whether it looks at the speed of approach.  Then any contact may take energy, and stepped engines do not know it.
-            Contacts of one instant that share disks are resolved only where each is what it would be alone.
+        by_speed: whether it looks at the speed of approach.  Then any contact may take energy, and stepped engines do not
+            know it.  Contacts of one instant that share disks are resolved only where each is what it would be alone.
         rough: the tangential restitution, where disks spin; None where they have no spin.
     """
 

@@ -41,6 +41,12 @@ class PastRun(Outcome):
                 raise LogError("this run kept no log: simulate(..., log=True), or log='file.csv'")
         return self._log
 
+    def _log_for(self, method: str) -> EventLog:
+        """The log, for a method that cannot do without; raises LogError, which names it."""
+        if not self.has_log:
+            raise LogError(f"{method} needs the log of the run: simulate(..., log=True)")
+        return self.log
+
     def state_at(self, time: float) -> State:
         """The state at any time of the run, by replay of its log; at the time of an event, the state after it.
 
@@ -53,8 +59,7 @@ class PastRun(Outcome):
                     f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}"
                 )
             return replace(self.trajectory.state_at(time, self.start_time), scene=self.scene)
-        if not self.has_log:
-            raise LogError("state_at needs the log of the run: simulate(..., log=True)")
+        log = self._log_for("state_at")
         if self._replay is None:
-            self._replay = Replay(self.log)
+            self._replay = Replay(log)
         return self._replay.state_at(time)
