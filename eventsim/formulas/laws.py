@@ -183,8 +183,6 @@ class Law:
     @property
     def no_tangent(self) -> str | None:
         """Why it is not known how neighbouring runs part at its contacts, a clause; None where it is."""
-        if self.rough is not None:
-            return "rough disks turn each other: no tangent map of that is known here"
         if self.heats:
             return "walls draw velocities by chance, whatever these were before"
         return f"{self.name()} hangs on how fast disks meet: no tangent map of it is known here" if self.by_speed else None

@@ -74,7 +74,8 @@ class TrustLine:
         self._tangent = Tangent(scene, [(0.0, 0.0, 0.0, 0.0)] * n, self._round)
         self._length = smallest_reach(scene)
         self._shift = [0.0] * n
-        self._draws = np.random.default_rng(SEED).uniform(-LAST_BIT, LAST_BIT, DRAWS).tolist()
+        draws = np.random.default_rng(SEED).uniform(-LAST_BIT, LAST_BIT, DRAWS).tolist()
+        self._draws = [*draws, *draws[:3]]  # four are taken from any place on
         self._drawn = 0
         self._events, self._error = 0, 0.0
         self._halves = 0.0, 0.0
@@ -133,7 +134,11 @@ class TrustLine:
         if 0.0 in lags:
             self._reason = f"event {event:,} comes at exactly the time of another one of its disk"
             return
-        off = self._tangent.off
+        off, spun = self._tangent.off, self._tangent.spun
+        if spun is not None:
+            for i in disks:
+                self._drawn = (self._drawn + 1) % DRAWS
+                spun[i] += self._draws[self._drawn - 1] * self._tangent.spin[i]
         error = max(math.hypot(off[i][0], off[i][1]) for i in disks)
         self._error = max(self._error, error)
         if event & (event + 1) == 0:

@@ -264,10 +264,6 @@ def test_stepped_engines_refuse_disks_that_spin(engine):
         es.simulate(scene_of(), engine=engine)
 
 
-def test_nothing_is_told_of_how_neighbouring_runs_part():
-    assert "no tangent map of that is known here" in run(scene_of(), events=None, until=1.0).trust.reason
-
-
 def test_trajectories_of_disks_that_spin_are_not_judged(tmp_path):
     whole = run(three(es.Box((2.0, 2.0))), events=None, until=1.0)
     states = [whole.state_at(t) for t in (0.0, 0.25, 0.5, 0.75)]

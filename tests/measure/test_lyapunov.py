@@ -59,6 +59,23 @@ def test_each_inelastic_contact_takes_its_share_of_the_volume():
     assert "no steady state" in result["lyapunov_1"].doubt
 
 
+@pytest.mark.parametrize(("e", "beta"), [(1.0, 1.0), (1.0, 0.5), (0.9, -0.6)])
+def test_contacts_of_rough_disks_take_their_share_of_the_volume(e, beta):
+    scene = fluid(restitution=Restitution(e, 1.0), tangential_restitution=beta)
+    result = found(run_log(scene, 600), None, 40)
+    # besides e^2 of the contact: the velocity at which surfaces slide past each other is multiplied by -beta
+    exponents = result.tables["lyapunov"]["per_contact"]
+    assert len(exponents) == 5 * len(scene.disks)
+    assert sum(exponents) == pytest.approx(8 * math.log(e * math.sqrt(abs(beta))), rel=1e-9, abs=1e-9 * exponents[0])
+    assert exponents[0] > 0.0
+
+
+def test_smooth_disks_that_spin_part_like_smooth_ones():
+    smooth = found(run_log(fluid(), 600), None, 1)["lyapunov_1"].value
+    spun = found(run_log(fluid(tangential_restitution=-1.0), 600), None, 1)["lyapunov_1"].value
+    assert spun == pytest.approx(smooth, rel=0.02)
+
+
 def by_curvature(log, disk=1):
     """The exponent of a point among posts, per contact, from the curvature of its front: k -> k / (1 + k t) + 2 / (r cos)."""
     rows, radius = log.rows, float(log.scene.disks.radius[0])

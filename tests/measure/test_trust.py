@@ -9,9 +9,10 @@ import pytest
 import eventsim as es
 from eventsim.measure.tangent import Tangent
 from eventsim.measure.trust import HELD, TrustLine, smallest_reach
+from eventsim.scene.roughness import TangentialRestitution
 from eventsim.scene.stage import stage_of
 from tests.engines.law_scenes import random_scene
-from tests.measure.trust_table import compared, generic_scene
+from tests.measure.trust_table import compared, generic_scene, truth
 
 STEP = 2.0**-34
 """Of a neighbour: the square of it is what the tangent map leaves out."""
@@ -21,6 +22,15 @@ def one_point_of(scene):
     """The same scene without its second point, which meets the post at the same times."""
     disks = scene.disks
     return replace(scene, disks=es.Disks(disks.position[:2], disks.velocity[:2], disks.radius[:2], disks.mass[:2]))
+
+
+def rough(seed):
+    """A scene of the table whose disks spin, and grip."""
+    scene = generic_scene(seed)
+    spin = np.random.default_rng(seed).normal(size=len(scene.disks)) / scene.disks.radius * np.isfinite(scene.disks.mass)
+    moment = np.where(np.arange(len(scene.disks)) % 2, 0.5, 0.3)
+    disks = es.Disks(*(getattr(scene.disks, key) for key in ("position", "velocity", "radius", "mass")), spin=spin, moment=moment)
+    return replace(scene, disks=disks, tangential_restitution=TangentialRestitution(0.6, -0.3))
 
 
 SCENES = {
@@ -33,6 +43,11 @@ SCENES = {
     "a post": (generic_scene(4), 60),
     "falling": (generic_scene(0), 60),
     "vibrated": (es.gallery("vibrated", n=6), 60),
+    "rough": (rough(0), 60),
+    "rough mixture in a box": (rough(1), 60),
+    "rough in a jar": (rough(3), 60),
+    "rough, falling": (rough(10), 60),
+    "sheared": (es.gallery("sheared", n=12), 60),
     "shaken box": (random_scene(9, "walls that shake"), 60),
     "shaken arc": (random_scene(11, "walls that shake"), 60),
 }
@@ -48,13 +63,17 @@ def test_deviations_are_those_of_a_neighbouring_run(name):
     rng = np.random.default_rng(5)
     disks = scene.disks
     moves = np.isfinite(disks.mass)[:, None] * rng.uniform(0.1, 1.0, (2, len(disks), 2)) * smallest_reach(scene)
+    turns = np.isfinite(disks.mass) * rng.uniform(0.1, 1.0, len(disks)) if scene.tangential_restitution is not None else None
+    turned = {} if turns is None else {"spin": disks.spins() + STEP * turns}
     neighbour = replace(
         scene,
-        disks=replace(disks, position=disks.position + STEP * moves[0], velocity=disks.velocity + STEP * moves[1]),
+        disks=replace(disks, position=disks.position + STEP * moves[0], velocity=disks.velocity + STEP * moves[1], **turned),
     )
     rows, others = rows_of(scene, events), rows_of(neighbour, events)
     shifted = stage_of(neighbour).corner[0] - stage_of(scene).corner[0]
     tangent = Tangent(scene, [(*moves[0][i], *moves[1][i]) for i in range(len(disks))])
+    if turns is not None:
+        tangent.spun = turns.tolist()
     tried = 0
     for row, other, passed in zip(rows, others, tangent.follow(rows), strict=True):
         i = passed.disks[0]
@@ -73,6 +92,9 @@ def test_deviations_are_those_of_a_neighbouring_run(name):
         assert (other["xa"] + shifted - row["xa"]) / STEP == pytest.approx(
             dx + row["vxa"] * later / STEP, abs=0.02 * size
         )
+        if turns is not None:
+            around = disks.radius[i]
+            assert around * (other["spin_a"] - row["spin_a"]) / STEP == pytest.approx(around * tangent.spun[i], abs=0.02 * size)
     assert tried >= min(6, events)
 
 
@@ -85,6 +107,17 @@ def test_it_says_when_the_run_parts_from_its_proof(seed):
     pytest.importorskip("flint")
     line, event, _ = compared(seed)
     assert 1.0 / 1.5 < (line.event + 1) / (event + 1) < 1.5
+
+
+@pytest.mark.parametrize("seed", [6, 11])
+def test_it_says_so_of_disks_that_spin(seed):
+    pytest.importorskip("flint")
+    scene = rough(seed)
+    rows = rows_of(scene, None)
+    line = TrustLine(scene)
+    line.write(rows)
+    event, _ = truth(scene, rows)
+    assert 1.0 / 1.5 < (line.found().event + 1) / (event + 1) < 1.5
 
 
 @pytest.mark.slow

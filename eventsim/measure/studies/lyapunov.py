@@ -74,6 +74,7 @@ class Growth:
         carried: ledger of the system of all disks that carry energy; None without any.
         traced: that of the tracers, each a system of its own.
         bodies, tracers: how many there are of either.
+        each: numbers that tell a disk: of place and velocity, and of its spin where it has one.
     """
 
     def __init__(self, log: AnyLog, count: int) -> None:
@@ -82,8 +83,11 @@ class Growth:
         mass, rng = scene.disks.mass, np.random.default_rng(SEED)
         self._bodies = np.flatnonzero(np.isfinite(mass) & (mass > 0.0)).tolist()
         self._tracers = set(np.flatnonzero(mass == 0.0).tolist())
-        self._own = min(count, 4 * len(self._bodies))
-        self._theirs = min(count, 4) if self._tracers else 0
+        nothing = (np.zeros(0),) * 4
+        self._tangent = Tangent(scene, [nothing] * len(mass), corner=log.provenance.corner)
+        self.each = 4 if self._tangent.spun is None else 5
+        self._own = min(count, self.each * len(self._bodies))
+        self._theirs = min(count, self.each) if self._tracers else 0
         self.bodies, self.tracers = len(self._bodies), len(self._tracers)
         self._since = 0
         stride = max(len(log) // PARTS, 1)
@@ -93,12 +97,13 @@ class Growth:
         reach = smallest_reach(scene)
         # one unit for places and for velocities: neither exponents nor bits hang on it, as long as both are seen
         self._unit = reach / speed if 0.0 < reach / (speed or math.inf) < math.inf else 1.0
-        nothing = np.zeros(self._own + self._theirs)
-        self._tangent = Tangent(scene, [(nothing,) * 4] * len(mass), corner=log.provenance.corner)
+        self._turning = reach * self._unit if self.each == 5 else 1.0
+        for i in range(len(mass)):
+            self._put(i, np.zeros((self.each, self._own + self._theirs)))
         if self._bodies:
-            self._put_bodies(np.linalg.qr(rng.normal(size=(4 * len(self._bodies), self._own)))[0])
+            self._put_bodies(np.linalg.qr(rng.normal(size=(self.each * len(self._bodies), self._own)))[0])
         for i in self._tracers:
-            self._put_tracer(i, np.linalg.qr(rng.normal(size=(4, self._theirs)))[0])
+            self._put_tracer(i, np.linalg.qr(rng.normal(size=(self.each, self._theirs)))[0])
 
     def follow(self, log: AnyLog) -> str | None:
         """Go through a log; why that ended before its end, a sentence, or None."""
@@ -150,23 +155,26 @@ class Growth:
             self.traced.add(time, 0, np.zeros(self._theirs), last=True)
 
     def _frame(self, i: int) -> Floats:
-        """The deviations of a disk (4, columns) in lengths."""
+        """The deviations of a disk (`each`, columns) in lengths."""
         x, y, u, w = self._tangent.off[i]
-        frame: Floats = np.array((x, y, u * self._unit, w * self._unit))
+        spun = () if self._tangent.spun is None else (self._tangent.spun[i] * self._turning,)
+        frame: Floats = np.array((x, y, u * self._unit, w * self._unit, *spun))
         return frame
 
     def _put_bodies(self, frame: Floats) -> None:
         rest = np.zeros(self._theirs)
         for place, i in enumerate(self._bodies):
-            self._put(i, [np.concatenate((row, rest)) for row in frame[4 * place : 4 * place + 4]])
+            self._put(i, [np.concatenate((row, rest)) for row in frame[self.each * place : self.each * (place + 1)]])
 
     def _put_tracer(self, i: int, frame: Floats) -> None:
         rest = np.zeros(self._own)
         self._put(i, [np.concatenate((rest, row)) for row in frame])
 
-    def _put(self, i: int, off: list[Floats]) -> None:
-        x, y, u, w = off
+    def _put(self, i: int, off: list[Floats] | Floats) -> None:
+        x, y, u, w, *spun = off
         self._tangent.off[i] = x, y, u / self._unit, w / self._unit
+        if self._tangent.spun is not None:
+            self._tangent.spun[i] = spun[0] / self._turning
 
 
 def _straightened(frame: Floats) -> tuple[Floats, Floats]:
@@ -192,7 +200,7 @@ def found(log: AnyLog, discard: float | None, count: int) -> Found:
         log: full or compact.
         discard: time at the beginning that is left out; None: the scene's `equilibration`, or else the time in which deviations
             turn into their directions.
-        count: at least 1; where there are fewer exponents (4 a disk that can be deflected), all of them.
+        count: at least 1; where there are fewer exponents (4 a disk that can be deflected, 5 where disks have spin), all of them.
 
     Raises:
         EventsimError: for a count below 1.
@@ -218,7 +226,7 @@ def found(log: AnyLog, discard: float | None, count: int) -> Found:
         if rates is None:
             quantities.append(dash(f"{name}_1", PER_TIME, stopped or _too_few(log, discard)))
             continue
-        quantities += _entries(name, rates, scene, len(ledger.growth) == 4 * (disks // systems))
+        quantities += _entries(name, rates, scene, len(ledger.growth) == growth.each * (disks // systems))
         tables[name] = {
             "k": [float(k + 1) for k in range(len(rates.time))],
             "exponent": [value for value, _ in rates.time],
