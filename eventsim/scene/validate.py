@@ -221,9 +221,11 @@ def _period_problems(wall: Wall, domain: Domain) -> Iterator[str]:
     axes = [axis for axis in (0, 1) if domain.periodic[axis]]
     broken = [text for axis in axes for text in wall.period_problems(axis, domain.origin[axis], domain.size[axis])]
     yield from broken
-    over = wall.most_periods([domain.size[axis] if axis in axes else math.inf for axis in (0, 1)])
+    period = [domain.size[axis] if axis in axes else math.inf for axis in (0, 1)]
+    over = wall.most_periods(period)
     if not broken and over > MOST_PERIODS:
         yield f": must not stretch over more than {MOST_PERIODS} periods, counted in x times in y, and does over {over:.0f}"
+    yield from wall.image_problems(period)
 
 
 def number_problems(disks: Disks, names: DiskNames, sound: NDArray[np.bool_]) -> list[str]:

@@ -180,3 +180,24 @@ def test_a_container_must_fit_into_the_period():
 def test_a_wall_must_not_stretch_over_too_many_periods():
     with pytest.raises(SceneError, match="more than 1000 periods in x"):
         Scene(ONE, Periodic((2, 4)), [Segment((-1e6, 3), (1e6, 3))])
+
+
+@pytest.mark.parametrize(
+    ("domain", "wall", "times"),
+    [
+        (Periodic((2, 4)), Segment((0.5, -1), (0.5, 11)), "3"),
+        (Channel((2, 4)), Segment((-1, 3), (1.5, 3)), "1.25"),
+        (Periodic((2, 4)), Segment((0, 3), (-3, -3)), "1.5"),
+        (Periodic((2, 4)), Segment((0, 3), (9, 9)), "1.5"),
+        (Periodic((2, 4)), Polyline(((0, 3), (1, 2), (1, -3))), "1.25"),
+    ],
+)
+def test_a_wall_must_not_lie_on_its_own_image(domain, wall, times):
+    with pytest.raises(SceneError, match=rf"it is {times} times as long as the way to its own image"):
+        Scene(ONE, domain, [wall])
+
+
+def test_a_wall_may_close_around_the_domain_or_wind_around_it():
+    Scene(ONE, Periodic((2, 4)), [Segment((-1, 3), (1, 3))])
+    Scene(Disks([[0.0, 1.0]], radius=0.01), Periodic((2, 4)), [Segment((0, 3), (6.3, 9))])
+    Scene(ONE, Channel((2, 4)), [Segment((1.5, 0.5), (1.5, 3.5))])

@@ -119,6 +119,10 @@ class Wall(Manner, ABC):
         extents = [part.bounds() for part in self.parts("")]
         return max(math.prod(max((high[k] - low[k]) / period[k], 1.0) for k in (0, 1)) for low, high in extents)
 
+    def image_problems(self, period: Sequence[float]) -> Iterator[str]:
+        """Pieces that lie on images of themselves; period: of each axis, inf where it has none."""
+        return iter(())
+
     def problems(self) -> Iterator[str]:
         """Every rule that the wall breaks, each problem beginning with the key that breaks it."""
         broken = list(self.number_problems({key: getattr(self, key) for key in keys_of(type(self))}))
