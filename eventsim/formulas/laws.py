@@ -134,9 +134,12 @@ class Law:
         """The restitution of a contact whose usual one is given; see `impulse.contact_restitution`."""
         return contact_restitution(usual, self.numbers(), since_a, since_b, approach, mass)
 
-    def possible(self, usual: float, approach: float) -> tuple[float, ...] | None:
-        """The restitutions that a contact with a speed of approach may have, whatever went before; None: nobody knows."""
-        long, soon = (self.restitution(usual, since, since, approach, 1.0) for since in (float("inf"), 0.0))
+    def possible(self, usual: float, approach: float, least: float = 0.0) -> tuple[float, ...] | None:
+        """The restitutions that a contact with a speed of approach may have; None: nobody knows.
+
+        least: the least time since the contact before of one of its disks; 0: whatever went before.
+        """
+        long, soon = (self.restitution(usual, since, since, approach, 1.0) for since in (float("inf"), least))
         return (long,) if long == soon else (long, soon)
 
     def keeps_energy(self, pairs: bool = True, walls: bool = True) -> bool:
@@ -305,7 +308,7 @@ class Own(Law):
         """The function, and the duration if there is one."""
         return Numbers(self.duration, own=self.own)
 
-    def possible(self, usual: float, approach: float) -> tuple[float, ...] | None:
+    def possible(self, usual: float, approach: float, least: float = 0.0) -> tuple[float, ...] | None:
         """Nobody but the function knows."""
         return None
 

@@ -4,6 +4,7 @@
     told          who met whom, from the turns              surroundings   gaps between disks, distances of walls
     matching      which contact is which of the truth       outcome        restitution, masses, momentum of a contact
     faults        what is wrong, and what comes first       judgement      all of it
+    previous      how long ago the contact before was
     jumps         energy and momentum that no contact gives
     words         the verdict in sentences                  stepping       an engine that is a function
 """

@@ -16,6 +16,7 @@ from eventsim.record.events import Floats, Kind
 from eventsim.scene.stage import Stage
 from eventsim.validation.judge.flights import Flights, Gained, Turn
 from eventsim.validation.judge.outcome import named, wrong_outcome
+from eventsim.validation.judge.previous import Previous
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import NEAR, Met
 
@@ -50,10 +51,14 @@ class Fault:
 class Witness:
     """What looks at the engine's own path around a time.
 
-    window: how long before and after, time.  resolution: a smaller overlap cannot be told, length.
+    previous: what is known of contacts before.  window: how long before and after, time.  resolution: a smaller overlap cannot
+    be told, length.
     """
 
-    def __init__(self, flights: Flights, around: Surroundings, mass: Floats, window: float, resolution: float) -> None:
+    def __init__(
+        self, flights: Flights, around: Surroundings, mass: Floats, previous: Previous, window: float, resolution: float
+    ) -> None:
+        self._previous = previous
         self._flights, self._around, self._mass, self._window = flights, around, mass, window
         self._stage: Stage = around.stage
         self._resolution = resolution
@@ -142,7 +147,7 @@ class Witness:
 
     def outcome(self, met: Met) -> Fault | None:
         """The fault of what a contact did; None where it is right, or where a wall may have had its part in it."""
-        said = wrong_outcome(met, self._stage, self._mass, self._flights.least)
+        said = wrong_outcome(met, self._stage, self._mass, self._flights.least, self._previous.since(met))
         if said is None:
             return None
         if met.key[0] == Kind.PAIR and any(turn is not None and self._may_have_met_more(turn) for turn in met.turns):

@@ -20,6 +20,7 @@ from eventsim.validation.judge.charge import Charge, Window, charged, in_our_for
 from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, Turn, energy_on_the_way, flights_of
 from eventsim.validation.judge.jumps import jumps
+from eventsim.validation.judge.previous import Previous
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import Read, contacts_from
 from eventsim.validation.truth import BELIEVED, Truth, truth_of
@@ -153,7 +154,8 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
     seen = np.searchsorted(times, looks)
     apart = distances(stage, samples.position[seen], truth.run.position[: len(looks)]) / (2.0 * truth.radius)
     resolution = max(SMALLEST * truth.radius, 4.0 * samples.step, 4.0 * flights.blur)
-    witness = Witness(flights, around, mass, max(tolerance, step), resolution)
+    previous = Previous(flights, truth.run.rows, tolerance, stage.law.duration)
+    witness = Witness(flights, around, mass, previous, max(tolerance, step), resolution)
     window = Window(tolerance, 0.0 if contacts is not None else step, _lost_from(truth, apart), float(looks[-1]))
     charge = Charge()
     if contacts is not None or not blind:

@@ -71,7 +71,7 @@ def _approach(met: Met, normal: Floats) -> float:
     return -float((before_a - before_b) @ normal)
 
 
-def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float) -> str | None:
+def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float, since: float) -> str | None:
     """What is wrong with what a contact did, in words; None where nothing is, or it cannot be told.
 
     Args:
@@ -79,13 +79,14 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float) -> str | N
         stage: the scene.
         mass: (n,), inf for immovable disks.
         least: the smallest change of velocity that is seen.
+        since: the least time since the contact before of one of its disks.
     """
     found = outcome_of(met, mass)
     if found is None or not _is_told(met, found, mass, least):
         return None
     who = named(met.key, stage)
     usual = _usual(met.key, stage)
-    possible = stage.law.possible(usual, found.approach)
+    possible = stage.law.possible(usual, found.approach, since)
     right = math.nan if possible is None else possible[0]
     if met.across > ACROSS:
         return f"friction: the contact of {who} gives {met.across:.2g} of its impulse across the normal: disks are smooth here"
