@@ -22,7 +22,7 @@ for t in np.arange(1, 9) / 10:
         disks=es.Disks(position=[[0.0, 0.0], [SIDE / 2, SIDE / 2]], velocity=[half, -half], radius=0.5),
         domain=es.Periodic((SIDE, SIDE)),
     )
-    run = es.simulate(scene, until=10_000.0)
+    run = es.simulate(scene, until=3_000.0)
     rates.append(run.counters.pair_contacts / run.time)
 
 mean, error = np.mean(rates), np.std(rates, ddof=1) / math.sqrt(len(rates))

@@ -188,25 +188,28 @@ def turn(sums: Sums, channel: int, time: float, change: float) -> None:
 def slot_of(plan: Plan, sums: Sums, i: int, speed: float, time: float) -> int:
     """The channel of a speed in the histogram of the species of disk i, at a time since ORIGIN."""
     disks = sums.disks
-    while speed * disks[i, SCALE] >= SPEED_BINS:
-        widen(plan, sums, int(disks[i, SPECIES]), time)
+    doublings, scale = 0, disks[i, SCALE]
+    while speed * scale >= SPEED_BINS:
+        doublings, scale = doublings + 1, 0.5 * scale
+    if doublings > 0:
+        widen(plan, sums, int(disks[i, SPECIES]), time, doublings)
     return first_speed(plan) + SPEED_BINS * int(disks[i, SPECIES]) + int(speed * disks[i, SCALE])
 
 
-def widen(plan: Plan, sums: Sums, species: int, time: float) -> None:
-    """Double the width of the bins of speed of a species."""
+def widen(plan: Plan, sums: Sums, species: int, time: float, doublings: int) -> None:
+    """Double the width of the bins of speed of a species so many times."""
     first, bins, rates = first_speed(plan) + SPEED_BINS * species, sums.bins, sums.rates
     for k in range(SPEED_BINS):
         turn(sums, first + k, time, 0.0)
-    for k in range(SPEED_BINS):
-        one, other = first + 2 * k, first + 2 * k + 1
-        inside = k < SPEED_BINS // 2
-        rates[first + k] = rates[one] + rates[other] if inside else 0.0
+    for k in range(1, SPEED_BINS):
+        one, other = first + (k >> min(doublings, 62)), first + k
+        rates[one], rates[other] = rates[one] + rates[other], 0.0
         for place in range(MOST_BINS):
-            bins[place, first + k] = bins[place, one] + bins[place, other] if inside else 0.0
+            bins[place, one], bins[place, other] = bins[place, one] + bins[place, other], 0.0
     for i in range(len(sums.disks)):
         if int(sums.disks[i, SPECIES]) == species:
-            sums.disks[i, SCALE] *= 0.5
+            for _ in range(doublings):
+                sums.disks[i, SCALE] *= 0.5
 
 
 def hold(plan: Plan, sums: Sums, i: int, time: float, sign: float) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.growth import compiled, kernel
+from eventsim.growth import compiled, kernel, schedule
 from eventsim.growth.schedule import grown
 from eventsim.scene.compressed import neighbours
 from eventsim.scene.files import scene_from_dict
@@ -72,8 +72,9 @@ def test_a_region_of_the_domain_is_filled():
     assert (y - scene.disks.radius).min() >= 0.25
 
 
-def test_too_dense_a_mixture_says_how_far_it_came():
+def test_too_dense_a_mixture_says_how_far_it_came(monkeypatch):
     pytest.importorskip("numba")  # plain Python takes its time to find out
+    monkeypatch.setattr(schedule, "ATTEMPTS", 1)  # the later ones are slower still
     with pytest.raises(es.SceneError, match=r"gas\[0\].*jammed at a packing fraction of 0\.[78]"):
         mixture(50, 0.9)
 
