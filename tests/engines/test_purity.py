@@ -51,13 +51,13 @@ def test_every_invariant_holds_after_every_event(name):
 def test_cells_and_all_pairs_give_the_same_log(name):
     scene = SCENES[name]()
     stage = stage_of(scene)
-    expected = rows_of(scene, events=2000, grid=None)
+    expected = rows_of(scene, events=1000, grid=None)
     assert len(expected) > 20
     grids = [plan(stage), plan(stage, 1.05), plan(stage, 1.7), plan(stage, 2.3)]
     assert any(grids)
     for grid in grids:
         if grid is not None:
-            assert rows_of(scene, events=2000, grid=grid).tobytes() == expected.tobytes()
+            assert rows_of(scene, events=1000, grid=grid).tobytes() == expected.tobytes()
 
 
 @pytest.mark.parametrize("name", SCENES)
