@@ -74,7 +74,18 @@ def _compiled() -> Kernels:
     ):
         register_jitable(**ALONE, forceinline=True)(part)
     # rare, or long: calls of their own
-    for rare in (sums.widen, sums.merge, sums.mark, sums.sample, sums.hold, sums.spread, sums.fall, sums.side_of, sums.strike):
+    for rare in (
+        sums.widen,
+        sums.merge,
+        sums.mark,
+        sums.sample,
+        sums.hold,
+        sums.spread,
+        sums.fall_in_bin,
+        sums.fall,
+        sums.side_of,
+        sums.strike,
+    ):
         register_jitable(**ALONE)(rare)
     _fetch_disks()
     whole = (sums.take, sums.finish, sums.hold_all)

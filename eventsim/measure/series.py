@@ -70,7 +70,7 @@ def _along_contacts(records: Records) -> TimeSeries:
         line[1:, sums.POINT_TIME],
         2.0 * number / ensemble.n,
         energy[1:],
-        0.5 * (energy[1:] + energy[:-1]),
+        np.diff(line[:, sums.POINT_ACTION]) / span,
         span,
         virial,
     )

@@ -5,9 +5,9 @@ numba, which keeps compiled code by the file it came from, notices every edit.
 
 What disks do between contacts without gravity is a constant: speed, energy, the bin of the speed histogram.  A channel holds the
 sum of these over all disks, its rate, and rate x time goes to the present bin of time when the rate changes or the bin ends.
-So sums are right to the very end of a run, flights under way included.  A flight under gravity is added when it ends, to all bins
-that it passed through.  Bins double in width when the run outgrows them, and so does the interval between samples, so a run that
-slows down by many decades costs no more than one that does not.
+So sums are right to the very end of a run, flights under way included.  A flight under gravity is added when it ends: to each bin
+that it passed through, what it did in there.  Bins double in width when the run outgrows them, and so does the interval between
+samples, so a run that slows down by many decades costs no more than one that does not.
 """
 
 from __future__ import annotations
@@ -42,14 +42,15 @@ PIECES = 4
 """Parts of a flight under gravity, each with a speed of its own in the histogram."""
 
 MOST_POINTS = 2048
-POINT_TIME, POINT_ENERGY, POINT_VIRIAL, POINT_TURNING = 0, 1, 2, 3
-POINT_COLUMNS = 4
-"""Columns of the points along the contacts: time, energy, the sum of FORCE by then, and the energy of spins."""
+POINT_TIME, POINT_ENERGY, POINT_VIRIAL, POINT_TURNING, POINT_ACTION = range(5)
+POINT_COLUMNS = 5
+"""Columns of the points along the contacts: time, energy, the sum of FORCE by then, the energy of spins, and ACTION by then."""
 
-WIDTH, ORIGIN, INTERVAL, HEAT, FORCE, SPUN = range(6)
-NUMBERS = 6
+WIDTH, ORIGIN, INTERVAL, HEAT, FORCE, SPUN, ACTION, SEEN = range(8)
+NUMBERS = 8
 """Numbers that change: width of a bin; time at which the bins begin; interval of samples; energy now; sum of reach x impulse so
-far, between disks and at the walls that hold them; energy of spins now."""
+far, between disks and at the walls that hold them; energy of spins now; the integral of the energy over time without gravity, and
+until when."""
 
 PLACE, SAMPLED, FILLED, CONTACTS, STRIDE, POINTS = range(6)
 COUNTS = 6
@@ -281,37 +282,56 @@ def spread(sums: Sums, begin: float, end: float, channel: int, rate: float) -> N
         sums.bins[k, channel] += rate * part
 
 
+def fall_in_bin(plan: Plan, sums: Sums, i: int, k: int, span: float, ux: float, uy: float, time: float) -> None:
+    """Add a part of a flight of disk i under gravity: its bin, how long it is, the velocity at its beginning.
+
+    time: at the end of the flight, since ORIGIN.
+    """
+    disks, bins = sums.disks, sums.bins
+    mass, species = disks[i, MASS], int(disks[i, SPECIES])
+    general = GENERAL + PER_SPECIES * species
+    gx, gy = disks[i, GX], disks[i, GY]
+    mx, my = ux + gx * (0.5 * span), uy + gy * (0.5 * span)  # in its middle
+    ex, ey = ux + gx * span, uy + gy * span  # at its end
+    middle = mx * mx + my * my
+    # Simpson's rule, exact for v^2
+    speed2 = ((ux * ux + uy * uy) + 4.0 * middle + (ex * ex + ey * ey)) / 6.0
+    speed = (math.sqrt(ux * ux + uy * uy) + 4.0 * math.sqrt(middle) + math.sqrt(ex * ex + ey * ey)) / 6.0
+    bins[k, general + PATH] += speed * span
+    bins[k, general + SPEED2] += speed2 * span
+    slot = slot_of(plan, sums, i, math.sqrt(middle), time)
+    bins[k, slot] += span
+    if mass > 0.0:
+        bins[k, ENERGY] += 0.5 * mass * speed2 * span
+        bins[k, XX] += mass * (ux * ux + 4.0 * mx * mx + ex * ex) / 6.0 * span
+        bins[k, XY] += mass * (ux * uy + 4.0 * mx * my + ex * ey) / 6.0 * span
+        bins[k, YY] += mass * (uy * uy + 4.0 * my * my + ey * ey) / 6.0 * span
+    disks[i, LENGTH] += speed * span
+
+
 def fall(plan: Plan, sums: Sums, i: int, duration: float, time: float) -> None:
     """Add a flight of disk i under gravity, which ends at a time since ORIGIN, to the bins; the disk has its velocity then."""
     disks = sums.disks
-    mass, species = disks[i, MASS], int(disks[i, SPECIES])
     gx, gy = disks[i, GX], disks[i, GY]
-    general = GENERAL + PER_SPECIES * species
     part = duration / PIECES
     wall = int(disks[i, LIES_ON])
     if wall >= 0 and plan.walls > 0:
-        spread(sums, time - duration, time, first_wall(plan) + SIDES * wall, mass * sums.walls[wall, PRESS])
+        press = disks[i, MASS] * sums.walls[wall, PRESS]
+        spread(sums, time - duration, time, first_wall(plan) + SIDES * wall, press)
+    width = sums.numbers[WIDTH]
     for piece in range(PIECES):
         begin = time - duration + piece * part
         end = time if piece == PIECES - 1 else begin + part
-        ux, uy = disks[i, VX], disks[i, VY]  # at its beginning, in its middle, at its end
-        mx, my = ux + gx * (0.5 * part), uy + gy * (0.5 * part)
-        ex, ey = ux + gx * part, uy + gy * part
-        middle = mx * mx + my * my
-        # Simpson's rule, exact for v^2
-        speed2 = ((ux * ux + uy * uy) + 4.0 * middle + (ex * ex + ey * ey)) / 6.0
-        speed = (math.sqrt(ux * ux + uy * uy) + 4.0 * math.sqrt(middle) + math.sqrt(ex * ex + ey * ey)) / 6.0
-        spread(sums, begin, end, general + PATH, speed)
-        spread(sums, begin, end, general + SPEED2, speed2)
-        spread(sums, begin, end, slot_of(plan, sums, i, math.sqrt(middle), time), 1.0)
-        if mass > 0.0:
-            spread(sums, begin, end, ENERGY, 0.5 * mass * speed2)
-            spread(sums, begin, end, XX, mass * (ux * ux + 4.0 * mx * mx + ex * ex) / 6.0)
-            spread(sums, begin, end, XY, mass * (ux * uy + 4.0 * mx * my + ex * ey) / 6.0)
-            spread(sums, begin, end, YY, mass * (uy * uy + 4.0 * my * my + ey * ey) / 6.0)
-        if end > 0.0:
-            disks[i, LENGTH] += speed * (end - max(begin, 0.0))
-        disks[i, VX], disks[i, VY] = ex, ey
+        ux, uy = disks[i, VX], disks[i, VY]
+        low, high = max(begin, 0.0), max(end, 0.0)
+        first, last = min(int(low / width), MOST_BINS - 1), min(int(high / width), MOST_BINS - 1)
+        for k in range(first, last + 1):  # a bin has the part of the flight that lies in it
+            since = low if k == first else k * width
+            share = (high if k == last else (k + 1) * width) - since
+            if share > 0.0:
+                lag = since - begin
+                fall_in_bin(plan, sums, i, k, share, ux + gx * lag, uy + gy * lag, time)
+        disks[i, VX], disks[i, VY] = ux + gx * part, uy + gy * part
 
 
 def fly(plan: Plan, sums: Sums, i: int, time: float) -> None:
@@ -401,6 +421,7 @@ def mark(sums: Sums, time: float) -> None:
     points[place, POINT_ENERGY] = numbers[HEAT]
     points[place, POINT_VIRIAL] = numbers[FORCE]
     points[place, POINT_TURNING] = numbers[SPUN]
+    points[place, POINT_ACTION] = numbers[ACTION]
     counts[POINTS] = place + 1
 
 
@@ -480,6 +501,8 @@ def take(block: Block, first: int, plan: Plan, sums: Sums, told: Floats | None =
         if not sample_before(sums, time):
             return row
         reach(sums, time - numbers[ORIGIN])
+        numbers[ACTION] += numbers[HEAT] * (time - numbers[SEEN])
+        numbers[SEEN] = time
         kind, a, b, wall = int(block.kind[row]), int(block.a[row]), int(block.b[row]), int(block.wall[row])
         vx, vy = block.vxa[row], block.vya[row]
         change = leave(plan, sums, a, time, vx, vy)
