@@ -46,13 +46,14 @@ class Plan:
 def row_of(plan: Plan, task: Task) -> Row:
     """The row of a task: settings, provenance, measures with their errors, theory with its accuracy; `failed` says why it failed.
 
+    A column that is called like a setting has what was set; what was measured of that name is beside it, as NAME_measured.
     Only what the scene, the seed and the version determine is in it: no times of the day, no speed of the machine.
     """
     if parent_process() is not None:  # its siblings have the other cores
         os.environ.setdefault(WARM, "0")
-    row = first_cells(task)
+    row, keys = first_cells(task), dict(task.settings)
     try:
-        row |= _measured(plan, task)
+        row |= {f"{key}_measured" if key in keys else key: value for key, value in _measured(plan, task).items()}
     except EventsimError as error:
         row["failed"] = " ".join(str(error).split())
     except (ArithmeticError, LookupError, TypeError, ValueError, MemoryError) as error:
