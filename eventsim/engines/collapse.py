@@ -81,11 +81,30 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
     if rounds is None or (rounds.number < 2 and stage.gravity is not None):  # what rests there has no rounds to show
         return None
     if rounds.number < 2:
-        return "digits", (
+        return _of_an_instant(rows, rounds.disks, stage, time) or (
+            "digits",
             f"the contacts of {named(rounds.disks)} at time {time:.9g} follow one another faster than the digits of float64 can "
-            f"tell, without a steady ratio before: they may or may not end; {stage.law.remedy()}"
+            f"tell, without a steady ratio before: they may or may not end; {stage.law.remedy()}",
         )
     return _of_rounds(rounds, stage, time, rounds.ends_now or rounds.last < SETTLED * rounds.first)
+
+
+def _of_an_instant(rows: Rows, disks: list[int], stage: Stage, time: float) -> tuple[str, str] | None:
+    """The same of contacts that all come at one instant, as of disks that stick; None where they are not known to have no end.
+
+    No gap tells anything there, and none has to: the map of a round is of velocities alone.  Where it has no end, impulses fall
+    from round to round by its eigenvalue, in no time, and no flight comes after them.
+    """
+    mine = _of_these(rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)][-TAIL:], disks)
+    if not is_endless(mine, stage):
+        return None
+    last, before = mine[-1], mine[:-1]
+    same = (before["a"] == last["a"]) & (before["b"] == last["b"]) & (before["wall"] == last["wall"])
+    ratio = float(last["impulse"] / before["impulse"][same][-1])
+    return "collapse", (
+        f"inelastic collapse of {named(disks)} at time {time:.9g}: contacts at that instant, in rounds of which each has "
+        f"{ratio:.3g} of the impulses of the one before, and there is no end of them; {stage.law.remedy()}"
+    )
 
 
 def diagnosis_of_sunk(rows: Rows, stage: Stage, time: float) -> tuple[str, str] | None:
@@ -97,7 +116,7 @@ def diagnosis_of_sunk(rows: Rows, stage: Stage, time: float) -> tuple[str, str] 
     if len(rows) == 0:
         return None
     disks = _connected(rows[-RECENT:])
-    mine = rows[np.isin(rows["a"], disks) & ((rows["b"] < 0) | np.isin(rows["b"], disks))]
+    mine = _of_these(rows, disks)
     times = (mine["epoch"] - mine["epoch"][-1]) * stage.epoch_length + mine["remainder"]
     rounds = _series(disks, mine, times, 0.0, CLEAN_OF_SUNK)
     if rounds.number < 2:
@@ -196,6 +215,11 @@ def _ratio(series: Floats, period: int, clean: float) -> float:
     rounds = min(known, LAST_ROUNDS)
     end = 1 + int(np.flatnonzero(series >= clean)[-1])
     return math.pow(series[end - 1] / series[end - 1 - rounds * period], 1.0 / rounds)
+
+
+def _of_these(rows: Rows, disks: list[int]) -> Rows:
+    """The rows of contacts of these disks with each other and with walls."""
+    return rows[np.isin(rows["a"], disks) & ((rows["b"] < 0) | np.isin(rows["b"], disks))]
 
 
 def _connected(rows: Rows) -> list[int]:

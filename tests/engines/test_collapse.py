@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.engines.collapse import diagnosis
 from eventsim.engines.reference.instants import MOST_AT_ONCE, instant_of
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
@@ -26,6 +27,32 @@ def test_a_bounce_that_dies_out_is_a_collapse_with_its_ratio(log):
     assert run.time == pytest.approx(3.0, abs=1e-6)  # the gap at a round contact is known to some ulp, a fall of 1e-8
     assert re.search(r"collapse of disks 0, 1 at time 3[.\d]*: \d+ rounds of contacts", run.reason)
     assert "contact_duration" in run.reason
+
+
+def between_a_heavy_disk_and_a_wall(restitution):
+    disks = es.Disks([[1.0, 0.5], [2.0, 0.5]], [[1.0, 0.0], [0.0, 0.0]], radius=0.1, mass=[3.0, 1.0])
+    return es.Scene(disks, es.Box((4.0, 1.0)), restitution=restitution)
+
+
+def test_disks_that_stick_collapse_at_a_wall_in_no_time():
+    """The light one stops at the wall, the heavy one shares 3 of 4 parts of its momentum with it again: all at 10 / 3."""
+    run = es.simulate(between_a_heavy_disk_and_a_wall(0.0), until=4.0, engine="reference", log=True)
+    assert run.stopped == "collapse"
+    assert run.time == pytest.approx(10.0 / 3.0, rel=1e-15)
+    assert "disks 0, 1 at time 3.33333333: contacts at that instant, in rounds of which each has 0.75 of" in run.reason
+    pairs = run.log.impulse[run.log.b >= 0]
+    assert pairs[1:] / pairs[:-1] == pytest.approx(0.75, rel=1e-14)  # two roundings each
+
+
+def test_contacts_at_an_instant_that_show_no_rounds_stay_below_the_digits():
+    """Three rows are no rounds yet: nobody knows how they go on."""
+    stage = stage_of(between_a_heavy_disk_and_a_wall(0.0))
+    run = es.simulate(between_a_heavy_disk_and_a_wall(0.0), until=4.0, engine="reference", log=True)
+    rows = run.log.rows[:3].copy()  # one round and a contact before it
+    clock = (int(rows["epoch"][-1]), float(rows["remainder"][-1]))
+    stopped, reason = diagnosis(rows, stage, clock, run.time)
+    assert stopped == "digits"
+    assert "may or may not end" in reason
 
 
 def test_a_collapse_late_on_the_clock_has_the_same_rounds():
