@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from eventsim.measure.ensemble import ensemble_of
-from eventsim.measure.records import FEW
+from eventsim.measure.ensemble import LAST_DIGITS, ensemble_of
+from eventsim.measure.records import FEW, FEWEST_CONTACTS, LINE, ON_A_LINE, TOO_FEW
 from eventsim.scene import Scene
 from eventsim.scene.contact_law import law_of_scene
 
@@ -18,7 +18,10 @@ def settings_of(scene: Scene) -> str | None:
 
 
 def gas_of(scene: Scene) -> dict[str, Any]:
-    """What read-outs need to know of the scene as a gas; null where `measure` has a dash, with the reason."""
+    """What read-outs need to know of the scene as a gas; null where `measure` has a dash, with the reason.
+
+    Of dashes that a run decides: the numbers that `measure` decides by, and its words.
+    """
     ensemble = ensemble_of(scene)
     disks, kept = scene.disks, ensemble.kept_momenta
     return {
@@ -29,5 +32,8 @@ def gas_of(scene: Scene) -> dict[str, Any]:
         "area": ensemble.area,
         "noTemperature": ensemble.no_temperature,
         "noPressure": ensemble.no_pressure,
+        "onALine": {"share": ON_A_LINE, "why": LINE},
+        "few": {"disks": FEW, "contacts": FEWEST_CONTACTS, "why": TOO_FEW},
+        "lastDigits": LAST_DIGITS,
         "maxwell": ensemble.simple and ensemble.n >= FEW,
     }

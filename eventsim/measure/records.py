@@ -40,6 +40,13 @@ ON_A_LINE = 1e-18
 """Share of the squared energy that the determinant of the mean v v^T has for motion along one line: rounding, squared."""
 
 
+LINE = "the disks move along one line and do not mix"
+"""Why they have no temperature then."""
+
+TOO_FEW = "too few to share the energy"
+"""The same of contacts."""
+
+
 @dataclass(frozen=True)
 class Records:
     """Sums of a run, and what follows from them for all quantities alike.
@@ -240,7 +247,7 @@ class Records:
         xx, xy, yy = (float(self.channel(k).sum()) for k in (sums.XX, sums.XY, sums.YY))
         trace = xx + yy
         if self.ensemble.n and trace > 0.0 and (xx / trace) * (yy / trace) - (xy / trace) ** 2 <= ON_A_LINE:
-            return "the disks move along one line and do not mix"
+            return LINE
         return None
 
     @cached_property
@@ -259,7 +266,7 @@ class Records:
         if self.on_a_line is not None:
             return self.on_a_line
         if ensemble.n < FEW and self.shared < FEWEST_CONTACTS:
-            return f"{plural(int(self.pairs), 'contact')} between disks: too few to share the energy"
+            return f"{plural(int(self.pairs), 'contact')} between disks: {TOO_FEW}"
         if self.groups > 1 and self.shared > APART:
             return f"the disks fall into {self.groups} groups that never meet"
         return None

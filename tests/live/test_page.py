@@ -143,6 +143,27 @@ def test_read_outs_are_what_measure_says(page, tmp_path, name):
     assert float(told["p V / N kT"]) == pytest.approx(z, rel=1e-2)
 
 
+@pytest.mark.parametrize(
+    ("scene", "why"),
+    [("gallery=two-disks", "along one line"), ("count=2&speed=100&packing=0.05&seed=3", "too few to share the energy")],
+)
+def test_two_disks_have_neither_temperature_nor_pressure(page, scene, why):
+    page.open(scene)
+    page.js("live.player.seek(0.5 * live.player.duration); live.tell(live.player)")
+    for quantity in ("temperature", "pressure", "p V / N kT"):
+        assert page.js("return live.readouts.values.get(arguments[0]).textContent", quantity) == "\N{EN DASH}"
+        assert why in page.js("return live.readouts.values.get(arguments[0]).title", quantity)
+
+
+def test_a_momentum_of_which_rounding_is_left_is_shown_as_none(page):
+    """0.1 x 3 is not 0.3; of 3e-17 and nothing else all digits are known."""
+    page.open("gallery=galperin")
+    added = "const sum = new Sum(); arguments[0].forEach((term) => sum.add(term)); return sum.known(live.player.gas.lastDigits)"
+    assert page.js(added, [3 * 0.1, -0.3]) == 0
+    assert page.js(added, [3e-17]) == 3e-17
+    assert page.js(added, [1.0, -1.0 + 2.0**-30]) == 2.0**-30
+
+
 @pytest.mark.slow
 def test_every_built_in_scene_plays(page, tmp_path):
     for name in names():

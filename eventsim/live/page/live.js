@@ -13,7 +13,7 @@ class LivePlayer extends Player {
     this.gas = description.gas;
     super.open(world, { ...description, duration: description.usualSpeed, seconds: 1 });
     this.view.speed = factor * this.usualSpeed;
-    this.impulses = new WallImpulses(description.borders);
+    this.tally = new Tally(description.borders, this.world.disks.mass);
     this.horizons = [0];
     this.duration = 0;
     this.ended = null;
@@ -32,7 +32,7 @@ class LivePlayer extends Player {
   take(track, rows, horizon, ended) {
     if (track === 0) {
       this.world.append(rows);
-      this.impulses.append(rows);
+      this.tally.append(rows);
       this.ended = ended;
     } else {
       this.comparison.other.append(rows);
@@ -46,7 +46,7 @@ class LivePlayer extends Player {
   /* Forget all rows but the first `count`: from `time` on, things go differently. */
   cut(count, time) {
     this.world.cut(count);
-    this.impulses.cut(count);
+    this.tally.cut(count);
     this.horizons[0] = time;
     this.ended = null;
     this.app.series.cut(time);

@@ -3,42 +3,69 @@
 
 const BINS = 24, PRESSURE_SECONDS = 5, CURVE_POINTS = 60;
 
-/* Kinetic energy, potential energy, momentum, number, angular momentum and moment of inertia about (x0, y0), of the disks of finite
-   positive mass. */
-function sums(world, state, x0, y0) {
-  let kinetic = 0, potential = 0, px = 0, py = 0, count = 0, turning = 0, inertia = 0;
+/* A sum of terms, of whose last bits nothing is left: 0 where it is below `share` of their magnitudes. */
+class Sum {
+  constructor() { this.value = this.size = 0; }
+
+  add(term) { this.value += term; this.size += Math.abs(term); }
+
+  known(share) { return Math.abs(this.value) > share * this.size ? this.value : 0; }
+}
+
+/* Kinetic energy, energy, momentum, mean square of it along x, across and along y, number, angular momentum and moment of inertia about
+   (x0, y0), of the disks of finite positive mass. */
+function sums(world, state, x0, y0, share) {
+  const [kinetic, energy, px, py, turning] = Array.from({ length: 5 }, () => new Sum());
+  let count = 0, inertia = 0, xx = 0, xy = 0, yy = 0;
   for (let i = 0; i < world.count; i++) {
-    const mass = world.disks.mass[i];
+    const mass = world.disks.mass[i], vx = state.vx[i], vy = state.vy[i];
     if (!(mass < Infinity) || mass === 0) continue;
-    kinetic += 0.5 * mass * (state.vx[i] ** 2 + state.vy[i] ** 2);
-    if (world.gravity) potential -= mass * (world.gravity[0] * state.x[i] + world.gravity[1] * state.y[i]);
-    px += mass * state.vx[i];
-    py += mass * state.vy[i];
+    kinetic.add(0.5 * mass * (vx ** 2 + vy ** 2));
+    energy.add(0.5 * mass * (vx ** 2 + vy ** 2));
+    if (world.gravity) {
+      energy.add(-mass * world.gravity[0] * state.x[i]);
+      energy.add(-mass * world.gravity[1] * state.y[i]);
+    }
+    px.add(mass * vx);
+    py.add(mass * vy);
+    xx += mass * vx * vx;
+    xy += mass * vx * vy;
+    yy += mass * vy * vy;
     const x = state.x[i] - x0, y = state.y[i] - y0;
-    turning += mass * (x * state.vy[i] - y * state.vx[i]);
+    turning.add(mass * x * vy);
+    turning.add(-mass * y * vx);
     inertia += mass * (x * x + y * y);
     count++;
   }
-  return { kinetic, energy: kinetic + potential, px, py, count, turning, inertia };
+  const told = { kinetic, energy, px, py, turning };
+  for (const name in told) told[name] = told[name].known(share);
+  return { ...told, count, inertia, xx, xy, yy };
 }
 
-class WallImpulses {
-  /* The momentum that the boundary has taken up until each event. borders: the first walls are those of the domain. */
-  constructor(borders) {
+class Tally {
+  /* The momentum that the boundary has taken up until each event, and the contacts between disks of finite positive mass.
+     borders: the first walls are those of the domain. */
+  constructor(borders, mass) {
     this.borders = borders;
-    this.total = new Column();
+    this.mass = mass;
+    this.taken = new Column();
+    this.met = new Column();
   }
 
   append(rows) {
+    const heavy = (i) => this.mass[i] > 0 && this.mass[i] < Infinity;
     for (let k = 0; k < rows.a.length; k++) {
-      const taken = rows.kind[k] === 1 && rows.wall[k] < this.borders ? rows.impulse[k] : 0;
-      this.total.push(this.until(this.total.length) + taken);
+      const count = this.taken.length;
+      this.taken.push(this.impulse(count) + (rows.kind[k] === 1 && rows.wall[k] < this.borders ? rows.impulse[k] : 0));
+      this.met.push(this.contacts(count) + (rows.kind[k] === 0 && heavy(rows.a[k]) && heavy(rows.b[k]) ? 1 : 0));
     }
   }
 
-  cut(count) { this.total.length = Math.min(this.total.length, count); }
+  cut(count) { for (const column of [this.taken, this.met]) column.length = Math.min(column.length, count); }
 
-  until(count) { return count ? this.total.values[count - 1] : 0; }
+  impulse(count) { return count ? this.taken.values[count - 1] : 0; }
+
+  contacts(count) { return count ? this.met.values[count - 1] : 0; }
 }
 
 class Readouts {
@@ -55,36 +82,47 @@ class Readouts {
   }
 
   /* view: what is shown; its state lies in world.now.  gas: what `measure` knows of the scene as a gas, and where it has a dash. */
-  show(world, stage, gas, impulses, view) {
+  show(world, stage, gas, tally, view) {
     const state = world.now, [x0, y0] = gas.middle || stage.corner;
-    const found = sums(world, state, x0 - stage.corner[0], y0 - stage.corner[1]);
+    const found = sums(world, state, x0 - stage.corner[0], y0 - stage.corner[1], gas.lastDigits);
     const drift = (gas.kept[0] ? found.px ** 2 : 0) + (gas.kept[1] ? found.py ** 2 : 0);
     const common = (drift ? drift / (2 * gas.mass) : 0) + (gas.middle && found.inertia ? found.turning ** 2 / (2 * found.inertia) : 0);
-    const temperature = gas.noTemperature ? 0 : (2 * (found.kinetic - common)) / gas.freedoms;
     const events = world.eventsUntil(view.time), from = Math.max(view.time - view.speed, 0);
     const lasted = view.time > 0 ? Math.min(view.time, view.speed) / view.speed : 1;
-    const pressure = this._pressure(world, stage, impulses, view, events);
+    const noTemperature = this._noTemperature(gas, found, tally.contacts(events));
+    const thermal = found.kinetic - common, known = !noTemperature && thermal >= gas.lastDigits * found.kinetic;
+    const temperature = known ? (2 * thermal) / gas.freedoms : 0;
+    const noPressure = noTemperature || gas.noPressure;
+    const pressure = noPressure ? null : this._pressure(world, stage, tally, view, events);
     const tell = (name, text) => { this.values.get(name).textContent = text; };
     tell("events / s", number((events - world.eventsUntil(from)) / lasted));
     tell("energy", number(found.energy, 6));
     tell("momentum", `${number(found.px)}, ${number(found.py)}`);
-    tell("temperature", gas.noTemperature ? "–" : number(temperature, 4));
-    this.values.get("temperature").title = gas.noTemperature || "";
+    tell("temperature", known ? number(temperature, 4) : "–");
+    this.values.get("temperature").title = noTemperature || "";
     tell("pressure", pressure === null ? "–" : number(pressure));
-    const none = gas.noPressure || pressure === null || !temperature;
-    tell("p V / N kT", none ? "–" : number((pressure * gas.area) / (found.count * temperature)));
-    this.values.get("p V / N kT").title = gas.noPressure || "";
+    tell("p V / N kT", pressure === null || !temperature ? "–" : number((pressure * gas.area) / (found.count * temperature)));
+    for (const name of ["pressure", "p V / N kT"]) this.values.get(name).title = noPressure || "";
     this.energy = found.energy;
     this.temperature = temperature;
     this._drawSpeeds(world, state, temperature || (found.count ? found.kinetic / found.count : 0), gas.maxwell, view.dark ? stage.palettes.dark : stage.palettes.light);
   }
 
+  /* Why there is no temperature, as `measure` says; null where there is one. */
+  _noTemperature(gas, { count, xx, xy, yy }, contacts) {
+    if (gas.noTemperature) return gas.noTemperature;
+    const trace = xx + yy;
+    if (trace > 0 && (xx / trace) * (yy / trace) - (xy / trace) ** 2 <= gas.onALine.share) return gas.onALine.why;
+    if (count < gas.few.disks && 2 * contacts < gas.few.contacts * count) return `${contacts} contacts between disks: ${gas.few.why}`;
+    return null;
+  }
+
   /* Momentum that the hard boundary took up per length and time, over the last seconds; null where there is none. */
-  _pressure(world, stage, impulses, view, events) {
+  _pressure(world, stage, tally, view, events) {
     const length = stage.hard.reduce((sum, [p, q]) => sum + Math.hypot(q[0] - p[0], q[1] - p[1]), 0);
     const from = Math.max(view.time - PRESSURE_SECONDS * view.speed, 0);
     if (!length || view.time === from) return null;
-    return (impulses.until(events) - impulses.until(world.eventsUntil(from))) / (length * (view.time - from));
+    return (tally.impulse(events) - tally.impulse(world.eventsUntil(from))) / (length * (view.time - from));
   }
 
   /* The histogram, and the density of speeds in two dimensions: m v / kT exp(-m v^2 / 2 kT), averaged over the masses. */

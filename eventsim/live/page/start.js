@@ -82,7 +82,7 @@ class LiveView {
   }
 
   tell(player) {
-    this.readouts.show(player.world, player.stage, player.gas, player.impulses, player.view);
+    this.readouts.show(player.world, player.stage, player.gas, player.tally, player.view);
     this.series.take(player.view.time, this.readouts.energy, this.readouts.temperature);
     this.series.draw(player.view.dark ? player.stage.palettes.dark : player.stage.palettes.light, player.view.time);
     const done = player.ended !== null && player.view.time >= player.duration;
