@@ -30,15 +30,32 @@ class ExactTimes:
         round thing, coming to rest, sliding over the end of a wall.
         """
         disks = (a,) if b < 0 else (a, b)
-        if b >= 0:
-            reach = Fraction(float(self._stage.radius[a])) + Fraction(float(self._stage.radius[b]))
-            moment = self._of_pair(image, reach, a, b)
-        else:
-            moment = self._of_wall(-1 - b, image, float(self._stage.radius[a]), a)
+        moment = self._root(a, b, image)
         if moment is None:
             return rational(time)
         begin = rational(max(self._state.t[i] for i in disks))
         return begin if order_of(moment, begin) < 0 else moment  # an overlap is due now
+
+    def grazes(self, a: int, b: int, image: tuple[int, int]) -> bool:
+        """Whether round things only touch in passing, from outside: the quadratic has a double root, so nothing approaches."""
+        if b < 0 and not self._is_round(-1 - b, image[0], a):
+            return False
+        moment = self._root(a, b, image)
+        return moment is not None and moment.square == 0
+
+    def _is_round(self, number: int, side: int, i: int) -> bool:
+        """Whether a wall is round where disk i meets it on that side; a post is none for a point, which hits it exactly."""
+        surface = self._stage.surfaces[number]
+        if isinstance(surface, Boundary) or side < 0 or self._stage.is_exact_hit(number, float(self._stage.radius[i])):
+            return False
+        return surface.shape.line() is None
+
+    def _root(self, a: int, b: int, image: tuple[int, int]) -> Moment | None:
+        """The time of a contact as a root of a quadratic; None where it is none."""
+        if b < 0:
+            return self._of_wall(-1 - b, image, float(self._stage.radius[a]), a)
+        reach = Fraction(float(self._stage.radius[a])) + Fraction(float(self._stage.radius[b]))
+        return self._of_pair(image, reach, a, b)
 
     def _of_pair(self, image: tuple[int, int], reach: Fraction, a: int, b: int) -> Moment | None:
         apart: list[Line] = []

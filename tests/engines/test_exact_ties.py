@@ -1,6 +1,7 @@
 """Contacts at exactly one time, which share a disk, are seen as such wherever they fall on the clock."""
 
 import math
+from fractions import Fraction
 
 import pytest
 from mpmath import mp, mpf
@@ -84,6 +85,12 @@ def test_which_wall_of_a_corner_a_disk_meets_first_is_exact(engine):
             0.15625,
             id="where it is passed",
         ),
+        pytest.param(
+            [(1.28125, 1.2578125), (2.1875, 2.9140625), (62.71875, 63.7265625)],
+            [(0.21875, 0.03125), (-0.0625, -0.125), (1.28125, 0.9375)],
+            0.8125,
+            id="where another disk passes it",
+        ),
     ],
 )
 def test_a_tie_is_seen_although_a_disk_passes_a_periodic_border_before(places, velocities, radius, engine):
@@ -125,3 +132,51 @@ def test_a_tie_is_seen_where_all_fly_a_thousand_times_faster_than_they_close(eng
     run = es.simulate(es.Scene(disks, es.Open(), walls, restitution=0.5), until=2.5, engine=engine, log=True)
     assert run.counters.clusters == 1
     assert run.state.velocity[0, 1] == 512.0
+
+
+def beside_a_border(drift, extra):
+    """Disk 0 meets disk 1, and disk 2 nearly along it, at 7.63671875, behind wraps; all drift.
+
+    extra: the speed at which the gap of the latter closes, over .6; 0: they only touch.
+    """
+    time = Fraction("7.63671875")
+    ends = [(Fraction("64.5"), Fraction(32)), (Fraction("64.6875"), Fraction("32.25")), (Fraction("64.25"), Fraction("31.8125"))]
+    speeds = [("0.07421875", 0), ("0.12109375", Fraction("-0.0546875")), ("-0.0078125", Fraction("0.109375") + extra)]
+    velocities = [(Fraction(u) + drift, Fraction(w)) for u, w in speeds]
+    places = [((x - u * time) % 64, y - w * time) for (x, y), (u, w) in zip(ends, velocities, strict=True)]
+    assert all(Fraction(float(number)) == number for place in places for number in place)
+    numbers = ([tuple(map(float, pair)) for pair in pairs] for pairs in (places, velocities))
+    disks = es.Disks(*numbers, 0.15625, [1.0, 2.0, 1.0])
+    return es.Scene(disks, es.Channel((64.0, 64.0)), restitution=0.5, until=11.0)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_graze_takes_no_part_in_a_tie_but_comes_after_it(engine):
+    """Rounding behind a border makes a contact of the graze, 9e-9 too early; decimals tell the velocities."""
+    log = es.simulate(beside_a_border(Fraction(0), Fraction(0)), engine=engine, log=True).log
+    assert list(zip(log.a.tolist(), log.b.tolist(), log.joint.tolist(), strict=True)) == [(0, 1, -1), (0, 2, -1), (0, 1, -1)]
+    assert log.time == pytest.approx(7.63671875, abs=1e-11)
+    assert log.rows["vxa"] == pytest.approx([0.06484375, 0.07384375, 0.07205125], abs=1e-12)
+    assert log.rows["vya"] == pytest.approx([-0.0125, -0.00575, -0.00814], abs=1e-12)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_tie_is_at_the_time_of_the_contact_that_closes_fastest(engine):
+    """The other one closes at 6e-7: its float time is off by 1.7e-9."""
+    run = es.simulate(beside_a_border(Fraction(15, 64), Fraction(1, 2**20)), engine=engine, log=True)
+    assert is_cluster(run)
+    assert run.log.time[:2] == pytest.approx(7.63671875, abs=1e-12)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("radius", "ends"), [(0.5, "digits"), (0.5 - 2**-30, "quiet"), (0.5 + 2**-30, "until")])
+def test_a_disk_that_exactly_fits_between_two_ends_is_not_thrown_back(engine, radius, ends):
+    """It falls through a gap as wide as it is, which rounding would make narrower; a larger one comes back."""
+    arcs = [es.Arc((s * 0.5, 0.4375), (s * 1.5, 1.1875), (s * 2.5, 0.4375)) for s in (1, -1)]
+    disk = es.Disks([(0.0, 4.0)], [(0.0, -0.6875)], radius)
+    run = es.simulate(es.Scene(disk, es.Open(), arcs, gravity=(0.0, -1.0), until=3.0), engine=engine)
+    assert run.stopped == ends
+    if ends != "digits":
+        assert (run.state.velocity[0, 1] > 0.0) == (radius > 0.5)
+    else:
+        assert "whether they meet" in run.reason

@@ -200,29 +200,31 @@ def unsettled(m, grid, i, day, screen):
 def is_tied(m, grid, i, day, screen):
     """Whether the contact of disk i has to be ordered exactly.
 
-    So it is where a contact within the screen shares a disk with it, or may do so, or has exactly its time.
+    So it is where a contact within the screen shares a disk with it, or may do so, or has exactly its time; also one that is
+    hidden behind a wrap or crossing within the screen.
     """
     time, j = real(m.disks, i * REALS + DUE), word(m.disks, i * WORDS + PARTNER)
     for later in range(2):  # what follows on the next day may be within the screen
         k = word(m.disks, bucket(grid, day + later))
         while k != grid.n:
             due, code = real(m.disks, k * REALS + DUE), word(m.disks, k * WORDS + PARTNER)
+            flagged = word(m.disks, k * WORDS + PARTNER_COUNT) & COUNTS != 0
             if k != i and is_contact(code) and may_tie(due, time, screen):
                 mutual = k == j and code == i and due == time
                 shares = code == i or (j >= 0 and (k == j or code == j))
-                flagged = word(m.disks, k * WORDS + PARTNER_COUNT) & COUNTS != 0
                 if not mutual and (shares or flagged or due == time):
                     return True
-            elif _may_hide_another(j, code, grid.posts) and may_tie(due, time, screen):
+            elif _may_hide_another(j, code, flagged, grid.posts) and may_tie(due, time, screen):
                 return True
             k = word(m.disks, k * WORDS + NEXT)
     return False
 
 
 @inline
-def _may_hide_another(j, code, posts):
-    """Whether behind a wrap or crossing a contact with disk j may follow at once: posts do not foresee it."""
-    return False if posts is None else j >= 0 and NOTHING < code < 0
+def _may_hide_another(j, code, flagged, posts):
+    """Whether behind a wrap or crossing a contact may follow at once: it is flagged then; but posts do not foresee it, with j."""
+    hides = flagged if posts is None else flagged or j >= 0
+    return hides and NOTHING < code < 0
 
 
 @inline

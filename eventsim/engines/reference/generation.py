@@ -12,7 +12,8 @@ from eventsim.scene.stage import Stage
 class Ties:
     """Decides the order of contacts so close in time that floats cannot: from the flights of one run, exactly.
 
-    Contacts that only share a float time are no cluster; those whose exact times are equal are one.
+    Contacts that only share a float time are no cluster; those whose exact times are equal are one.  A graze, at which nothing
+    approaches, is left out of it: what another contact makes of it comes after that.
     """
 
     def __init__(self, stage: Stage, state: ExactState) -> None:
@@ -36,7 +37,10 @@ class Ties:
         for moment in moments:
             if order_of(moment, first) < 0:
                 first = moment
-        return [event for event, moment in zip(component, moments, strict=True) if order_of(moment, first) == 0]
+        tied = [event for event, moment in zip(component, moments, strict=True) if order_of(moment, first) == 0]
+        if len(tied) == 1:
+            return tied
+        return [event for event in tied if not self._moments.grazes(event.a, event.b, event.image)] or tied
 
 
 def disks_of(event: Event) -> list[int]:

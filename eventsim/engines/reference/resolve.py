@@ -12,15 +12,17 @@ from eventsim.engines.reference.instants import Instants
 from eventsim.engines.reference.ledger import Ledger, Row
 from eventsim.engines.reference.masses import Masses
 from eventsim.engines.reference.rests import Rests
-from eventsim.engines.reference.unresolvable import joint_under, lawful, rough_joint
+from eventsim.engines.reference.unresolvable import grazed_at_once, joint_under, lawful, rough_joint
 from eventsim.formulas.careful_impulse import careful_pair_update, careful_wall_update
 from eventsim.formulas.chance import flux
+from eventsim.formulas.doubt import AT_ONCE, contact_doubt, round_size
 from eventsim.formulas.impulse import along, approach_speed, flat_update, heated, pair_update, wall_update
 from eventsim.formulas.laws import Own, Treatment
-from eventsim.formulas.real import Real, sqrt
+from eventsim.formulas.real import NEVER, Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
 from eventsim.formulas.rough import SMOOTH, Roughness, grip_strength, gripped, pair_grip, wall_grip
 from eventsim.formulas.simultaneous import JointContact, Outcome, are_apart, resolve_together
+from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
@@ -278,9 +280,44 @@ class Resolver:
         return u, w
 
     def _time_of(self, component: list[Event]) -> Real:
-        """When to resolve a cluster, whose exact times are equal: at the first float one, but in no disk's past."""
+        """When to resolve a cluster, whose exact times are equal: at the first float one, but in no disk's past.
+
+        Where these are further apart than last bits, something closes so slowly that floats hardly tell when: then at that of
+        the contact which closes fastest.
+        """
         begun = max(self._state.t[i] for event in component for i in disks_of(event))
-        return max(begun, min(event.time for event in component))
+        times = [event.time for event in component]
+        first = min(times)
+        if max(times) - first > AT_ONCE * first:
+            first = max(component, key=self._approach).time
+        return max(begun, first)
+
+    def _may_be_a_graze(self, event: Event) -> bool:
+        """Whether a contact with something round is so tangential that rounding may have made it."""
+        state, stage, a, b = self._state, self._stage, event.a, event.b
+        reach = self._radius[a]
+        if b < 0:
+            surface = stage.surfaces[-1 - b]
+            if isinstance(surface, Boundary) or surface.shape.line() is not None or event.image[0] < 0:
+                return False
+        else:
+            reach += self._radius[b]
+        if not reach > 0.0:
+            return False
+        at = [(*state.place(i, event.time), *state.speed(i, event.time), event.time - state.t[i]) for i in disks_of(event)]
+        size = sum(abs(x) + abs(y) + math.hypot(u, w) * lag for x, y, u, w, lag in at)
+        (_, _, u, w, _), (ub, wb) = at[0], at[1][2:4] if b >= 0 else (0.0, 0.0)
+        bend = ((u - ub) ** 2 + (w - wb) ** 2) / reach
+        return bool(contact_doubt(round_size(size, reach, reach, 0.0), self._approach(event), bend, event.time) == NEVER)
+
+    def _approach(self, event: Event) -> Real:
+        """The speed at which the gap of a contact closes."""
+        state, a, b, t = self._state, event.a, event.b, event.time
+        at, (u, w) = state.place(a, t), state.speed(a, t)
+        if b < 0:
+            return approach_speed(*self._towards(event, *at, u, w), u, w)
+        ub, wb = state.speed(b, t)
+        return approach_speed(*self._apart(event, *at, *state.place(b, t)), u - ub, w - wb)
 
     def _joint(self, component: list[Event]) -> list[int]:
         """A cluster: the velocities after it from the law of simultaneous contacts; disks that get no impulse fly on."""
@@ -310,6 +347,8 @@ class Resolver:
             raise rough_joint(disks)
         outcome = self._together(contacts, before, [self._masses.of(i) for i in disks])
         active = [k for k, taken in enumerate(outcome.active) if taken]
+        if active and state.number is float and all(map(self._may_be_a_graze, component)):
+            raise grazed_at_once(disks)
         if not active and stage.gravity is not None:
             return self.resolve(component[:1])  # gravity closes these gaps: they are met, one by one
         changed = sorted({i for k in active for i in component[k][2:4] if i >= 0})

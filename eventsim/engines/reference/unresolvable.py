@@ -49,6 +49,19 @@ class UnlawfulError(Exception):
     """The law of the scene does not say what becomes of contacts."""
 
 
+class GrazesError(UnlawfulError):
+    """Contacts of one instant that rounding may have made."""
+
+
+def grazed_at_once(disks: list[int]) -> GrazesError:
+    """Contacts of one instant that share disks, all with round things and all along them."""
+    graze = "grazes" if len(disks) == 1 else "graze"
+    return GrazesError(
+        f"{named(disks)} {graze} round things at one instant: whether they meet, and are squeezed, or pass each other, float64 "
+        "cannot tell; a start that differs by more than the last bits can be told"
+    )
+
+
 def joint_under(law: str, disks: list[int]) -> UnlawfulError:
     """Contacts of one instant that share disks, under a law that says nothing of such."""
     have = "has" if len(disks) == 1 else "have"
@@ -87,7 +100,7 @@ def lawful(law: Own, event: Event, usual: float, since_a: Real, since_b: Real, a
 def refused(error: SqueezedError | TwoSupportsError | UnlawfulError, component: list[Event]) -> tuple[str, str]:
     """A cluster that no impulses part, a disk on two walls, or what no law tells: why a run stops, and a sentence on it."""
     if isinstance(error, UnlawfulError):
-        return "law", str(error)
+        return "digits" if isinstance(error, GrazesError) else "law", str(error)
     if isinstance(error, TwoSupportsError):
         return "collapse", str(error)
     disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
