@@ -758,7 +758,7 @@ class Tiles:
         self.origin, self.cell_of = np.zeros(room, np.int32), np.zeros(room, np.int32)
         self.sizes = np.zeros(int(widest) ** 2 + 1, np.int32)
         self.near_list = aligned(9 * DEPTH + 32, np.int32)
-        self._make_room(1024)
+        self._make_room(n // 2 + 1024)
         self.out = aligned(BLOCK * REALS, np.float64)
 
     def _make_room(self, rows: int) -> None:
@@ -804,21 +804,21 @@ class Tiles:
         for tile in range(len(self.first_cells) - 1):
             q, p = divmod(tile, per_row)
             wider = halo
-            while (status := self._tile(p, q, end, wider, limits, clock)) == MARK:
+            while (status := self._tile(p, q, end, wider, limits, clock)) not in (DONE, NO_ROOM):
                 self.redone["tiles"] += 1
                 if wider == self.most_halo:
-                    raise SystemExit("no halo is wide enough: make tiles larger or windows shorter")
+                    raise SystemExit(f"tile {p}, {q}: status {status}: a window for the ordinary loop, which is left out here")
                 wider = min(wider + max(2, halo // 2), self.most_halo)
                 limits = self._limits(end, wider)
             if wider != halo:
                 limits = self._limits(end, halo)
             if status == NO_ROOM and counts[CURSOR] >= 0 and len(self.keys) < self.n * 8:
-                self._make_room(max(2 * len(self.keys), 1024))
+                self._make_room(len(self.keys) * 5 // 4)
                 self.redone["rows"] += 1
                 self.most[FASTEST] = fastest
                 return self._try(end, halo)
             if status != DONE:
-                raise SystemExit(f"tile {p}, {q}: status {status}: a window for the ordinary loop, which this experiment leaves out")
+                raise SystemExit(f"tile {p}, {q}: no room")
             with self.spent.on("write"):
                 write_tile(
                     self.arrays, self.grid, self.frame, self.rules, self.new, self.new_start,
