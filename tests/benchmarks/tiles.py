@@ -47,7 +47,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from eventsim.engines.base import Stop
-from eventsim.engines.fast import layout
+from eventsim.engines.fast import FastOptions, layout
 from eventsim.engines.fast.advance import anchor, place, speed, wrap
 from eventsim.engines.fast.calendar import NO_DAY, bucket, first, is_mutual, is_stale, is_tied, push, take, unsettled
 from eventsim.engines.fast.cells import place_in
@@ -118,7 +118,7 @@ AFRESH = -1.0
 
 DEPTH = 4
 
-MARGIN = 2
+MARGIN = 3
 """So many cells behind the near ones disks are followed to the end."""
 
 DONE, TIE, FULL, STUCK, MARK, NO_ROOM, ENDLESS = range(7)
@@ -952,9 +952,9 @@ def compare(tiles: Tiles, session: FastSession, mine: list[Any], theirs: list[An
     return len(ours)
 
 
-def warm_session(n: int, eta: float, contacts: float) -> FastSession:
+def warm_session(n: int, eta: float, contacts: float, lanes: bool | None = None) -> FastSession:
     """A session of the fast engine, so many contacts per disk old."""
-    session = FastSession(stage_of(lattice_gas(n, eta)), keep_rows=True)
+    session = FastSession(stage_of(lattice_gas(n, eta)), keep_rows=True, options=FastOptions(lanes=lanes))
     while session.advance(Stop(events=int(contacts * n / 2.0)), 1 << 20) is None:
         session.take_rows()
     session.take_rows()
@@ -989,9 +989,10 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=0, help="how often rates are measured")
     parser.add_argument("--per-repeat", type=int, default=4, help="windows in each of them")
     parser.add_argument("--warm-up", type=float, default=10.0, help="contacts per disk before anything is looked at")
+    parser.add_argument("--lanes", choices=("auto", "on", "off"), default="auto", help="eight pairs at a time, in both loops")
     parser.add_argument("--afresh", action="store_true", help="predict all disks in each window")
     chosen = parser.parse_args()
-    session = warm_session(chosen.n, chosen.eta, chosen.warm_up)
+    session = warm_session(chosen.n, chosen.eta, chosen.warm_up, {"auto": None, "on": True, "off": False}[chosen.lanes])
     step = chosen.window * pace(session)
     tiles = Tiles(session, chosen.side, chosen.halo, chosen.near, chosen.afresh)
     print(f"n {tiles.n}, eta {chosen.eta}, cells {tiles.grid.columns} x {tiles.grid.rows}, tiles "
