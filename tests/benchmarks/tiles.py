@@ -401,6 +401,7 @@ def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, seat, origi
                 column += 1
                 cell += 1
     counts[DISKS] = n
+    day = day_at(grid, frame.begin)
     for i in range(n):
         met = word(m.disks, i * WORDS + MET)
         if met >= 0:
@@ -414,7 +415,6 @@ def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, seat, origi
             store(m.disks, i * WORDS + PARTNER, k if there else NOTHING)
             if not there:
                 store(m.disks, i * REALS + DUE, AFRESH)
-    day = day_at(grid, frame.begin)
     for i in range(n):
         if (afresh or real(m.disks, i * REALS + DUE) < 0.0) and frame.begin < limit_of(m, grid, frame, limit, i):
             predict_in_tile(m, grid, frame, rules, i, frame.begin, frame.begin)
@@ -674,6 +674,12 @@ def turn_over_records(arrays, rules, n, end, shift):
         store(m.disks, i * REALS + DUE, AFRESH)
 
 
+EVENT_DAYS = 1.4
+"""Days of the calendar for each event."""
+
+LARGE = 1 << 23
+"""Bytes from which on the system gives large pages."""
+
 BLOCK = 1 << 13
 """Rows that are handed out at once, as the ordinary loop does."""
 
@@ -711,6 +717,7 @@ class Tiles:
         self.window, self.window_end, self.window_rows = state.window, float(state.window_end), state.window_rows
         self.events = int(machine.counts[layout.EVENTS])
         self.radius = float(self.stage.radius[0])
+        self.chosen_events = 0.8 / pace(session)  # of a disk in a time, about
         columns, rows = self.grid.columns, self.grid.rows
         self.x_edges, self.y_edges = _edges(columns, side), _edges(rows, side)
         widest = max(np.diff(self.x_edges).max(), np.diff(self.y_edges).max())
@@ -749,11 +756,13 @@ class Tiles:
         self.seat, self.seals = np.zeros(n, np.int32), np.zeros(n, np.int64).view(np.float64)
         largest = (int(widest) + 2 * self.most_halo) ** 2
         room = min(n, int(1.1 * n * largest / cells + 6.0 * math.sqrt(largest)) + 64)
-        days = 1 << max(6, (2 * room).bit_length() - 1)
+        days = 1 << max(6, (2 * room).bit_length())
         self.grid = self.grid._replace(n=room, days=days)
-        self.local = aligned((room + 1) * REALS + (days + WAITING) // 2, np.float64)
+        numbers = (room + 1) * REALS + (days + WAITING) // 2
+        self.local = aligned(max(numbers, LARGE // 8), np.float64)  # so it has large pages
         self.local[room * REALS : room * REALS + 6] = np.nan
         self.local[: (room + 1) * REALS].view(np.int32).reshape(-1, WORDS)[room, MET] = NOBODY
+        self.per_cell = n / cells
         self.slots = aligned(DEPTH * (int(widest) + 2 * self.most_halo + 2) ** 2 + 16, np.int32)
         self.origin, self.cell_of = np.zeros(room, np.int32), np.zeros(room, np.int32)
         self.sizes = np.zeros(int(widest) ** 2 + 1, np.int32)
@@ -856,8 +865,10 @@ class Tiles:
             self.now,
             end,
         )
-        day = (end - self.now) / (0.25 * grid.days)
-        self.grid = grid = grid._replace(day_length=day, days_per_time=1.0 / day)
+        events = self.per_cell * self.frame.columns * self.frame.rows * self.chosen_events * (end - self.now)
+        days = 1 << max(6, int(EVENT_DAYS * events)).bit_length()
+        day = (end - self.now) / (EVENT_DAYS * events)
+        self.grid = grid = grid._replace(days=days, day_length=day, days_per_time=1.0 / day)
         with self.spent.on("load"):
             status = load_tile(
                 self.arrays, grid, self.frame, self.rules, limits, self.old, self.start, self.tiles, self.seat,
@@ -961,6 +972,10 @@ def warm_session(n: int, eta: float, contacts: float, lanes: bool | None = None)
     return session
 
 
+LANES = {"auto": None, "on": True, "off": False}
+SMALL_CONTACTS = 100_000
+
+
 def pace(session: FastSession) -> float:
     """The mean time of a disk from contact to contact."""
     state, counts = session.state, session._machine.counts
@@ -992,7 +1007,7 @@ def main() -> None:
     parser.add_argument("--lanes", choices=("auto", "on", "off"), default="auto", help="eight pairs at a time, in both loops")
     parser.add_argument("--afresh", action="store_true", help="predict all disks in each window")
     chosen = parser.parse_args()
-    session = warm_session(chosen.n, chosen.eta, chosen.warm_up, {"auto": None, "on": True, "off": False}[chosen.lanes])
+    session = warm_session(chosen.n, chosen.eta, chosen.warm_up, LANES[chosen.lanes])
     step = chosen.window * pace(session)
     tiles = Tiles(session, chosen.side, chosen.halo, chosen.near, chosen.afresh)
     print(f"n {tiles.n}, eta {chosen.eta}, cells {tiles.grid.columns} x {tiles.grid.rows}, tiles "
@@ -1000,32 +1015,37 @@ def main() -> None:
     rows = check(tiles, session, step, chosen.windows)
     print(f"{chosen.windows} windows, {rows} rows: the same, bit for bit; done once more: {tiles.redone}; near {tiles.near}")
     if chosen.repeats:
-        rates(tiles, session, step, chosen.repeats, chosen.per_repeat)
+        rates(tiles, session, step, chosen)
 
 
-def rates(tiles: Tiles, session: FastSession, step: float, repeats: int, windows: int) -> None:
-    """Time both loops in turn."""
-    ratios, contacts = [], 0
+def rates(tiles: Tiles, session: FastSession, step: float, chosen: Any) -> None:
+    """Time both loops in turn, and the ordinary one with a system that the caches hold."""
+    ratios, in_caches, contacts = [], [], 0
+    small = warm_session(4000, chosen.eta, 10.0, LANES[chosen.lanes])
     tiles.spent = Spent()
     tiles.counts[[PREDICTED, STEPS, CONTACTS]] = 0
     total = 0.0
-    for _ in range(repeats):
+    for _ in range(chosen.repeats):
         begun, events = process_time(), tiles.events
-        for _ in range(windows):
+        for _ in range(chosen.per_repeat):
             tiles.advance(tiles.now + step, False)
         between = process_time()
         advance_ordinary(session, tiles.epoch, tiles.now, False)
         ended = process_time()
         done = tiles.events - events
+        while small.advance(Stop(events=small.counters.events + SMALL_CONTACTS), 1 << 20) is None:
+            small.take_rows()
+        small.take_rows()
+        in_caches.append((process_time() - ended) / SMALL_CONTACTS)
         assert int(session._machine.counts[layout.EVENTS]) == tiles.events
         contacts += done
         total += between - begun
         ratios.append((ended - between) / (between - begun))
         print(f"  ns per contact: tiles {1e9 * (between - begun) / done:.0f}, ordinary {1e9 * (ended - between) / done:.0f}, "
-              f"ratio {ratios[-1]:.2f}", flush=True)
+              f"with 4000 disks {1e9 * in_caches[-1]:.0f}, ratio {ratios[-1]:.2f}", flush=True)
     parts = ", ".join(f"{what} {1e9 * seconds / contacts:.0f}" for what, seconds in tiles.spent.seconds.items())
     counts = tiles.counts
-    print(f"ratio, median of {repeats}: {statistics.median(ratios):.2f} (CPU time); ns per contact: {parts}; all {1e9 * total / contacts:.0f}")
+    print(f"ratio, median of {chosen.repeats}: {statistics.median(ratios):.2f} (CPU time); ns per contact: {parts}; all {1e9 * total / contacts:.0f}")
     print(f"contacts done / logged {counts[CONTACTS] / contacts:.3f}, steps {counts[STEPS] / contacts:.2f}, predictions "
           f"{counts[PREDICTED] / contacts:.2f} per logged contact; done once more: {tiles.redone}")
 
