@@ -67,6 +67,8 @@ from eventsim.engines.fast.layout import (
     LEFT,
     LINK,
     MET,
+    MET_KX,
+    MET_KY,
     NEXT,
     NOBODY,
     NOTHING,
@@ -110,8 +112,11 @@ between windows, and local places within one."""
 ABSENT = -3
 """MET of a disk that met, last, one that its tile does not see: ABSENT - its name."""
 
-MARKED, OWNED, NEAR = 16, 32, 64
-"""Flags of a disk in a tile: may be wrong; in its cells at the beginning of the window; near them."""
+MARKED, OWNED, NEAR, TOLD, STRIP = 16, 32, 64, 128, 256
+"""Flags of a disk in a tile: may be wrong; in its cells at the beginning of the window; near them; of a tile that is done, which has
+told all its flights; owned, and near the border."""
+
+KINDS = MARKED | OWNED | NEAR | TOLD | STRIP
 
 AFRESH = -1.0
 """DUE of a disk that has to be predicted."""
@@ -124,8 +129,9 @@ MARGIN = 3
 DONE, TIE, FULL, STUCK, MARK, NO_ROOM, ENDLESS = range(7)
 """Why a tile comes to an end."""
 
-DISKS, CURSOR, MISSES, PREDICTED, STEPS, CONTACTS, OUT = range(7)
-"""Places in `counts`: disks in the tile; rows of the window; seals that differ; all predictions, steps, contacts; disks written."""
+DISKS, CURSOR, MISSES, PREDICTED, STEPS, CONTACTS, OUT, SAID, PUT_RIGHT = range(9)
+"""Places in `counts`: disks in the tile; rows of the window; seals that differ; all predictions, steps, contacts; disks written;
+flights told; flights that a tile was told and had not found."""
 
 FASTEST, OVERLAP = range(2)
 """Places in `most`: the largest square of a speed, the deepest overlap."""
@@ -207,6 +213,8 @@ def outside(frame, column, row):
 @inline
 def limit_of(m, grid, frame, limits, i):
     """Until when a disk is followed where it is."""
+    if flags_of(m, i) & (OWNED | TOLD):
+        return frame.end
     column = local_column(grid, frame, word(m.disks, i * WORDS + COLUMN))
     row = local_row(grid, frame, word(m.disks, i * WORDS + ROW))
     return real(limits, max(0, outside(frame, column, row)))
@@ -351,12 +359,33 @@ def day_at(grid, time):
     return int(time * grid.days_per_time)
 
 
+@inline
+def is_done(grid, frame, tiles, done, per_row, column, row):
+    """Whether the tile of a cell, given by its place in this tile, is done; no cell beyond this tile counts as another one's."""
+    column, row = min(max(column, 1), frame.columns), min(max(row, 1), frame.rows)
+    across = tiles[3 * ((frame.first_column + column - 1) % grid.columns)]
+    along = tiles[3 * (grid.columns + (frame.first_row + row - 1) % grid.rows)]
+    return done[along * per_row + across] != 0
+
+
+@inline
+def is_close(grid, frame, tiles, done, per_row, column, row):
+    """Whether a cell of a tile that is done is close to one of a tile that is not."""
+    near = frame.near
+    return not (
+        is_done(grid, frame, tiles, done, per_row, column - near, row - near)
+        and is_done(grid, frame, tiles, done, per_row, column + near, row - near)
+        and is_done(grid, frame, tiles, done, per_row, column - near, row + near)
+        and is_done(grid, frame, tiles, done, per_row, column + near, row + near)
+    )
+
+
 @kernel
-def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, seat, origin, counts, afresh):
+def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, done, seat, origin, counts, afresh):
     """Copy the disks of a tile and of its halo, put them into its slots and calendar; the status.
 
     tiles: for each column, then for each row of the box: the number of its tile along the axis, where that begins, where it ends;
-    then for each tile the number of its first cell.
+    then for each tile the number of its first cell.  done: which tiles are done; of these only what is close to others is loaded.
     """
     m = pointers(arrays)
     source, room = pointer(old), grid.n
@@ -381,17 +410,26 @@ def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, seat, origi
             cell = tiles[cells + tile_row * per_row + tile] + (row - row_begin) * (end - begin) + in_box - begin
             if n + start[cell + last - column + 1] - start[cell] > room:
                 return NO_ROOM
+            told = done[tile_row * per_row + tile] != 0
             while column <= last:
                 out = outside(frame, column, local)
                 kind = OWNED if out <= 0 else (NEAR if out <= frame.near else 0)
-                if out == frame.halo:
+                if told:
+                    if not is_close(grid, frame, tiles, done, per_row, column, local):
+                        column += 1
+                        cell += 1
+                        continue
+                    kind |= TOLD
+                elif out == frame.halo:
                     kind |= MARKED
+                elif -frame.near < out <= 0:
+                    kind |= STRIP
                 slot = slot_at(frame, column, local)
                 if start[cell + 1] - start[cell] > DEPTH:
                     return FULL
                 for k in range(start[cell], start[cell + 1]):
                     copy_record(m.disks, n, source, k)
-                    flags = flags_of(m, n) & ~(MARKED | OWNED | NEAR)
+                    flags = flags_of(m, n) & ~KINDS
                     store(m.disks, n * WORDS + FLAGS, flags | kind)
                     store(names, word(m.disks, n * WORDS + ID), n)
                     store(back, n, k)
@@ -427,10 +465,63 @@ def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, seat, origi
 
 
 @kernel
-def run_tile(arrays, grid, frame, rules, limits, clock, keys, sums, counts, most, budget):
-    """Let the disks of a tile live until the end of the window; the status."""
+def collect_told(arrays, said, begin, end, seat, counts, count, times, told):
+    """List the flights said[begin:end] of a neighbour that concern disks of this tile, behind the first `count`; the new count."""
+    m, source, names = pointers(arrays), pointer(said), pointer(seat)
+    n = counts[DISKS]
+    for k in range(begin, end):
+        name = word(source, k * WORDS + ID)
+        i = word(names, name)
+        if i < n and word(m.disks, i * WORDS + ID) == name and flags_of(m, i) & TOLD:
+            times[count] = real(source, k * REALS + T)
+            told[count] = k
+            count += 1
+    return count
+
+
+@inline
+def tell(m, said, place_, i):
+    """Write down the flight of disk i that has just begun."""
+    copy_record(said, place_, m.disks, i)
+    store(said, place_ * WORDS + MET, name_of(m, word(m.disks, i * WORDS + MET)))
+
+
+@inline
+def is_known(m, i, source, k):
+    """Whether disk i flies as it is told to."""
+    same = True
+    for number in range(5):
+        same &= bits(m.disks, i * REALS + number) == bits(source, k * REALS + number)
+    return same
+
+
+@inline
+def fly_as_told(m, i, source, k, names, n):
+    for number in range(5):
+        store(m.disks, i * REALS + number, real(source, k * REALS + number))
+    store(m.disks, i * REALS + CONTACT_TIME, real(source, k * REALS + CONTACT_TIME))
+    store(m.disks, i * WORDS + COUNT, word(source, k * WORDS + COUNT))
+    store(m.disks, i * WORDS + AT_ONCE, word(source, k * WORDS + AT_ONCE))
+    store(m.disks, i * WORDS + MET_KX, word(source, k * WORDS + MET_KX))
+    store(m.disks, i * WORDS + MET_KY, word(source, k * WORDS + MET_KY))
+    met = word(source, k * WORDS + MET)
+    if met >= 0:
+        j = word(names, met)
+        met = j if j < n and word(m.disks, j * WORDS + ID) == met else ABSENT - met
+    store(m.disks, i * WORDS + MET, met)
+
+
+@kernel
+def run_tile(
+    arrays, grid, frame, rules, limits, clock, keys, sums, counts, most, budget, said, seat, told, number_told
+):
+    """Let the disks of a tile live until the end of the window; the status.
+
+    said: flights that tiles tell others; told: places there of those that this one is told, in the order of time.
+    """
     m = pointers(arrays)
-    limit = pointer(limits)
+    limit, source, names = pointer(limits), pointer(said), pointer(seat)
+    heard, right, saying, room_to_say = 0, 0, counts[SAID], len(said) // REALS - 2
     day = day_at(grid, frame.begin)
     cursor, steps, contacts, predicted = counts[CURSOR], 0, 0, 0
     fastest, deepest = most[FASTEST], most[OVERLAP]
@@ -438,10 +529,21 @@ def run_tile(arrays, grid, frame, rules, limits, clock, keys, sums, counts, most
     status = ENDLESS
     while steps < budget:
         i, day, others, _ = first(m, grid, day, frame.end, NO_DAY, rules.tie_screen)
-        if i < 0:
-            status = DONE
-            break
-        now = real(m.disks, i * REALS + DUE)
+        now = real(m.disks, i * REALS + DUE) if i >= 0 else frame.end
+        if heard < number_told:
+            k = told[heard]
+            since = real(source, k * REALS + T)
+            if since < now:
+                heard += 1
+                i = word(names, word(source, k * WORDS + ID))
+                if not is_known(m, i, source, k):
+                    take(m, i)
+                    fly_as_told(m, i, source, k, names, counts[DISKS])
+                    predict_in_tile(m, grid, frame, rules, i, since, since)
+                    push_in_time(m, grid, frame, limit, i, day)
+                    predicted += 1
+                    right += 1
+                continue
         if not now < frame.end:
             status = DONE
             break
@@ -483,6 +585,15 @@ def run_tile(arrays, grid, frame, rules, limits, clock, keys, sums, counts, most
                     cursor += 1
                     deepest = overlap if overlap > deepest else deepest
                 contacts += 1
+                if flags_of(m, i) & STRIP:
+                    tell(m, source, saying, i)
+                    saying += 1
+                if flags_of(m, code) & STRIP:
+                    tell(m, source, saying, code)
+                    saying += 1
+                if saying >= room_to_say:
+                    status = NO_ROOM
+                    break
                 fastest = max(fastest, max(square_of_speed(m, i), square_of_speed(m, code)))
                 predict_in_tile(m, grid, frame, rules, code, now, now)
                 push_in_time(m, grid, frame, limit, code, day)
@@ -513,7 +624,8 @@ def run_tile(arrays, grid, frame, rules, limits, clock, keys, sums, counts, most
     counts[CONTACTS] += contacts
     counts[PREDICTED] += predicted
     if status == DONE:
-        counts[CURSOR] = cursor
+        counts[CURSOR], counts[SAID] = cursor, saying
+        counts[PUT_RIGHT] += right
         most[FASTEST], most[OVERLAP] = fastest, deepest
     return status
 
@@ -577,7 +689,7 @@ def write_tile(arrays, grid, frame, rules, new, start, first_cell, seals, origin
                 store(m.disks, i * WORDS + FLAGS, flags & ~EDGE | EDGE if edge else flags & ~EDGE)
                 store(m.disks, i * REALS + DUE, AFRESH)
             fastest = max(fastest, square_of_speed(m, i))
-        if flags & NEAR or out > -3 * frame.near:
+        if flags & (NEAR | STRIP) and not flags & TOLD:
             misses += sealed_otherwise(m, i, sealed, word(back, i))
     total = counts[OUT]
     for cell in range(width * height):
@@ -725,7 +837,7 @@ class Tiles:
         self.most_halo = min(4 * halo, (min(columns, rows) - int(widest)) // 2 - 1)
         self._lay_out(state, widest)
         self.sums, self.most = np.zeros(6), np.zeros(2)
-        self.counts = np.zeros(7, np.int64)
+        self.counts = np.zeros(9, np.int64)
         self.most[0] = float((state.disks[:n, VX] ** 2 + state.disks[:n, VY] ** 2).max())
         self.spent = Spent()
         self.redone = {"tiles": 0, "windows": 0, "near": 0, "rows": 0}
@@ -767,10 +879,16 @@ class Tiles:
         self.origin, self.cell_of = np.zeros(room, np.int32), np.zeros(room, np.int32)
         self.sizes = np.zeros(int(widest) ** 2 + 1, np.int32)
         self.near_list = aligned(9 * DEPTH + 32, np.int32)
-        self._make_room(n // 2 + 1024)
+        self.done = np.zeros(len(self.first_cells) - 1, np.int64)
+        self.ranges: dict[int, tuple[int, int]] = {}
+        strips = min(1.0, 4.4 * self.near / float(widest))
+        self._make_room(n // 2 + 1024, int(strips * n) + 1024)
         self.out = aligned(BLOCK * REALS, np.float64)
 
-    def _make_room(self, rows: int) -> None:
+    def _make_room(self, rows: int, flights: int) -> None:
+        """Room for so many rows, and for so many flights that are told."""
+        self.said = aligned(flights * REALS, np.float64)
+        self.told_times, self.told = np.zeros(flights), np.zeros(flights, np.int32)
         self.rows, self.keys = aligned(rows * REALS, np.float64), np.zeros(rows)
         self.order, self.heads = np.zeros(rows, np.int32), np.zeros(rows + 1, np.int32)
         self.arrays = Arrays(self.local, self.slots, self.near_list, *[None] * 12, self.rows, None, None, None)
@@ -804,7 +922,9 @@ class Tiles:
     def _try(self, end: float, halo: int) -> bool:
         """Do all tiles; whether all seals agree and nothing was too fast."""
         counts, fastest = self.counts, float(self.most[FASTEST])
-        counts[[CURSOR, MISSES, OUT]] = 0
+        counts[[CURSOR, MISSES, OUT, SAID]] = 0
+        self.done[:] = 0
+        self.ranges.clear()
         clock = self._clock()
         with self.spent.on("seals"):
             self.seals[:] = 0.0
@@ -812,7 +932,7 @@ class Tiles:
         limits = self._limits(end, halo)
         for tile in range(len(self.first_cells) - 1):
             q, p = divmod(tile, per_row)
-            wider = halo
+            wider, said = halo, int(counts[SAID])
             while (status := self._tile(p, q, end, wider, limits, clock)) not in (DONE, NO_ROOM):
                 self.redone["tiles"] += 1
                 if wider == self.most_halo:
@@ -822,12 +942,13 @@ class Tiles:
             if wider != halo:
                 limits = self._limits(end, halo)
             if status == NO_ROOM and counts[CURSOR] >= 0 and len(self.keys) < self.n * 8:
-                self._make_room(len(self.keys) * 5 // 4)
+                self._make_room(len(self.keys) * 5 // 4, len(self.told) * 5 // 4)
                 self.redone["rows"] += 1
                 self.most[FASTEST] = fastest
                 return self._try(end, halo)
             if status != DONE:
                 raise SystemExit(f"tile {p}, {q}: no room")
+            self.ranges[tile], self.done[tile] = (said, int(counts[SAID])), 1
             with self.spent.on("write"):
                 write_tile(
                     self.arrays, self.grid, self.frame, self.rules, self.new, self.new_start,
@@ -871,16 +992,30 @@ class Tiles:
         self.grid = grid = grid._replace(days=days, day_length=day, days_per_time=1.0 / day)
         with self.spent.on("load"):
             status = load_tile(
-                self.arrays, grid, self.frame, self.rules, limits, self.old, self.start, self.tiles, self.seat,
+                self.arrays, grid, self.frame, self.rules, limits, self.old, self.start, self.tiles, self.done, self.seat,
                 self.origin, counts, self.afresh,
             )  # fmt: skip
         if status == DONE:
+            with self.spent.on("told"):
+                told = self._told(p, q)
             with self.spent.on("run"):
                 status = run_tile(
                     self.arrays, grid, self.frame, self.rules, limits, clock, self.keys, self.sums, counts, self.most,
-                    100 * int(counts[DISKS]) + 1000,
+                    100 * int(counts[DISKS]) + 1000, self.said, self.seat, told, len(told),
                 )  # fmt: skip
         return int(status)
+
+    def _told(self, p: int, q: int) -> Any:
+        """Places of the flights that the neighbours of a tile tell it, in the order of time."""
+        across, along = len(self.x_edges) - 1, len(self.y_edges) - 1
+        around = {((q + j) % along) * across + (p + i) % across for i in (-1, 0, 1) for j in (-1, 0, 1)}
+        count = 0
+        for tile in sorted(around & self.ranges.keys()):
+            begin, end = self.ranges[tile]
+            count = collect_told(
+                self.arrays, self.said, begin, end, self.seat, self.counts, count, self.told_times, self.told
+            )
+        return self.told[:count][np.argsort(self.told_times[:count], kind="stable")]
 
     def _merged(self, end: float, keep: bool) -> list[Any]:
         """The rows of the window, in order."""
