@@ -1,4 +1,4 @@
-"""An experiment: a gas in tiles, each with a calendar of its own, through windows of time; the rows are those of the ordinary loop.
+"""An experiment: a gas in tiles, each with its own calendar, through windows of time; the rows are those of the ordinary loop.
 
     python -m tests.benchmarks.tiles [--n 100000] [--eta 0.5] [--side 96] [--halo 8] [--window 1.0] [--windows 8] [--check]
 
@@ -12,17 +12,19 @@ cell, so what a tile needs is read in a few long streams.  In a window of time e
    in the halo is followed the shorter, the further out it is: behind its limit nothing that it does can matter.
 3. It logs the contacts whose first disk it owns, and writes the disks that are in its cells at the end of the window to the
    second copy of all records, again cell by cell.
+4. It tells those of its neighbours that are still to be done each flight of its disks near the border.  They load no more of it
+   than a strip, whose disks fly as they are told.  So a border costs a halo on one side only.
 
-What a tile says of its neighbours' disks is a guess, and so is what they say of its own.  It is checked, not believed.  Each disk
-that is within `near` cells of the border between two tiles has a seal: a number made of its last flight, its last contact and its
-count of flights.  The first tile that sees the disk writes the seal, others compare.  If all seals agree, each tile saw right
-what its own disks can have met: then all tiles together are one motion that keeps all laws from the same beginning, and there is
-only one.  `near` has to be so wide that nothing from further away comes as far, twice the way of the fastest disk and a
-diameter: that is checked, too, with the speeds that there were.  So there is no zone to keep, no cone, no chain to follow.
+What a tile says of disks of neighbours that are not done yet is a guess.  It is checked, not believed.  Each disk within `near`
+cells of the border between two tiles has a seal: a number made of its last flight, its last contact and its count of flights.
+The first tile that sees the disk writes the seal, others compare.  If all seals agree, each tile saw right what its own disks can
+have met: then all tiles together are one motion that keeps all laws from the same beginning, and there is only one.  `near` has
+to be so wide that nothing comes as far: twice the way of the fastest disk and a diameter.  That is checked, too, with the speeds
+that there were.  So there is no zone to keep, no cone, no chain to follow, and no event is held back.
 
-That a halo is too narrow, a tile mostly notices itself: disks that met wrong ones are marked, and where a mark comes near, the tile
-is done once more, with a wider halo, before anything is written.  Where seals differ, or a tie comes up, the beginning of the
-window is still there: it is done once more with wider halos, or by the ordinary loop.
+That a halo is too narrow, a tile mostly notices itself: disks that met wrong ones are marked, and where a mark comes near, the
+tile is done once more, with a wider halo, before anything is written.  Where seals differ, the beginning of the window is still
+there: it is done once more with wider halos.  Where a tie comes up, the ordinary loop does it.
 
 Rows of a window are put in order of time, (a, b) at equal times, by a counting sort, and numbered.  Windows end where the clock
 turns over.
@@ -52,7 +54,18 @@ from eventsim.engines.fast.advance import anchor, place, speed, wrap
 from eventsim.engines.fast.calendar import NO_DAY, bucket, first, is_mutual, is_stale, is_tied, push, take, unsettled
 from eventsim.engines.fast.cells import place_in
 from eventsim.engines.fast.columns import aligned
-from eventsim.engines.fast.compiled import either, gather_disks, inline, kernel, part, pointer, prefetch, real, store, word
+from eventsim.engines.fast.compiled import (
+    either,
+    gather_disks,
+    inline,
+    kernel,
+    part,
+    pointer,
+    prefetch,
+    real,
+    store,
+    word,
+)
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     COLUMN,
@@ -110,11 +123,11 @@ ID = 24
 between windows, and local places within one."""
 
 ABSENT = -3
-"""MET of a disk that met, last, one that its tile does not see: ABSENT - its name."""
+"""MET of a disk whose last partner its tile does not see: ABSENT - its name."""
 
 MARKED, OWNED, NEAR, TOLD, STRIP = 16, 32, 64, 128, 256
-"""Flags of a disk in a tile: may be wrong; in its cells at the beginning of the window; near them; of a tile that is done, which has
-told all its flights; owned, and near the border."""
+"""Flags of a disk in a tile: may be wrong; in its cells at the beginning of the window; near them; of a tile that is done, which
+tells its flights; owned, and near the border."""
 
 KINDS = MARKED | OWNED | NEAR | TOLD | STRIP
 
@@ -138,7 +151,7 @@ FASTEST, OVERLAP = range(2)
 
 
 class Frame(NamedTuple):
-    """Where a tile lies, in cells, and from when to when; columns and rows count its halo, first_* are those of the halo, from 0."""
+    """Where a tile lies, in cells, and from when to when; columns and rows count its halo, first_* are where that begins."""
 
     first_column: int
     first_row: int
@@ -415,7 +428,7 @@ def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, done, seat,
                 out = outside(frame, column, local)
                 kind = OWNED if out <= 0 else (NEAR if out <= frame.near else 0)
                 if told:
-                    if not is_close(grid, frame, tiles, done, per_row, column, local):
+                    if out > frame.near and not is_close(grid, frame, tiles, done, per_row, column, local):
                         column += 1
                         cell += 1
                         continue
@@ -465,15 +478,15 @@ def load_tile(arrays, grid, frame, rules, limits, old, start, tiles, done, seat,
 
 
 @kernel
-def collect_told(arrays, said, begin, end, seat, counts, count, times, told):
-    """List the flights said[begin:end] of a neighbour that concern disks of this tile, behind the first `count`; the new count."""
-    m, source, names = pointers(arrays), pointer(said), pointer(seat)
+def collect_told(arrays, said_by, said_at, begin, end, seat, counts, count, times, told):
+    """List the flights that a neighbour told, from `begin` to `end`, and that concern this tile, behind the first `count`."""
+    m, names = pointers(arrays), pointer(seat)
     n = counts[DISKS]
     for k in range(begin, end):
-        name = word(source, k * WORDS + ID)
+        name = said_by[k]
         i = word(names, name)
         if i < n and word(m.disks, i * WORDS + ID) == name and flags_of(m, i) & TOLD:
-            times[count] = real(source, k * REALS + T)
+            times[count] = said_at[k]
             told[count] = k
             count += 1
     return count
@@ -513,7 +526,8 @@ def fly_as_told(m, i, source, k, names, n):
 
 @kernel
 def run_tile(
-    arrays, grid, frame, rules, limits, clock, keys, sums, counts, most, budget, said, seat, told, number_told
+    arrays, grid, frame, rules, limits, clock, keys, sums, counts, most, budget, said, said_by, said_at, seat, told,
+    number_told,
 ):
     """Let the disks of a tile live until the end of the window; the status.
 
@@ -585,12 +599,11 @@ def run_tile(
                     cursor += 1
                     deepest = overlap if overlap > deepest else deepest
                 contacts += 1
-                if flags_of(m, i) & STRIP:
-                    tell(m, source, saying, i)
-                    saying += 1
-                if flags_of(m, code) & STRIP:
-                    tell(m, source, saying, code)
-                    saying += 1
+                for disk in (i, code):
+                    if flags_of(m, disk) & STRIP:
+                        said_by[saying], said_at[saying] = word(m.disks, disk * WORDS + ID), now
+                        tell(m, source, saying, disk)
+                        saying += 1
                 if saying >= room_to_say:
                     status = NO_ROOM
                     break
@@ -607,7 +620,9 @@ def run_tile(
                 push_in_time(m, grid, frame, limit, i, day)
                 continue
             if code <= WRAP_RIGHT:
+                met = word(m.disks, i * WORDS + MET)
                 wrap(m, rules, i, code, now)
+                store(m.disks, i * WORDS + MET, met)  # a partner who is absent looks like a wall
             leave_cell(m, grid, frame, i)
             if not enter_cell(m, grid, frame, i, column, row):
                 if matters(m, i):
@@ -840,7 +855,8 @@ class Tiles:
         self.counts = np.zeros(9, np.int64)
         self.most[0] = float((state.disks[:n, VX] ** 2 + state.disks[:n, VY] ** 2).max())
         self.spent = Spent()
-        self.redone = {"tiles": 0, "windows": 0, "near": 0, "rows": 0}
+        self.ordinary: FastSession | None = None
+        self.redone = {"tiles": 0, "windows": 0, "near": 0, "rows": 0, "ordinary": 0}
 
     def _lay_out(self, state: Any, widest: int) -> None:
         """Order all records by tile and cell."""
@@ -852,20 +868,11 @@ class Tiles:
         sizes = np.outer(np.diff(self.y_edges), np.diff(self.x_edges)).reshape(-1)
         self.first_cells = np.concatenate([[0], np.cumsum(sizes)])
         self.tiles = np.concatenate([*table, self.first_cells]).astype(np.int64)
-        words = state.words[:n]
-        column, row = words[:, layout.COLUMN] - 1, words[:, layout.ROW] - 1
-        in_x, in_y = table[0].reshape(-1, 3)[column], table[1].reshape(-1, 3)[row]
-        cell = self.first_cells[in_y[:, 0] * (len(self.x_edges) - 1) + in_x[:, 0]]
-        cell = cell + (row - in_y[:, 1]) * (in_x[:, 2] - in_x[:, 1]) + column - in_x[:, 1]
-        order = np.argsort(cell, kind="stable")
         self.old, self.new = aligned((n + 1) * REALS, np.float64), aligned((n + 1) * REALS, np.float64)
-        records = self.old[: n * REALS].reshape(n, REALS)
-        records[:] = state.disks[order]
-        records.view(np.int32).reshape(n, WORDS)[:, ID] = order
-        cells = columns * rows
-        self.start = np.searchsorted(cell[order], np.arange(cells + 1)).astype(np.int32)
-        self.new_start = np.zeros(cells + 1, np.int32)
         self.seat, self.seals = np.zeros(n, np.int32), np.zeros(n, np.int64).view(np.float64)
+        self.new_start = np.zeros(columns * rows + 1, np.int32)
+        self._sort_in(state)
+        cells = columns * rows
         largest = (int(widest) + 2 * self.most_halo) ** 2
         room = min(n, int(1.1 * n * largest / cells + 6.0 * math.sqrt(largest)) + 64)
         days = 1 << max(6, (2 * room).bit_length())
@@ -885,10 +892,51 @@ class Tiles:
         self._make_room(n // 2 + 1024, int(strips * n) + 1024)
         self.out = aligned(BLOCK * REALS, np.float64)
 
+    def _sort_in(self, state: Any) -> None:
+        """Take over the records of the ordinary loop, tile by tile, cell by cell."""
+        n, columns, rows = self.n, self.grid.columns, self.grid.rows
+        of_x, of_y = (self.tiles[k : k + 3 * count].reshape(-1, 3) for k, count in ((0, columns), (3 * columns, rows)))
+        words = state.words[:n]
+        column, row = words[:, layout.COLUMN] - 1, words[:, layout.ROW] - 1
+        in_x, in_y = of_x[column], of_y[row]
+        cell = self.first_cells[in_y[:, 0] * (len(self.x_edges) - 1) + in_x[:, 0]]
+        cell = cell + (row - in_y[:, 1]) * (in_x[:, 2] - in_x[:, 1]) + column - in_x[:, 1]
+        order = np.argsort(cell, kind="stable")
+        records = self.old[: n * REALS].reshape(n, REALS)
+        records[:] = state.disks[order]
+        records.view(np.int32).reshape(n, WORDS)[:, ID] = order
+        self.start = np.searchsorted(cell[order], np.arange(columns * rows + 1)).astype(np.int32)
+
+    def _ordinarily(self, end: float) -> list[Any]:
+        """Take a window back, and let the ordinary loop do it; its rows."""
+        if self.ordinary is None:
+            self.ordinary = FastSession(self.stage, keep_rows=True, options=FastOptions(lanes=self.grid.lanes is not None))
+        session = self.ordinary
+        machine, state = session._machine, session.state
+        machine.set_epoch(self.epoch)
+        state.disks[: self.n] = self.records()
+        state.words[: self.n, FLAGS] &= ~KINDS
+        state.begin_window(self.window)
+        state.window_rows = self.window_rows
+        machine.set_now(self.now)
+        machine.counts[layout.EVENTS] = session.counters.events = self.events
+        machine.predict_afresh()
+        blocks = advance_ordinary(session, self.epoch, math.nextafter(end, 0.0), True)
+        self._sort_in(state)
+        records = self.old[: self.n * REALS].reshape(self.n, REALS)
+        records[:, DUE] = AFRESH
+        self.most[FASTEST] = float((records[:, VX] ** 2 + records[:, VY] ** 2).max())
+        count = sum(map(len, blocks))
+        self.events += count
+        self.window_rows += count
+        return blocks
+
     def _make_room(self, rows: int, flights: int) -> None:
         """Room for so many rows, and for so many flights that are told."""
         self.said = aligned(flights * REALS, np.float64)
-        self.told_times, self.told = np.zeros(flights), np.zeros(flights, np.int32)
+        self.said_at, self.said_by = np.zeros(flights), np.zeros(flights, np.int32)
+        few = max(1024, flights // 4)
+        self.told_times, self.told = np.zeros(few), np.zeros(few, np.int32)
         self.rows, self.keys = aligned(rows * REALS, np.float64), np.zeros(rows)
         self.order, self.heads = np.zeros(rows, np.int32), np.zeros(rows + 1, np.int32)
         self.arrays = Arrays(self.local, self.slots, self.near_list, *[None] * 12, self.rows, None, None, None)
@@ -910,17 +958,19 @@ class Tiles:
 
     def _window(self, end: float, keep: bool) -> list[Any]:
         halo = self.halo
-        if not self._try(end, halo):
-            while not self._try(end, halo):
-                halo = min(halo + 4, self.most_halo)
-                self.redone["windows"] += 1
+        while not (told := self._try(end, halo)):
+            if told is None or halo == self.most_halo:
+                self.redone["ordinary"] += 1
+                return self._ordinarily(end)
+            halo = min(max(halo + 3, self.halo), self.most_halo)
+            self.redone["windows"] += 1
         self.old, self.new = self.new, self.old
         self.start, self.new_start = self.new_start, self.start
         with self.spent.on("rows"):
             return self._merged(end, keep)
 
-    def _try(self, end: float, halo: int) -> bool:
-        """Do all tiles; whether all seals agree and nothing was too fast."""
+    def _try(self, end: float, halo: int) -> bool | None:
+        """Do all tiles; whether all seals agree and nothing was too fast; None where it is for the ordinary loop."""
         counts, fastest = self.counts, float(self.most[FASTEST])
         counts[[CURSOR, MISSES, OUT, SAID]] = 0
         self.done[:] = 0
@@ -935,19 +985,20 @@ class Tiles:
             wider, said = halo, int(counts[SAID])
             while (status := self._tile(p, q, end, wider, limits, clock)) not in (DONE, NO_ROOM):
                 self.redone["tiles"] += 1
-                if wider == self.most_halo:
-                    raise SystemExit(f"tile {p}, {q}: status {status}: a window for the ordinary loop, which is left out here")
+                if wider == self.most_halo or (status != MARK and wider > halo):  # no wider halo helps
+                    self.most[FASTEST] = fastest
+                    return None
                 wider = min(wider + max(2, halo // 2), self.most_halo)
                 limits = self._limits(end, wider)
             if wider != halo:
                 limits = self._limits(end, halo)
             if status == NO_ROOM and counts[CURSOR] >= 0 and len(self.keys) < self.n * 8:
-                self._make_room(len(self.keys) * 5 // 4, len(self.told) * 5 // 4)
+                self._make_room(len(self.keys) * 5 // 4, len(self.said_by) * 5 // 4)
                 self.redone["rows"] += 1
                 self.most[FASTEST] = fastest
                 return self._try(end, halo)
             if status != DONE:
-                raise SystemExit(f"tile {p}, {q}: no room")
+                return None
             self.ranges[tile], self.done[tile] = (said, int(counts[SAID])), 1
             with self.spent.on("write"):
                 write_tile(
@@ -1001,7 +1052,7 @@ class Tiles:
             with self.spent.on("run"):
                 status = run_tile(
                     self.arrays, grid, self.frame, self.rules, limits, clock, self.keys, self.sums, counts, self.most,
-                    100 * int(counts[DISKS]) + 1000, self.said, self.seat, told, len(told),
+                    100 * int(counts[DISKS]) + 1000, self.said, self.said_by, self.said_at, self.seat, told, len(told),
                 )  # fmt: skip
         return int(status)
 
@@ -1012,8 +1063,11 @@ class Tiles:
         count = 0
         for tile in sorted(around & self.ranges.keys()):
             begin, end = self.ranges[tile]
+            if count + end - begin > len(self.told):
+                room = 2 * (count + end)
+                self.told_times, self.told = np.resize(self.told_times, room), np.resize(self.told, room)
             count = collect_told(
-                self.arrays, self.said, begin, end, self.seat, self.counts, count, self.told_times, self.told
+                self.arrays, self.said_by, self.said_at, begin, end, self.seat, self.counts, count, self.told_times, self.told
             )
         return self.told[:count][np.argsort(self.told_times[:count], kind="stable")]
 
@@ -1180,7 +1234,8 @@ def rates(tiles: Tiles, session: FastSession, step: float, chosen: Any) -> None:
               f"with 4000 disks {1e9 * in_caches[-1]:.0f}, ratio {ratios[-1]:.2f}", flush=True)
     parts = ", ".join(f"{what} {1e9 * seconds / contacts:.0f}" for what, seconds in tiles.spent.seconds.items())
     counts = tiles.counts
-    print(f"ratio, median of {chosen.repeats}: {statistics.median(ratios):.2f} (CPU time); ns per contact: {parts}; all {1e9 * total / contacts:.0f}")
+    print(f"ratio, median of {chosen.repeats}: {statistics.median(ratios):.2f} (CPU time)")
+    print(f"ns per contact: {parts}; all {1e9 * total / contacts:.0f}")
     print(f"contacts done / logged {counts[CONTACTS] / contacts:.3f}, steps {counts[STEPS] / contacts:.2f}, predictions "
           f"{counts[PREDICTED] / contacts:.2f} per logged contact; done once more: {tiles.redone}")
 
