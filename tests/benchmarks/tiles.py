@@ -1138,7 +1138,7 @@ COMPARED_WORDS = (MET, COUNT, LABEL, AT_ONCE, layout.WRAPS_X, layout.WRAPS_Y, la
 
 def compare(tiles: Tiles, session: FastSession, mine: list[Any], theirs: list[Any]) -> int:
     """Demand that rows and records are the same, bit for bit; how many rows."""
-    ours, other = np.concatenate(mine), np.concatenate(theirs)
+    ours, other = (np.concatenate([np.empty(0, ROW_TYPE), *blocks]) for blocks in (mine, theirs))
     counts = [np.bincount(np.concatenate([rows["a"], rows["b"]]), minlength=tiles.n) for rows in (ours, other)]
     assert np.array_equal(*counts), f"contacts of disks differ: {np.flatnonzero(counts[0] != counts[1])}"
     assert ours.tobytes() == other.tobytes(), "rows differ"
