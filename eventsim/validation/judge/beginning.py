@@ -10,8 +10,8 @@ from eventsim.record.events import Floats, Rows
 from eventsim.scene import Scene
 from eventsim.scene.stage import Stage
 from eventsim.validation.follow import distances
-from eventsim.validation.judge.flights import UNLIKE, Flights
-from eventsim.validation.truth import truth_of
+from eventsim.validation.judge.flights import UNLIKE, Flights, Mask
+from eventsim.validation.truth import Truth, truth_of
 
 LATE = 1.5
 """Steps after the start of the scene up to which a motion begins with it: an engine tells places when its first step is done."""
@@ -23,7 +23,8 @@ MANY = 3
 """Disks that do not all turn in their first step so that one factor tells what is left of all their velocities."""
 
 OTHER_PACE = 0.1
-"""Of the velocities at the start: by how much all may differ by one factor before they are told in another unit."""
+"""Of the velocities at the start: by how much all may differ by one factor before they are told in another unit; of the typical
+speed: by how much one of them may differ before the motion is another one."""
 
 
 def begins_late(scene: Scene, samples: Samples) -> bool:
@@ -78,6 +79,40 @@ def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
     return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
 
 
+def demand_same_velocities(flights: Flights, start: Floats, truth: Truth, source: str) -> None:
+    """Raise EventsimError where a disk flies off, straight from its place, with another velocity than it should.
+
+    start: (n, 2) velocities.
+    """
+    times, place, pull = flights.times, flights.place, flights.pull
+    if len(times) < 3:
+        return
+    dt, later = np.diff(times[:3]).tolist()
+    begun = (place[1] - place[0]) / dt - 0.5 * pull * dt
+    then = (place[2] - place[1]) / later - pull * (dt + 0.5 * later)
+    least = max(OTHER_PACE * truth.speed, flights.least)
+    off = np.hypot(*(begun - start).T)
+    wrong = (off > least) & (np.hypot(*(then - begun).T) < 0.5 * least) & _free(truth.run.rows, len(start), float(times[2]))
+    if not wrong.any():
+        return
+    disk, count = int(np.argmax(wrong)), int(wrong.sum())
+    more = f" ({count} disks differ)" if count > 1 else ""
+    (vx, vy), (ux, uy) = begun[disk].tolist(), start[disk].tolist()
+    raise EventsimError(
+        f"{source}: disk {disk} begins with velocity ({vx:.4g}, {vy:.4g}), in the scene, at t = {times[0]:g}, with "
+        f"({ux:.4g}, {uy:.4g}){more}: another scene, another order of disks, or another sign of an axis?"
+    )
+
+
+def _free(rows: Rows, n: int, until: float) -> Mask:
+    """(n,) which disks meet nothing until a time."""
+    free = np.ones(n, dtype=bool)
+    early = rows[rows["time"] <= until]
+    free[early["a"]] = False
+    free[early["b"][early["b"] >= 0]] = False
+    return free
+
+
 def demand_same_pace(flights: Flights, start: Floats, rows: Rows, source: str) -> None:
     """Raise EventsimError where disks begin with one and the same multiple of the velocities that they should have.
 
@@ -86,10 +121,8 @@ def demand_same_pace(flights: Flights, start: Floats, rows: Rows, source: str) -
     dt = float(flights.times[1] - flights.times[0])
     begun = (flights.place[1] - flights.place[0]) / dt - 0.5 * flights.pull * dt
     size = np.sum(start * start, axis=1)
-    moves, free = size > 0.0, size > 0.0
-    early = rows[rows["time"] <= flights.times[1]]
-    free[early["a"]] = False
-    free[early["b"][early["b"] >= 0]] = False
+    moves = size > 0.0
+    free = moves & _free(rows, len(start), float(flights.times[1]))
     if free.any():
         moves = free
     elif moves.sum() < MANY:

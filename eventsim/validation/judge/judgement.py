@@ -15,7 +15,7 @@ from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.overlaps import period_of
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.follow import distances
-from eventsim.validation.judge.beginning import begins_late, demand_same_pace, placed, scene_at
+from eventsim.validation.judge.beginning import begins_late, demand_same_pace, demand_same_velocities, placed, scene_at
 from eventsim.validation.judge.charge import Charge, Window, charged, in_our_form
 from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, Turn, energy_on_the_way, flights_of
@@ -123,7 +123,8 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
         EventsimError: where the samples are not of this scene.
     """
     remarks = []
-    if begins_late(scene, samples):
+    late = begins_late(scene, samples)
+    if late:
         first = float(samples.times[0])
         scene, contacts = scene_at(scene, first), None if contacts is None else contacts.since(first)
         remarks.append(f"the motion begins at t = {first:g}: it is judged from the state that the event-driven run has then")
@@ -143,14 +144,15 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
         remarks.append(f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})")
     blind = flights.least > COARSE * truth.speed
     demand_same_pace(flights, start, truth.run.rows, samples.source)
+    if not late:
+        demand_same_velocities(flights, start, truth, samples.source)
     if samples.velocity is not None and not flights.told:
         remarks.append("the velocities that are told are not those with which positions move: they are not used")
     read = Read() if blind else contacts_from(flights, around, mass)
     met = read.met if contacts is None else in_our_form(contacts, stage)
     step = float(np.median(np.diff(times)))
     if tolerance is None:
-        late = step if contacts is None else min(step, contacts.step)
-        tolerance = STEPS_LATE * late + 2.0 * FLOWN * truth.radius / truth.speed
+        tolerance = STEPS_LATE * (step if contacts is None else min(step, contacts.step)) + 2.0 * FLOWN * truth.radius / truth.speed
     seen = np.searchsorted(times, looks)
     apart = distances(stage, samples.position[seen], truth.run.position[: len(looks)]) / (2.0 * truth.radius)
     resolution = max(SMALLEST * truth.radius, 4.0 * samples.step, 4.0 * flights.blur)

@@ -29,3 +29,12 @@ def test_elastic_contacts_within_the_duration_are_right():
     assert judged.judgement.charge.found > 5
     none = replace(scene, contact_duration=None)
     assert es.validate(none, trajectory=(times, places)).first_fault.kind == "restitution"
+
+
+@pytest.mark.parametrize("told", [False, True])
+def test_a_start_in_another_direction_is_refused(told):
+    """Of the right speed: what differs is a sign."""
+    scene = replace(BOX, until=0.2)
+    times, places, speeds = run(Stepper(scene), scene, velocity=scene.disks.velocity * [1, -1])
+    with pytest.raises(es.EventsimError, match=r"disk 1 begins with velocity \(-0.5, -0.2.*\), in the scene, .* \(-0.5, 0.2\)"):
+        es.validate(scene, trajectory=(times, places, speeds) if told else (times, places))
