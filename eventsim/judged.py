@@ -139,8 +139,7 @@ def validate(
         return Judged(found)
     assert trajectory is not None
     told = None if contacts is None else _contacts(contacts, len(scene.disks))
-    samples = _samples(trajectory, dt)
-    return Judged(judge(scene, samples if until is None else samples.until(until), told, tolerance))
+    return Judged(judge(scene, _samples(trajectory, dt), told, tolerance, until))
 
 
 def _samples(trajectory: Source, dt: float | None) -> Samples:

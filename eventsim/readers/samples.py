@@ -48,11 +48,10 @@ class Samples:
         """The number of disks."""
         return int(self.position.shape[1])
 
-    def until(self, time: float) -> Samples:
-        """Those until a time."""
-        last = int(np.searchsorted(self.times, time, side="right"))
-        velocity = None if self.velocity is None else self.velocity[:last]
-        return checked(replace(self, times=self.times[:last], position=self.position[:last], velocity=velocity))
+    def first(self, count: int) -> Samples:
+        """So many of them, from the first on."""
+        velocity = None if self.velocity is None else self.velocity[:count]
+        return replace(self, times=self.times[:count], position=self.position[:count], velocity=velocity)
 
     def at(self, frame: int) -> Samples:
         """One of them alone."""
@@ -74,7 +73,7 @@ def checked(samples: Samples, least: int = 2) -> Samples:
     if len(shape) != 3 or shape[2] != 2 or shape[0] != len(samples.times) or not shape[1]:
         raise EventsimError(f"{samples.source}: positions {shape} at times {samples.times.shape}: must be (T, n, 2) at (T,)")
     if len(samples.times) < least:
-        raise EventsimError(f"{samples.source}: holds {len(samples.times)} times; a motion has at least two")
+        raise EventsimError(f"{samples.source}: its number of times is {len(samples.times)}; a motion has at least two")
     if samples.velocity is not None and samples.velocity.shape != shape:
         raise EventsimError(f"{samples.source}: velocities {samples.velocity.shape} of positions {shape}: must be alike")
     for name, values in (("radius", samples.radius), ("mass", samples.mass)):

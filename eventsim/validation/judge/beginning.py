@@ -8,7 +8,7 @@ from eventsim.errors import EventsimError
 from eventsim.readers.samples import Samples
 from eventsim.record.events import Floats, Rows
 from eventsim.scene import Scene
-from eventsim.scene.stage import Stage
+from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.follow import distances
 from eventsim.validation.judge.flights import UNLIKE, Flights, Mask
 from eventsim.validation.truth import Truth, truth_of
@@ -22,9 +22,38 @@ SAME_START = 0.01
 MANY = 3
 """Disks that do not all turn in their first step so that one factor tells what is left of all their velocities."""
 
+ROUNDS = 4
+"""In which the factor of the unit and gravity in the first step are found together; what is left falls by their ratio."""
+
+CLEARLY = 2.0
+"""A factor that is no accident of contacts in the first step, where nobody knows of them."""
+
 OTHER_PACE = 0.1
 """Of the velocities at the start: by how much all may differ by one factor before they are told in another unit; of the typical
 speed: by how much one of them may differ before the motion is another one."""
+
+
+def within(scene: Scene, samples: Samples, until: float | None) -> tuple[Samples, str | None]:
+    """The samples until a time, by default the end of the scene, and a sentence on what is left out.
+
+    Nothing is simulated before this: times in another unit would ask for a run a thousand times as long.
+
+    Raises:
+        EventsimError: where less than two of them are left.
+    """
+    end = scene.until if until is None else until
+    times, step = samples.times, float(np.median(np.diff(samples.times)))
+    if end is None or times[-1] <= end + (LATE * step if until is None and step < end - scene.start_time else 0.0):
+        return samples, None
+    held = int(np.searchsorted(times, end, side="right"))
+    if held < 2:
+        limit = f"the scene, which ends at t = {end:g}" if until is None else f"what is asked for, until t = {end:g}"
+        raise EventsimError(
+            f"{samples.source}: of its {len(times)} times, from {times[0]:g} to {times[-1]:g}, {('none', 'only one')[held]} "
+            f"is within {limit}: another unit of time, or times that do not count from the start of the scene?"
+        )
+    left = f"the motion goes on to t = {times[-1]:g}: it is judged until the scene ends, t = {end:g}"
+    return samples.first(held), left if until is None else None
 
 
 def begins_late(scene: Scene, samples: Samples) -> bool:
@@ -79,6 +108,26 @@ def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
     return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
 
 
+def demand_same_clock(scene: Scene, samples: Samples) -> None:
+    """Raise EventsimError where the first step alone tells another unit of time: a run through all times would not end.
+
+    Of scenes that say when they end `within` has kept what is in them.  Who meets something in the first step only a run would
+    tell: all disks have to fly by one and the same factor.
+    """
+    if scene.until is not None and samples.times[-1] <= scene.until:
+        return
+    stage = stage_of(scene)
+    start = np.column_stack([stage.vx, stage.vy])
+    moves = np.any(start != 0.0, axis=1)
+    if moves.sum() < MANY:
+        return
+    dt = float(samples.times[1] - samples.times[0])
+    pull = np.where(np.isfinite(scene.disks.mass)[:, None], np.array(stage.gravity or (0.0, 0.0)), 0.0)
+    share, off = _pace(stage.nearest(samples.position[1] - samples.position[0]) / dt, start, pull, dt, moves)
+    if not 1.0 / CLEARLY < share < CLEARLY and float(off.max()) < UNLIKE:
+        raise _of_another_pace(samples.source, share)
+
+
 def demand_same_velocities(flights: Flights, start: Floats, truth: Truth, source: str) -> None:
     """Raise EventsimError where a disk flies off, straight from its place, with another velocity than it should.
 
@@ -119,7 +168,6 @@ def demand_same_pace(flights: Flights, start: Floats, rows: Rows, source: str) -
     start: (n, 2) velocities.  rows: of the event-driven run, which tell who flies free until the first samples.
     """
     dt = float(flights.times[1] - flights.times[0])
-    begun = (flights.place[1] - flights.place[0]) / dt - 0.5 * flights.pull * dt
     size = np.sum(start * start, axis=1)
     moves = size > 0.0
     free = moves & _free(rows, len(start), float(flights.times[1]))
@@ -127,9 +175,22 @@ def demand_same_pace(flights: Flights, start: Floats, rows: Rows, source: str) -
         moves = free
     elif moves.sum() < MANY:
         return
-    share = float(np.median(np.sum(begun * start, axis=1)[moves] / size[moves]))
-    off = np.hypot(*(begun - share * start)[moves].T) / np.sqrt(size[moves])
+    share, off = _pace((flights.place[1] - flights.place[0]) / dt, start, flights.pull, dt, moves)
     if abs(share - 1.0) > OTHER_PACE and float(np.median(off)) < UNLIKE:
-        raise EventsimError(
-            f"{source}: its disks begin with {share:.4g} times the velocities of the scene: another unit of time, another scene?"
-        )
+        raise _of_another_pace(source, share)
+
+
+def _pace(mean: Floats, start: Floats, pull: Floats, dt: float, moves: Mask) -> tuple[float, Floats]:
+    """(factor, what is left) of the mean velocities of a first step over those at the start, of disks that move."""
+    size = np.sum(start * start, axis=1)[moves]
+    share, begun = 0.0, mean
+    for _ in range(ROUNDS):  # gravity counts by the square of the factor
+        begun = mean - 0.5 * share**2 * pull * dt
+        share = float(np.median(np.sum(begun * start, axis=1)[moves] / size))
+    return share, np.hypot(*(begun - share * start)[moves].T) / np.sqrt(size)
+
+
+def _of_another_pace(source: str, share: float) -> EventsimError:
+    return EventsimError(
+        f"{source}: its disks begin with {share:.4g} times the velocities of the scene: another unit of time, another scene?"
+    )

@@ -15,7 +15,15 @@ from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.overlaps import period_of
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.follow import distances
-from eventsim.validation.judge.beginning import begins_late, demand_same_pace, demand_same_velocities, placed, scene_at
+from eventsim.validation.judge.beginning import (
+    begins_late,
+    demand_same_clock,
+    demand_same_pace,
+    demand_same_velocities,
+    placed,
+    scene_at,
+    within,
+)
 from eventsim.validation.judge.charge import Charge, Window, charged, in_our_form
 from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, Turn, energy_on_the_way, flights_of
@@ -110,7 +118,13 @@ class Judgement:
         return math.inf if good else self.truth.horizon
 
 
-def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, tolerance: float | None = None) -> Judgement:
+def judge(
+    scene: Scene,
+    samples: Samples,
+    contacts: ToldContacts | None = None,
+    tolerance: float | None = None,
+    until: float | None = None,
+) -> Judgement:
     """Judge a motion.
 
     Args:
@@ -118,11 +132,13 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
         samples: positions at times, from the start of the scene on or from later.
         contacts: those that the engine tells; None: they are read from its paths.
         tolerance: how far apart the times of one contact may be; None: the usual one.
+        until: the last time that counts; None: the end of the scene, or of the motion.
 
     Raises:
         EventsimError: where the samples are not of this scene.
     """
-    remarks = []
+    samples, left = within(scene, samples, until)
+    remarks = [] if left is None else [left]
     late = begins_late(scene, samples)
     if late:
         first = float(samples.times[0])
@@ -130,6 +146,8 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
         remarks.append(f"the motion begins at t = {first:g}: it is judged from the state that the event-driven run has then")
     stage = stage_of(scene)
     samples = placed(scene, stage, samples)
+    if not late:
+        demand_same_clock(scene, samples)
     times = samples.times
     looks = times[np.unique(np.linspace(0, len(times) - 1, min(LOOKS, len(times))).astype(int))]
     looks = looks[looks > scene.start_time]
@@ -152,7 +170,8 @@ def judge(scene: Scene, samples: Samples, contacts: ToldContacts | None = None, 
     met = read.met if contacts is None else in_our_form(contacts, stage)
     step = float(np.median(np.diff(times)))
     if tolerance is None:
-        tolerance = STEPS_LATE * (step if contacts is None else min(step, contacts.step)) + 2.0 * FLOWN * truth.radius / truth.speed
+        finest = step if contacts is None else min(step, contacts.step)
+        tolerance = STEPS_LATE * finest + 2.0 * FLOWN * truth.radius / truth.speed
     seen = np.searchsorted(times, looks)
     apart = distances(stage, samples.position[seen], truth.run.position[: len(looks)]) / (2.0 * truth.radius)
     resolution = max(SMALLEST * truth.radius, 4.0 * samples.step, 4.0 * flights.blur)

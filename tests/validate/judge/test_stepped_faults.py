@@ -38,3 +38,45 @@ def test_a_start_in_another_direction_is_refused(told):
     times, places, speeds = run(Stepper(scene), scene, velocity=scene.disks.velocity * [1, -1])
     with pytest.raises(es.EventsimError, match=r"disk 1 begins with velocity \(-0.5, -0.2.*\), in the scene, .* \(-0.5, 0.2\)"):
         es.validate(scene, trajectory=(times, places, speeds) if told else (times, places))
+
+
+@pytest.fixture(scope="module")
+def right():
+    scene = replace(BOX, until=0.3)
+    return scene, run(Stepper(scene), scene)
+
+
+@pytest.mark.parametrize(
+    ("clock", "said"),
+    [
+        (lambda times: 1000.0 * times, "of its 61 times, from 0 to 300, only one is within the scene, which ends at t = 0.3"),
+        (lambda times: times + 10.0, "of its 61 times, from 10 to 10.3, none is within the scene"),
+        (lambda times: 10.0 * times, "its disks begin with 0.0999.* times the velocities of the scene: another unit of time"),
+    ],
+)
+def test_times_on_another_clock_are_refused(right, clock, said):
+    scene, (times, places, _) = right
+    with pytest.raises(es.EventsimError, match=said):
+        es.validate(scene, trajectory=(clock(times), places))
+
+
+def test_a_limit_that_leaves_one_time_does_not_say_that_there_is_only_one(right):
+    scene, (times, places, _) = right
+    with pytest.raises(es.EventsimError, match=r"of its 61 times, .* only one is within what is asked for, until t = 0.3"):
+        es.validate(scene, trajectory=(1000.0 * times, places), until=0.3)
+
+
+def test_a_clock_is_compared_before_a_run_that_nothing_ends(right):
+    """No end of the scene bounds it: the first step tells that the unit is another one."""
+    scene, (times, places, _) = right
+    with pytest.raises(es.EventsimError, match=r"its disks begin with 9.99\d*e-06 times the velocities of the scene"):
+        es.validate(replace(scene, until=None), trajectory=(1e5 * times, places))
+
+
+def test_a_motion_is_judged_until_the_scene_ends(right):
+    scene, (times, places, _) = right
+    judged = es.validate(replace(scene, until=0.2), trajectory=(times, places))
+    assert judged.judgement.times[-1] == pytest.approx(0.2)
+    assert "the motion goes on to t = 0.3: it is judged until the scene ends, t = 0.2" in judged.verdict
+    longer = es.validate(replace(scene, until=0.2), trajectory=(times, places), until=0.25)
+    assert longer.judgement.times[-1] == pytest.approx(0.25)
