@@ -26,6 +26,7 @@ class Charge:
     found, missed: of the truth.  doubled, false: of the engine.  elsewhere: of the truth or the engine, where the engine's own
     path, off by errors before, asks for what it did.  unseen: of the truth, too weak to be
     seen in the samples, or too close to other contacts; unseen_at: when they are.
+    untold_at: when contacts were found whose impulse the paths do not tell.
     all_at, compared_at: the times of all contacts of the truth, and of those that were found or missed.
     errors: (found, 2) the time of each found contact, and by how much the engine's is later.
     parting: (time, sentence) of the first contact elsewhere.
@@ -37,6 +38,7 @@ class Charge:
     false: int = 0
     elsewhere: int = 0
     unseen_at: list[float] = field(default_factory=list)
+    untold_at: list[float] = field(default_factory=list)
     all_at: list[float] = field(default_factory=list)
     compared_at: list[float] = field(default_factory=list)
     errors: Floats = field(default_factory=lambda: np.empty((0, 2)))
@@ -47,6 +49,11 @@ class Charge:
     def unseen(self) -> int:
         """The contacts of the truth that samples cannot show."""
         return len(self.unseen_at)
+
+    @property
+    def untold(self) -> int:
+        """The contacts that were found, of which nobody knows what they did."""
+        return len(self.untold_at)
 
     def unchecked(self, before: float) -> int:
         """The contacts of the truth before a time that were neither found nor missed."""
@@ -95,6 +102,7 @@ def charged(truth: Truth, met: Sequence[Met], window: Window, witness: Witness, 
     pairs = [(exact[i][1], met[j].time) for i, j in match.pairs if window.covers(*exact[i])]
     charge.found, charge.compared_at = len(pairs), [time for time, _ in pairs]
     charge.errors = np.array([(time, told - time) for time, told in pairs]).reshape(-1, 2)
+    charge.untold_at = [exact[i][1] for i, j in match.pairs if window.covers(*exact[i]) and not witness.tells(met[j])]
     for i in match.missed:
         key, time, impulse = whole[i]
         if not window.covers(key, time):

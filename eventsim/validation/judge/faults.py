@@ -15,7 +15,7 @@ from eventsim.record.contacts import Key
 from eventsim.record.events import Floats, Kind
 from eventsim.scene.stage import Stage
 from eventsim.validation.judge.flights import Flights, Gained, Turn
-from eventsim.validation.judge.outcome import named, wrong_outcome
+from eventsim.validation.judge.outcome import is_told, named, wrong_outcome
 from eventsim.validation.judge.previous import Previous
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import NEAR, Met
@@ -150,20 +150,37 @@ class Witness:
         said = wrong_outcome(met, self._stage, self._mass, self._flights.least, self._previous.since(met))
         if said is None:
             return None
-        if met.key[0] == Kind.PAIR and any(turn is not None and self._may_have_met_more(turn) for turn in met.turns):
+        if self._may_be_shared(met):
             return None
         kind = said.split(":")[0]
         disks = tuple(disk for disk in met.key[1:] if disk >= 0) if met.key[0] == Kind.PAIR else met.key[1:2]
         return Fault(met.time, kind, f"{said} (t = {met.time:.6g})", disks)
 
-    def _may_have_met_more(self, turn: Turn) -> bool:
-        """Whether a disk can have flown to a wall, or an immovable disk, and from there on, from the first sample to the last."""
+    def tells(self, met: Met) -> bool:
+        """Whether the paths tell what a contact did."""
+        return is_told(met, self._stage, self._mass, self._flights.least) and not self._may_be_shared(met)
+
+    def _may_be_shared(self, met: Met) -> bool:
+        """Whether one of two disks, or a disk at a wall for several samples, may have met a wall unseen besides."""
+        turns = [turn for turn in met.turns if turn is not None]
+        if met.key[0] == Kind.WALL and all(turn.is_sharp for turn in turns):
+            return False
+        own = met.key[2] if met.key[0] == Kind.WALL else None
+        return any(self._may_have_met_more(turn, own) for turn in turns)
+
+    def _may_have_met_more(self, turn: Turn, own: int | None) -> bool:
+        """Whether a disk can have flown to a wall, or an immovable disk, and from there on, from the first sample to the last.
+
+        own: the wall that it has met; None where that is a disk.
+        """
         times, ends = self._flights.times, self._flights.place[[turn.first, turn.last]]
         speed = max(math.hypot(*turn.before), math.hypot(*(turn.before + turn.change)))
         flown = speed * float(times[turn.last] - times[turn.first])
         radius = self._stage.radius
         mine = ends[:, turn.disk]
         for surface in self._around.surfaces:
+            if self._around.wall_of(surface) == own:
+                continue
             if sum(self._around.to_wall(surface, place)[1] - float(radius[turn.disk]) for place in mine) < flown:
                 return True
         for other in np.flatnonzero(~np.isfinite(self._mass)).tolist():

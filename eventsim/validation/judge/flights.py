@@ -38,6 +38,12 @@ SPLIT = 0.1
 """Of the way that a change of velocity makes from one sample to the next: two flights that miss each other by more have no
 common point, so that there is a third between them."""
 
+FEW = 5
+"""Samples over which the impulses of one contact may be spread, as steps of an engine do."""
+
+FALLEN = 0.02
+"""Of the change of velocity of a turn: gravity that gives less on its way cannot bring the same two together twice."""
+
 UNLIKE = 0.02
 """Of the typical speed: told velocities that differ more from the motion of the positions (the median) are not used."""
 
@@ -48,7 +54,8 @@ class Turn:
 
     time: where the two flights cross, to within `slack`.  before: the velocity with which it comes there.  change: what it was
     given, gravity apart.  place: where it is then, as samples have it.  ends: whether the samples end before the flight after it
-    is known.  split: whether the two flights do not cross, so that there were several contacts between the samples.
+    is known.  split: whether the two flights do not cross, so that there were several contacts between the samples.  fallen: what
+    gravity gave on the way, as a share of the change.
     """
 
     disk: int
@@ -61,6 +68,13 @@ class Turn:
     slack: float = 0.0
     ends: bool = False
     split: bool = False
+    fallen: float = 0.0
+
+    @property
+    def is_short(self) -> bool:
+        """Whether it is over so soon that what it was given can be that of one contact, be it in several steps."""
+        short = self.last - self.first <= FEW and self.fallen <= FALLEN
+        return self.is_sharp or (short and not self.ends and not self.split)
 
     @property
     def is_sharp(self) -> bool:
@@ -130,7 +144,8 @@ class Flights:
         time = float(self.times[first]) + kept
         ends = not self.told and last >= len(self.times) - 2
         place = self.place[first, disk] + before * kept + 0.5 * pull * kept * kept
-        return Turn(disk, first, last, time, before + pull * kept, change, place, slack, ends, split)
+        fallen = math.hypot(*pull) * lag / math.sqrt(size) if size > 0.0 else 0.0
+        return Turn(disk, first, last, time, before + pull * kept, change, place, slack, ends, split, fallen)
 
 
 def flights_of(

@@ -183,6 +183,8 @@ def judge(
         charge = charged(truth, met, window, witness, 0.0 if contacts is not None else flights.least)
     if contacts is not None and not blind:
         by_paths = charged(truth, read.met, replace(window, step=step), witness, flights.least)
+        known = set(by_paths.compared_at) - set(by_paths.untold_at)
+        charge.untold_at = [time for time in charge.untold_at if time not in known]
         remarks += _where_they_disagree(charge, by_paths)
     weight, velocity = np.where(np.isfinite(mass), mass, 0.0), flights.velocity()
     energy = _energy(flights, velocity, weight)

@@ -82,7 +82,7 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float, since: flo
         since: the least time since the contact before of one of its disks.
     """
     found = outcome_of(met, mass)
-    if found is None or not _is_told(met, found, mass, least):
+    if found is None or not _is_clear(met, found, least):
         return None
     who = named(met.key, stage)
     usual = _usual(met.key, stage)
@@ -102,7 +102,15 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float, since: flo
     return f"restitution: the contact of {who} has {found.restitution:.4g}, not {right:.4g}"
 
 
-def _is_told(met: Met, found: Outcome, mass: Floats, least: float) -> bool:
+def is_told(met: Met, stage: Stage, mass: Floats, least: float) -> bool:
+    """Whether the turns of a contact tell what it did, and the law what it should have done."""
+    found = outcome_of(met, mass)
+    if found is None or not _is_clear(met, found, least):
+        return False
+    return stage.law.possible(_usual(met.key, stage), found.approach) is not None
+
+
+def _is_clear(met: Met, found: Outcome, least: float) -> bool:
     """Whether the outcome is known to a part of CLEAR; disks that move and do not turn leave it open."""
     still = [disk for disk, turn in zip(met.key[1:], met.turns, strict=True) if turn is None]
     if met.key[0] == Kind.PAIR and still:

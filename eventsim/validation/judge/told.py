@@ -273,7 +273,7 @@ def _met(edge: Edge, turns: list[Turn], alone: bool) -> Met:
     both = [one] if other is None else [one, other]
     pair = (other, one) if edge.swapped else (one, other)
     time = sum(turn.time for turn in both) / len(both)
-    along = all(_is_along(turn, edge.normal) and turn.is_sharp for turn in both)
+    along = all(_is_along(turn, edge.normal) and turn.is_short for turn in both)
     at_once = other is None or abs(one.time - other.time) <= one.slack + other.slack
     first, last = min(turn.first for turn in both), max(turn.last for turn in both)
     across = math.nan if edge.at_turn is None else max(_across(turn, edge.at_turn) for turn in both)

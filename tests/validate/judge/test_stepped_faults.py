@@ -80,3 +80,24 @@ def test_a_motion_is_judged_until_the_scene_ends(right):
     assert "the motion goes on to t = 0.3: it is judged until the scene ends, t = 0.2" in judged.verdict
     longer = es.validate(replace(scene, until=0.2), trajectory=(times, places), until=0.25)
     assert longer.judgement.times[-1] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(("every", "told"), [(1, False), (1, True), (2, True), (5, False)])
+def test_two_impulses_of_one_contact_are_judged_by_their_sum(every, told):
+    """Half an impulse, and what is left of the approach a step later: however much is told, it is named."""
+    scene = replace(BOX, until=0.5)
+    times, places, speeds = run(Stepper(scene, halved=1), scene, every=every)
+    first = es.validate(scene, trajectory=(times, places, speeds) if told else (times, places)).first_fault
+    assert first.kind == "restitution"
+    assert first.disks == (0, 1)
+    assert first.time == pytest.approx(0.377, abs=0.001)
+
+
+def test_a_contact_whose_impulse_cannot_be_told_is_counted():
+    """Its second disk meets a third one before the next sample."""
+    scene = replace(BOX, until=1.05)
+    judged = es.validate(scene, trajectory=run(Stepper(scene, halved=5), scene)[:2])
+    exact = es.simulate(scene, log=True).log
+    time = exact.time[(exact.a == 2) & (exact.b == 4)][0]
+    assert judged.first_fault is None
+    assert time in judged.judgement.charge.untold_at
