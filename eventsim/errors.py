@@ -39,8 +39,10 @@ class CheckpointError(EventsimError):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return " (did you mean 'break'?)" for a word near to a known one, else an empty text."""
+    """Return " (did you mean 'break'?)" for a word near to a known one, or to a part of one, else an empty text."""
     from difflib import get_close_matches  # only who errs pays for it
 
-    near = get_close_matches(word, list(known), n=1)
-    return f" (did you mean {near[0]!r}?)" if near else ""
+    names = list(known)
+    meant = {part: name for name in names for part in name.split("-")} | {name: name for name in names}
+    near = get_close_matches(word, list(meant), n=1)
+    return f" (did you mean {meant[near[0]]!r}?)" if near else ""

@@ -6,6 +6,8 @@ from dataclasses import asdict
 from shlex import quote
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from eventsim import __version__
 from eventsim.cli.words import aligned, scene_line, short, title
 from eventsim.scene.names import plural
@@ -170,7 +172,18 @@ def stop_words(run: Outcome) -> str:
     words = {
         "until": f"at the time asked for, {short(run.time)}",
         "events": "after the number of events asked for",
-        "quiet": "no event is ahead: every disk flies free from here on",
+        "quiet": f"no event is ahead: every disk {_from_here_on(run)}",
         "interrupted": "interrupted; what happened so far is kept",
     }
     return words.get(run.stopped, run.stopped)
+
+
+def _from_here_on(run: Outcome) -> str:
+    """What disks do that meet nothing any more; posts that stand still do nothing."""
+    moves = (run.state.velocity != 0.0).sum(axis=1) > 0
+    still = np.isfinite(run.scene.disks.mass) & ~moves
+    if not moves.any():
+        return "is at rest"
+    if run.counters.rests:
+        return "lies on something or flies free from here on"
+    return "is at rest or flies free from here on" if still.any() else "flies free from here on"

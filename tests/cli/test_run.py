@@ -13,7 +13,7 @@ import pytest
 import eventsim as es
 from eventsim import gallery, load_log, simulate
 from eventsim.cli.options import Files
-from eventsim.cli.summary import summary_text
+from eventsim.cli.summary import stop_words, summary_text
 
 JSON_KEYS = {
     "scene", "engine", "time", "events", "pair_contacts", "wall_contacts", "elapsed_s", "compile_s", "write_s",
@@ -27,6 +27,22 @@ def test_a_run_prints_a_summary(eventsim, scene_file):
     assert result.stderr == ""
     for words in ("two in a box", "2 disks in a box 4 x 2", "reference", "energy", "at the time asked for, 4"):
         assert words in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("velocity", "keys", "words"),
+    [
+        ([(1.0, 0.0), (2.0, 0.0)], {}, "every disk flies free from here on"),
+        ([(0.0, 0.0), (2.0, 0.0)], {}, "every disk is at rest or flies free from here on"),
+        ([(0.0, 0.0), (0.0, 0.0)], {}, "every disk is at rest"),
+        ([(0.0, 0.0), (0.0, 0.0)], {"gravity": (0.0, -1.0), "restitution": 0.5}, "every disk is at rest"),
+    ],
+    ids=["fly", "one flies", "nothing moves", "lie on the floor"],
+)
+def test_an_end_without_events_says_what_disks_do(velocity, keys, words):
+    floor = [es.Segment((-5.0, 0.0), (5.0, 0.0))] if keys else []
+    scene = es.Scene(es.Disks([(0.0, 1.0), (3.0, 1.0)], velocity, 0.5), es.Open(), floor, **keys)
+    assert stop_words(es.simulate(scene, events=1000, engine="reference")) == f"no event is ahead: {words}"
 
 
 def test_json_has_the_promised_keys_and_numbers(eventsim, scene_file):

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from eventsim.record.events import Kind
 from eventsim.replay.flight_table import flights, together
 from eventsim.replay.log import AnyLog
+from eventsim.scene.names import plural
 from eventsim.show import outlines
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label, shades_of
@@ -26,7 +27,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
     begin, end = passage.span
     pairs, every, last = 0, 0, end
     for rows in log.blocks():
-        hits, seen = np.flatnonzero(rows["kind"] == Kind.PAIR), int((rows["kind"] != Kind.KICK).sum())
+        hits, seen = np.flatnonzero(rows["kind"] == Kind.PAIR), int(np.isin(rows["kind"], (Kind.PAIR, Kind.WALL)).sum())
         if pairs <= MOST_CONTACTS < pairs + len(hits):
             last = min(last, float(rows["time"][hits[MOST_CONTACTS - pairs]]))
         if every <= MOST_VECTORS < every + seen:
@@ -57,6 +58,6 @@ def draw(figure: Figure, log: AnyLog) -> None:
     which = f"{pairs:,}" if drawn == pairs else f"the first {drawn:,} of {pairs:,}"
     label(
         axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
-        f"{name_of(log)}: {passage.stage.n:,} disks, {every:,} contacts, {which} of them between disks (dots)",
+        f"{name_of(log)}: {plural(passage.stage.n, 'disk')}, {plural(every, 'contact')}, {which} of them between disks (dots)",
     )  # fmt: skip
     axes.grid(visible=False)
