@@ -145,6 +145,19 @@ def test_a_scene_is_saved(tmp_path, suffix):
         scene.save(tmp_path / "nowhere" / "scene.toml")
 
 
+@pytest.mark.parametrize("name", ["balls", None])
+def test_a_scene_equals_its_file_whatever_either_is_called(tmp_path, name):
+    scene = es.Scene(es.Disks([(0.5, 0.5)], radius=0.1), es.Box((1, 1)), name=name)
+    scene.save(tmp_path / "x.toml")
+    loaded = es.load_scene(tmp_path / "x.toml")
+    assert loaded == scene
+    assert hash(loaded) == hash(scene)
+    assert loaded.name == (name or "x")
+    digests = {es.simulate(one, until=1.0, engine="reference", digest=True).digest for one in (scene, loaded)}
+    assert len(digests) == 1
+    assert loaded != es.Scene(scene.disks, es.Box((1, 2)), name="x")
+
+
 def test_figures_are_axes(run, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")
     pyplot = pytest.importorskip("matplotlib.pyplot")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -41,7 +41,8 @@ class Scene:
         until: stop time on the scene's clock, or None.
         events: number of events to stop after, or None.
         start_time: what the clock shows at the start.
-        name: what the scene is called, or None. A file without this key gives its own name.
+        name: what the scene is called, or None. A file without this key gives its own name. Scenes that differ in it alone
+            are equal.
 
     >>> import eventsim as es
     >>> disks = es.Disks(position=[(0.5, 0.5), (1.5, 0.5)], velocity=[(1, 0), (0, 0)], radius=0.1, mass=[1, 2])
@@ -60,7 +61,7 @@ class Scene:
     until: float | None
     events: int | None
     start_time: float
-    name: str | None
+    name: str | None = field(compare=False)
     law: OwnLaw | None
     seed: int | None
 
