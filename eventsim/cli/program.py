@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import sys
 import warnings
@@ -121,6 +122,11 @@ class Program(click.Group):
             return result
         except EventsimError as error:
             raise Failure(_message(error)) from error
+        except click.BadParameter as error:
+            hint = _decimal_point(error.message)
+            if not hint:
+                raise
+            raise click.BadParameter(error.message + hint, error.ctx, error.param, error.param_hint) from error
         except BrokenPipeError:
             # The reader had enough (| head): nothing may be written to the pipe any more, not even at exit.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -133,6 +139,12 @@ class Program(click.Group):
             raise Failure(f"{place}{error.strerror or error}") from error
         except MemoryError:
             raise Failure("there is not enough memory for this") from None
+
+
+def _decimal_point(message: str) -> str:
+    """What to write where a number was refused for its decimal comma; else nothing."""
+    found = re.search(r"'([-+]?\d*),(\d+)' is not a valid float", message)
+    return f" A number has a decimal point, not a comma: {found[1] or 0}.{found[2]}" if found else ""
 
 
 def _message(error: EventsimError) -> str:

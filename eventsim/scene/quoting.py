@@ -32,7 +32,7 @@ class Place(NamedTuple):
     value: int
 
 
-def quoted(line: str, column: int, why: str, write: str, label: str = "") -> str:
+def quoted(line: str, column: int, why: str, write: str, label: str = "", example: bool = False) -> str:
     """The lines that follow the sentence of a problem.
 
     Args:
@@ -41,6 +41,7 @@ def quoted(line: str, column: int, why: str, write: str, label: str = "") -> str
         why: what is wrong there; may be empty.
         write: what would be right, one or more lines; empty: nothing.
         label: what the line is called, as in "line 3".
+        example: whether `write` only shows the form.
     """
     if len(line) > WIDEST:
         first = min(max(column - WIDEST // 2, 0), len(line) - WIDEST)
@@ -49,7 +50,7 @@ def quoted(line: str, column: int, why: str, write: str, label: str = "") -> str
     width = max(len(label), len("write")) + 2
     shown = [f"{label}:".ljust(width) + line.strip(), (" " * (width + column - inset) + f"^ {why}").rstrip()]
     for number, right in enumerate(write.splitlines() if len(write) <= WIDEST else ()):
-        shown.append(("" if number else "write:").ljust(width) + right.strip())
+        shown.append(("" if number else "as in:" if example else "write:").ljust(width) + right.strip())
     return "".join(f"\n    {row}" for row in shown)
 
 
@@ -98,7 +99,7 @@ def with_lines(error: SceneError, text: str, data: Mapping[str, Any], settings: 
 def _with_quotes(problem: str, quotes: list[str]) -> str:
     """A problem with its quoted lines; what these propose is not guessed as well."""
     told = "".join(quotes)
-    if "\n    write:" in told:
+    if "\n    write:" in told or "\n    as in:" in told:
         problem = GUESS.sub(lambda guess: guess[0] if guess[1] and guess[1] in told else "unknown key", problem)
     return problem + told
 
@@ -116,7 +117,8 @@ def _quotes(
         setting = typed[path]
         name, _, value = setting.partition("=")
         told = _remedy(table, key, {**_table(data, table), (key or table): _read(value)})
-        yield quoted(setting, len(name) + 1, told.why, told.write.replace(f"{key or table} = ", f"{name}="), "typed")
+        write = told.write.replace(f"{key or table} = ", f"{name}=")
+        yield quoted(setting, len(name) + 1, told.why, write, "typed", told.example)
         return
     missing = problem[match.start() :].partition(" is missing")[1] and path not in places
     here = _table(data, table) if missing else {}
@@ -124,15 +126,14 @@ def _quotes(
         told = _remedy(table, other, here)
         if key and told.write.startswith(f"{key} = ") and f"{table}.{other}" in places:
             named = places[f"{table}.{other}"]
-            yield quoted(lines[named.line - 1], named.key, told.why, told.write, f"line {named.line}")
+            yield quoted(lines[named.line - 1], named.key, told.why, told.write, f"line {named.line}", told.example)
             return
     place = places.get(path) or places.get(table) or places.get(f"{table}[0]") or places.get(table.partition("[")[0])
     if place is None:
         return
     if missing or "needs" in problem.split(":")[1][:8]:
-        line = EXAMPLES.get(key or "", "")
-        told = Remedy(f"this table lacks {key}" if key else "", line)
-        yield quoted(lines[place.line - 1], place.key, told.why, told.write, f"line {place.line}")
+        lacks = f"this table lacks {key}" if key else ""
+        yield quoted(lines[place.line - 1], place.key, lacks, EXAMPLES.get(key or "", ""), f"line {place.line}", True)
         return
     told = _remedy(table, key, _table(data, table) if key else data)
     unknown = "unknown key" in problem
@@ -141,7 +142,8 @@ def _quotes(
     if unknown and "above the first table" in told.why and header is not None:
         first = min(place.line for place in places.values() if HEADER.match(lines[place.line - 1]))
         write = f"{write}\n{lines[first - 1].strip()}"
-    yield quoted(lines[place.line - 1], place.key if unknown else place.value, told.why, write, f"line {place.line}")
+    column = place.key if unknown else place.value
+    yield quoted(lines[place.line - 1], column, told.why, write, f"line {place.line}", told.example)
 
 
 def _read(written: str) -> Any:

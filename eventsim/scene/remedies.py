@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 from eventsim.scene import restitution, roughness
@@ -105,9 +106,22 @@ ALIASES: dict[str, dict[str, str]] = {
 
 WORDS = {
     "kind": "box:rectangle,rect,square,walls,closed periodic:torus,pbc,wrap open:free,infinite,none,plane channel:tube,pipe "
-    "segment:line,straight,wall polygon:poly,triangle,rectangle circle:ring,container,disk polyline:chain,path",
+    "segment:line,straight,wall polygon:poly,triangle,rectangle,box circle:ring,container polyline:chain,path ellipse:oval "
+    "arc:bow",
     "arrangement": "random:uniform,rand square:grid,lattice,cubic hexagonal:hex,hexagon,triangular compressed:dense,packed",
 }
+
+POSTS = ("obstacle", "post", "pin", "peg", "pillar", "scatterer", "bumper")
+"""What people call what stands still and is met from outside."""
+
+ROUND_POST = "a round post is a [[disk]] with mass = inf"
+"""How it is said here."""
+
+NO_WALLS = {
+    **dict.fromkeys(("pocket", "hole", "sink", "goal", "exit"), "disks do not vanish: there are no pockets"),
+    **dict.fromkeys((*POSTS, "disk", "disc"), ROUND_POST),
+}
+"""Kinds of walls that there are not, and why."""
 
 NEEDLESS = {
     **dict.fromkeys(
@@ -119,10 +133,14 @@ NEEDLESS = {
 
 
 class Remedy(NamedTuple):
-    """Why a key or value will not do, and the lines that would; no lines where it is best left out."""
+    """Why a key or value will not do, and the lines that would; no lines where it is best left out.
+
+    example: whether these are of some other scene, as nobody knows what was meant.
+    """
 
     why: str
     write: str
+    example: bool = False
 
 
 def remedy(
@@ -147,6 +165,8 @@ def _remedy(
     table: str, key: str, here: Mapping[str, Any], known: tuple[str, ...], scene_keys: tuple[str, ...]
 ) -> Remedy | None:
     value = here[key]
+    if table == "wall" and (point := _of_arc(key, here)) is not None:
+        return point
     if key in known:
         return _of_value(table, key, value)
     word = re.sub(r"[^a-z]+$", "", key.lower().replace("-", "_"))
@@ -156,6 +176,8 @@ def _remedy(
     if own is not None:
         return own
     if not table:
+        if (word in POSTS or word.removesuffix("s") in POSTS) and _is_round(value):
+            return Remedy(ROUND_POST, "[[disk]]\nmass = inf")
         header = TABLES.get(word) or TABLES.get(word.removesuffix("s"))
         if isinstance(value, Mapping | list) and header is not None:
             return Remedy(f"such a table is called {header}", header)
@@ -163,12 +185,12 @@ def _remedy(
             return Remedy("names are written small", "[domain]")
     right = word if word in known else _alias(table, word)
     if right is not None:
-        return Remedy(f"the key is {right}", _line(table, right, value))
+        return _line(f"the key is {right}", table, right, value)
     if table and word in scene_keys:
-        return Remedy(f"{word} is a key of the scene: it stands above the first table", _line("", word, value))
+        return _line(f"{word} is a key of the scene: it stands above the first table", "", word, value)
     right = _alias("", word) if table else None
     if right is not None:
-        return Remedy(f"the key is {right}, above the first table", _line("", right, value))
+        return _line(f"the key is {right}, above the first table", "", right, value)
     return None
 
 
@@ -183,10 +205,16 @@ def meant(word: str) -> str:
     return next((right for table in ALIASES if (right := _alias(table, word)) is not None), word)
 
 
-def _line(table: str, key: str, value: Any) -> str:
+def _line(why: str, table: str, key: str, value: Any) -> Remedy:
     """A line with a key, its value mended where that is needed."""
     mended = None if _fits(key, value) else _of_value(table, key, value)
-    return f"{key} = {written(value)}" if mended is None else mended.write
+    return Remedy(why, f"{key} = {written(value)}") if mended is None else mended._replace(why=why)
+
+
+def _is_round(value: Any) -> bool:
+    """Whether the first of the tables in a list has a radius and no ends."""
+    first = value[0] if isinstance(value, list) and value else value
+    return isinstance(first, Mapping) and not {"start", "end", "points"} & first.keys() and bool({"radius", "r"} & first.keys())
 
 
 def _fits(key: str, value: Any) -> bool:
@@ -226,12 +254,37 @@ def _two(key: str, one: str, two: str) -> Callable[[Mapping[str, Any]], Remedy]:
     )
 
 
+def _turns(*angles: float) -> tuple[list[float], str]:
+    """Angles in radians, and what they are taken for."""
+    degrees = any(abs(angle) > 2.0 * math.pi for angle in angles) or not any(angles)
+    return [math.radians(angle) if degrees else angle for angle in angles], "degrees" if degrees else "radians"
+
+
+def _around(center: Sequence[float], radius: float, turn: float) -> list[float]:
+    """The point at a distance from another one, in a direction."""
+    return [round(middle + radius * way, 6) + 0.0 for middle, way in zip(center, (math.cos(turn), math.sin(turn)), strict=True)]
+
+
 def _polar(here: Mapping[str, Any]) -> Remedy:
     speed, angle = float(here.get("speed", 1.0)), float(here.get("angle", 0.0))
-    turn, unit = (math.radians(angle), "degrees") if abs(angle) > 2.0 * math.pi or angle == 0.0 else (angle, "radians")
-    velocity = [round(speed * math.cos(turn), 6) + 0.0, round(speed * math.sin(turn), 6) + 0.0]
+    (turn,), unit = _turns(angle)
     taken = f", the angle read as {unit}" if "angle" in here else ""
-    return Remedy(f"a disk has a velocity [vx, vy]{taken}", f"velocity = {written(velocity)}")
+    return Remedy(f"a disk has a velocity [vx, vy]{taken}", f"velocity = {written(_around((0.0, 0.0), speed, turn))}")
+
+
+def _of_arc(key: str, here: Mapping[str, Any]) -> Remedy | None:
+    """What to write for a key of an arc that is told by its circle and two angles; None where it is not."""
+    told = {"radius", "start", "end"} <= here.keys() and _numbers(here, ("radius", "start", "end"))
+    if here.get("kind") != "arc" or not told or not _fits("center", here.get("center")):
+        return None
+    (first, last), unit = _turns(here["start"], here["end"])
+    turns = {"start": first, "center": 0.5 * (first + last), "end": last}
+    why = f"an arc has three points on it, the angles read as {unit}"
+    if key not in turns:
+        return Remedy("three points tell the circle", "") if key == "radius" else None
+    name = "through" if key == "center" else key
+    place = _around(here["center"], here["radius"], turns[key])
+    return Remedy(why, f"{name} = {written(place)}")
 
 
 def _half(here: Mapping[str, Any]) -> Remedy:
@@ -254,13 +307,20 @@ COMBINED: dict[str, dict[tuple[str, ...], Callable[[Mapping[str, Any]], Remedy]]
 
 def _of_value(table: str, key: str, value: Any) -> Remedy | None:
     """What to write instead of the value of a known key."""
-    example = Remedy("", EXAMPLES[key]) if key in EXAMPLES else None
+    of_wall = table == "wall" and key == "kind"
+    line = 'kind = "segment"' if of_wall else EXAMPLES.get(key)
+    example = None if line is None else Remedy("", line, example=True)
     mended: Any = None
     if key in WORDS and isinstance(value, str):
+        word = value.lower()
+        if of_wall and word.removesuffix("s") in NO_WALLS:
+            return Remedy(NO_WALLS[word.removesuffix("s")], "")
         groups = [group.partition(":") for group in WORDS[key].split()]
-        mine = groups if table == "wall" and key == "kind" else groups[:4]
-        fits = [right for right, _, words in mine if value.lower() == right or value.lower() in words.split(",")]
-        mended = fits[-1] if fits else None
+        mine = {right: words.split(",") for right, _, words in (groups[4:] if of_wall else groups[:4])}
+        fits = [right for right, words in mine.items() if word == right or word in words] or get_close_matches(word, mine, n=1)
+        mended = fits[0] if fits else None
+    elif key == "velocity" and isinstance(value, Mapping) and "speed" in value and value.keys() <= {"speed", "angle"}:
+        return _polar(value) if _numbers(value, ("speed", "angle")) else example
     elif key in TEXTS and _is_number(value):
         mended = str(value)
     elif key in PAIRS:

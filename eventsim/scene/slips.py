@@ -26,7 +26,8 @@ WIDEST = 400
 PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 VALUE = r"(?<![\w.])"
 POWER = r"(?:(\d+(?:\.\d+)?)\s*\*\s*)?10(?:\^|\*\*)([-+]?\d+)"
-UNIT = r"(=\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[A-Za-zµ°][\w/²^*-]*\s*(?=#|$)"
+UNIT = r"(=\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?|\])\s*[A-Za-zµ°][\w/²^*-]*\s*(?=#|$)"
+UNIT_IN_LIST = r"(?<=\d)\s*(?![eE][-+]?\d)[A-Za-zµ°][\w/²^*-]*(?=\s*[,\]])"
 
 
 class Slip(NamedTuple):
@@ -105,6 +106,7 @@ SLIPS = (
     Slip("a file does not compute", _sub(VALUE + r"(\d+(?:\.\d+)?)\s*([*/])\s*(\d+(?:\.\d+)?)", _fraction)),
     Slip("a power of ten is written with e", _sub(POWER, lambda m: f"{m[1] or 1}e{m[2]}")),
     Slip("units are your own: a number stands alone", _sub(UNIT, r"\1")),
+    Slip("units are your own: a number stands alone", _sub(UNIT_IN_LIST, "")),
     Slip("true and false are written small", _sub(r"\b(True|False)\b", lambda m: m[1].lower())),
     Slip("infinity is written inf", _sub(r"\b(?:infinity|Infinity|Inf|INF|oo|math\.inf|np\.inf)\b", "inf")),
     Slip("a text stands in quotation marks", _worded),
@@ -129,7 +131,7 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
     key = _key_of(lines[line - 1])
     example = "" if not key or key not in EXAMPLES else EXAMPLES[key]
     return f"{match[1]} (at line {line}, column {column + 1})" + quoted(
-        lines[line - 1], column, "", example, f"line {line}"
+        lines[line - 1], column, "", example, f"line {line}", True
     )
 
 

@@ -280,6 +280,7 @@ def _place_problems(disks: Disks, domain: Domain, walls: Sequence[Wall], names: 
             f"{names.disk(i)} (center {_at(disks, i)}, radius {disks.radius[i]}) reaches {depth:.6g} "
             + (
                 f"out of {pieces[wall].kind} {pieces[wall].name}: must be inside its container"
+                + (" (a round post is a disk of mass inf)" if depth > 2.0 * disks.radius[i] else "")
                 if pieces[wall].holds
                 else f"across {pieces[wall].kind} {pieces[wall].name}: may touch a wall, not reach into it"
             )

@@ -22,6 +22,12 @@ def rows_of(text):
     return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(text.splitlines())]
 
 
+def test_a_decimal_comma_is_answered_with_the_point(eventsim, log_file):
+    result = eventsim("state", log_file, "--at", "0,5")
+    assert result.exit_code == 2
+    assert "A number has a decimal point, not a comma: 0.5" in " ".join(result.stderr.split())
+
+
 def test_one_at_takes_several_times(eventsim, log_file):
     rows = rows_of(eventsim("state", log_file, "--at", 0.5, "1e0", 1.25).stdout)
     assert [(row["time"], row["disk"]) for row in rows] == [

@@ -1,5 +1,7 @@
 """Mistakes that beginners make in a scene file: each is answered with its line, a caret, and the line that would be right."""
 
+import re
+
 import pytest
 
 from eventsim.errors import SceneError
@@ -67,6 +69,10 @@ MISTAKES = [
     ("mass = 2.0", "mass: 2.0", ": 2.0", "mass = 2.0"),
     ("mass = 2.0", "mass 2.0", "2.0", "mass = 2.0"),
     ("mass = 2.0", "mass = 2.0 kg", " kg", "mass = 2.0"),
+    ("position = [0.3, 0.8]", "position = [0.3 m, 0.8 m]", " m, 0.8 m]", "position = [0.3, 0.8]"),
+    ("position = [0.3, 0.8]", "position = [0.3, 0.8] m", " m", "position = [0.3, 0.8]"),
+    ("velocity = [1.0, 0.0]", "velocity = {speed = 2.0, angle = 90}", "{speed", "velocity = [0.0, 2.0]"),
+    ('kind = "segment"', 'kind = "segmnt"', '"segmnt"', 'kind = "segment"'),
     ("mass = 2.0", "mass = 4/2", "4/2", "mass = 2.0"),
     ("mass = 2.0", "mass = 2.0;", ";", "mass = 2.0"),
     ("mass = 2.0", "mass = 2.0  // heavy", "  // heavy", "mass = 2.0"),
@@ -119,7 +125,7 @@ def test_a_mistake_is_told_with_its_line_a_caret_and_the_right_line(tmp_path, li
         number = int(label.removeprefix("line "))
         assert shown.strip() == text.splitlines()[number - 1].strip()
         pointed = rows[0][rows[1].index("^") :]
-        found.append((pointed, [row.removeprefix("write:").strip() for row in rows[2:]]))
+        found.append((pointed, [re.sub("^(write|as in):", "", row).strip() for row in rows[2:]]))
     wanted = [] if right is None else right.split("\n")
     assert any(pointed.startswith(at) and (at or not pointed) and write == wanted for pointed, write in found), problems
 
@@ -135,6 +141,58 @@ def test_a_mistake_is_told_with_its_line_a_caret_and_the_right_line(tmp_path, li
 def test_what_is_proposed_makes_a_scene(tmp_path, line, right):
     (tmp_path / "scene.toml").write_text(SCENE.replace(line, right))
     load_scene(tmp_path / "scene.toml", ["gas.0.count=20"])
+
+
+def told_of(tmp_path, tables):
+    """What is told of a scene with further tables, without the path of its file."""
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE + tables)
+    return "\n".join(told(path)).replace(f"{path}: ", "")
+
+
+def test_what_only_shows_the_form_is_called_an_example(tmp_path):
+    text = told_of(tmp_path, '[[disk]]\nposition = [0.5, 0.2]\nradius = 0.01\nmass = "heavy"\n')
+    assert "    as in:   mass = 2.0" in text
+    assert "write:" not in text
+
+
+@pytest.mark.parametrize(
+    ("kind", "why"), [("pocket", "there are no pockets"), ("holes", "no pockets"), ("post", "a [[disk]] with mass = inf")]
+)
+def test_a_kind_of_wall_that_there_is_not_is_answered_without_another_ones_name(tmp_path, kind, why):
+    text = told_of(tmp_path, f'[[wall]]\nkind = "{kind}"\n')
+    assert why in text
+    assert "write:" not in text
+    assert "as in:" not in text
+
+
+def test_a_kind_of_wall_nobody_knows_is_answered_with_one_of_a_wall(tmp_path):
+    assert 'as in:   kind = "segment"' in told_of(tmp_path, '[[wall]]\nkind = "xyzzy"\n')
+
+
+def test_a_round_obstacle_is_a_disk_that_nothing_deflects(tmp_path):
+    table = "[[obstacle]]\nposition = [0.6, 0.2]\nradius = 0.05\n"
+    text = told_of(tmp_path, table)
+    assert "a round post is a [[disk]] with mass = inf\n    write:   [[disk]]\n             mass = inf" in text
+    (tmp_path / "scene.toml").write_text(SCENE + table.replace("[[obstacle]]", "[[disk]]\nmass = inf"))
+    assert load_scene(tmp_path / "scene.toml").disks.mass.tolist()[:2] == [2.0, float("inf")]
+    assert "write:   [[wall]]" in told_of(tmp_path, "[[obstacle]]\nstart = [0.6, 0.2]\nend = [0.6, 0.3]\n")
+
+
+def test_a_disk_outside_of_a_circle_is_told_what_a_round_post_is(tmp_path):
+    circle = '[[wall]]\nkind = "circle"\ncenter = [0.6, 0.2]\nradius = 0.05\n'
+    assert "must be inside its container (a round post is a disk of mass inf)" in told_of(tmp_path, circle)
+
+
+def test_an_arc_of_angles_is_told_its_three_points(tmp_path):
+    arc = '[[wall]]\nkind = "arc"\ncenter = [0.7, 0.2]\nradius = 0.1\nstart = 0\nend = 180\n'
+    text = told_of(tmp_path, arc)
+    proposed = [row.split("write:")[1].strip() for row in text.splitlines() if "write:" in row]
+    assert set(proposed) == {"start = [0.8, 0.2]", "through = [0.7, 0.3]", "end = [0.6, 0.2]"}
+    assert "the angles read as degrees" in text
+    assert "as in:" not in text
+    (tmp_path / "scene.toml").write_text(SCENE + '[[wall]]\nkind = "arc"\n' + "\n".join(dict.fromkeys(proposed)))
+    assert load_scene(tmp_path / "scene.toml").walls[-1].through == (0.7, 0.3)
 
 
 def test_a_setting_is_quoted_as_it_was_typed(tmp_path):
