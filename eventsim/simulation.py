@@ -114,7 +114,8 @@ def simulate(
     if measure is not False:
         from eventsim.measure import Meter  # only who measures pays for it
 
-        meter = Meter(scene, None if measure is True else measure, profile=profile, engine=chosen.name)
+        discard = None if measure is True else number(measure, "measure")
+        meter = Meter(scene, discard, profile=profile, engine=chosen.name)
         wanted.takers.append(meter.write)
     if trust or (trust is None and (chosen.name == "reference" or (chosen.name == "auto" and log is not False))):
         if not chosen.replays:

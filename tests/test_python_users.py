@@ -158,6 +158,35 @@ def test_a_scene_equals_its_file_whatever_either_is_called(tmp_path, name):
     assert loaded != es.Scene(scene.disks, es.Box((1, 2)), name="x")
 
 
+def test_a_log_file_tells_states(run, tmp_path):
+    run.log.save(tmp_path / "log.csv")
+    log = es.load_log(tmp_path / "log.csv")
+    for time in (0.0, 0.7, run.time):
+        assert log.state_at(time).position.tobytes() == run.state_at(time).position.tobytes()
+        assert log.state_at(time).energy == run.state_at(time).energy
+    with pytest.raises(es.LogError, match="there is no state at time"):
+        log.state_at(run.time + 1.0)
+
+
+def test_slips_of_users_are_told_in_a_sentence(run):
+    for slip, words in (
+        (lambda: run.log["time"], r"it is a column, log\.time"),
+        (lambda: run.log[run.log.time < 1], "one number or a slice"),
+        (lambda: run.log[[1, 2]], r"choose among them in log\.rows or log\.to_pandas"),
+        (lambda: run.state_at([1, 2]), r"time = \[1, 2\]: must be a number; ask for one state after another"),
+        (lambda: run.state_at("1"), "must be a number"),
+        (lambda: es.simulate(run.scene, until=1, measure="yes"), "measure = 'yes': must be a number"),
+        (lambda: es.load_scene({}), "from the path of a file, not from the type dict"),
+        (lambda: es.Disks([(0, 0)], radius="0.1"), "disks.radius: every entry must be a number"),
+        (lambda: es.Disks([(0, 1j)], radius=0.1), "disks.position: every entry must be a number"),
+    ):
+        with pytest.raises(es.EventsimError, match=words) as caught:
+            slip()
+        assert len(getattr(caught.value, "problems", [""])) == 1
+    with pytest.raises(IndexError):
+        run.log[len(run.log)]
+
+
 def test_figures_are_axes(run, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")
     pyplot = pytest.importorskip("matplotlib.pyplot")
@@ -171,6 +200,8 @@ def test_figures_are_axes(run, monkeypatch):
     assert fresh.figure.number in pyplot.get_fignums()
     with pytest.raises(es.EventsimError, match="series has several panels: leave ax out"):
         run.plot("series", left)
+    with pytest.raises(es.EventsimError, match=r"ndarray: must be axes of matplotlib \(of several, one: ax=axes.flat\[0\]\)"):
+        run.plot("speeds", ax=np.array([left, right]))
     with pytest.raises(es.EventsimError, match="there is no figure 'speed'"):
         run.plot("speed")
     with pytest.raises(es.LogError, match="plot needs the log"):

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 
-from eventsim.errors import EventsimError
+from eventsim.errors import EventsimError, LogError
 from eventsim.notebook import few, html_table
-from eventsim.record.events import LABELS, Column, Kind, Rows, SpinColumns, columns_of, has_spins, unchangeable
+from eventsim.record.events import FIELDS, LABELS, Column, Kind, Rows, SpinColumns, columns_of, has_spins, unchangeable
 from eventsim.record.places import on_scene_axes
 from eventsim.record.provenance import Provenance
 from eventsim.scene.corner import corner_of
@@ -55,6 +55,14 @@ SHOWN = ("event", "time", "kind", "a", "b", "wall", "xa", "ya", "impulse")
 """Columns of the table in a notebook."""
 
 
+def _no_row(place: object) -> str:
+    """What to write where rows of a log are asked for by something else than a number."""
+    if isinstance(place, str):
+        named = f": it is a column, log.{place}" if place in FIELDS else ""
+        return f"log[{place!r}] is no row{named}"
+    return f"log[{type(place).__name__}]: rows go by one number or a slice; choose among them in log.rows or log.to_pandas()"
+
+
 class Excerpt(SpinColumns):
     """Some rows of a log.
 
@@ -83,7 +91,10 @@ class Excerpt(SpinColumns):
         """One event, or some rows."""
         if isinstance(place, slice):
             return Excerpt(self.provenance, self.rows[place])
-        number = operator.index(place)
+        try:
+            number = operator.index(place)
+        except TypeError:
+            raise LogError(_no_row(place)) from None
         if not -len(self) <= number < len(self):
             raise IndexError(f"there is no row {number}: the log has {len(self)}")
         row = self.rows[number : number + 1 or None]

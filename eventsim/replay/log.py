@@ -7,39 +7,23 @@ from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, overload
+from typing import TYPE_CHECKING, overload
 
 from eventsim.errors import LogError
 from eventsim.record.digest import digest_of
-from eventsim.record.events import Rows
+from eventsim.record.events import Rows, State
 from eventsim.record.files import open_log, open_sink, read_log
 from eventsim.record.provenance import Provenance
+from eventsim.replay.any_log import AnyLog as AnyLog
 from eventsim.replay.excerpt import Event, Excerpt
 from eventsim.scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from eventsim.replay.replay import Replay
+
 SAVE_BLOCK = 1 << 16
-
-
-class AnyLog(Protocol):
-    """A log whose rows can be gone through any number of times: in memory, or in a file.
-
-    path: the file, None where it comes from a run.
-    """
-
-    path: Path | None
-    provenance: Provenance
-
-    def __len__(self) -> int: ...
-
-    @property
-    def scene(self) -> Scene:
-        """The realised scene that the log tells about."""
-
-    def blocks(self) -> Generator[Rows]:
-        """Yield the full rows block by block."""
 
 
 class EventLog(Excerpt):
@@ -99,6 +83,19 @@ class EventLog(Excerpt):
         Raises EventsimError without pandas.
         """
         return super(EventLog, self._full).to_pandas()
+
+    @cached_property
+    def _replay(self) -> Replay:
+        from eventsim.replay.replay import Replay  # only who asks for states pays for it
+
+        return Replay(self)
+
+    def state_at(self, time: float) -> State:
+        """The state at any time of the run, by replay; at the time of an event, the state after it.
+
+        Raises LogError for a time that the log does not cover.
+        """
+        return self._replay.state_at(time)
 
     def blocks(self) -> Generator[Rows]:
         """Yield the full rows block by block."""

@@ -11,9 +11,9 @@ from eventsim.errors import LogError
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Floats, State
 from eventsim.record.places import on_scene_axes
+from eventsim.replay.any_log import AnyLog
 from eventsim.replay.clock_windows import Changes, Windows, stage_of_log, windows_of
 from eventsim.replay.flight import Flights, fly
-from eventsim.replay.log import AnyLog
 from eventsim.replay.runs import Runs
 from eventsim.scene.stage import Stage
 

@@ -8,7 +8,7 @@ from typing import Self
 from eventsim.errors import LogError
 from eventsim.record.events import State
 from eventsim.replay.log import EventLog, load_log
-from eventsim.replay.replay import Replay
+from eventsim.replay.replay import one_time
 from eventsim.runner.outcome import Outcome
 
 
@@ -17,7 +17,6 @@ class PastRun(Outcome):
     """An outcome that knows the states in between."""
 
     _log: EventLog | None = None
-    _replay: Replay | None = None
 
     @classmethod
     def of(cls, outcome: Outcome) -> Self:
@@ -54,12 +53,10 @@ class PastRun(Outcome):
         Raises LogError where no log was kept or the time is outside the run.
         """
         if self.trajectory is not None:
+            time = one_time(time)
             if not self.start_time <= time <= self.time:
                 raise LogError(
                     f"there is no state at time {time!r}: the run is from {self.start_time!r} to {self.time!r}"
                 )
             return replace(self.trajectory.state_at(time, self.start_time), scene=self.scene)
-        log = self._log_for("state_at")
-        if self._replay is None:
-            self._replay = Replay(log)
-        return self._replay.state_at(time)
+        return self._log_for("state_at").state_at(time)

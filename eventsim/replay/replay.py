@@ -7,12 +7,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eventsim.errors import LogError
 from eventsim.record.events import Column, Floats, Kind, Rows, State
+from eventsim.replay.any_log import LogInMemory
 from eventsim.replay.clock_windows import Windows, changes_in
 from eventsim.replay.flight import Flights, start_flights
-from eventsim.replay.log import EventLog
 from eventsim.replay.motion import Motion, pull_of
 from eventsim.replay.runs import Runs
+from eventsim.scene.numbers import as_number
+
+
+def one_time(value: object) -> float:
+    """A time as a float; raises LogError where the value is not one number."""
+    try:
+        return as_number(value)
+    except (TypeError, OverflowError) as error:
+        raise LogError(f"time = {value!r}: {error}; ask for one state after another") from None
 
 
 class Replay(Motion):
@@ -21,11 +31,11 @@ class Replay(Motion):
     A compact log is expanded first. Between rows a disk is in free flight; its last row is found by bisection.
     """
 
-    def __init__(self, log: EventLog) -> None:
+    def __init__(self, log: LogInMemory) -> None:
         """Index the rows of each disk: O(rows log rows) time, 16 bytes per row and disk in it."""
         self.full = log.expand()
         super().__init__(self.full, Runs([self.full.rows]), lambda: self._changes)
-        self._window = self.windows.known(self.full.epoch)
+        self._window = self.windows.known(self.full.rows["epoch"])
         self._rows, self._first = _rows_of_disks(self.full.rows, self.stage.n)
 
     def _changes(self, windows: Windows, first: int, last: int) -> tuple[Column, Flights]:
@@ -38,7 +48,7 @@ class Replay(Motion):
         The time of an event is the one in the log's column `time`: the exact clock behind it decides, not its rounding.
         O(log rows) per disk. Raises LogError for a time that the log does not cover.
         """
-        time = float(time)
+        time = one_time(time)
         return self._state(self._place_of(time), time)
 
     def acceleration_at(self, time: float) -> Floats:
@@ -51,9 +61,9 @@ class Replay(Motion):
     def _place_of(self, time: float) -> tuple[int, float]:
         """Return (window, remainder) of a time on the scene's clock."""
         self._demand_told(time)
-        row = int(np.searchsorted(self.full.time, time, side="right")) - 1
-        if row >= 0 and self.full.time[row] == time:
-            return int(self._window[row]), float(self.full.remainder[row])
+        row = int(np.searchsorted(self.full.rows["time"], time, side="right")) - 1
+        if row >= 0 and self.full.rows["time"][row] == time:
+            return int(self._window[row]), float(self.full.rows["remainder"][row])
         return self.windows.place(time)
 
     def final(self) -> State:
@@ -97,7 +107,7 @@ class Replay(Motion):
             middle = (low[open_] + high[open_]) // 2
             row = self._rows[middle]
             reached = self._window[row] < window
-            reached |= (self._window[row] == window) & (self.full.remainder[row] <= remainder)
+            reached |= (self._window[row] == window) & (self.full.rows["remainder"][row] <= remainder)
             low[open_[reached]] = middle[reached] + 1
             high[open_[~reached]] = middle[~reached]
         found = low > self._first[:-1]

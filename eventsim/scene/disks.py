@@ -76,12 +76,13 @@ class Disks:
         wanted = {**dict.fromkeys(given, (count,)), "velocity": (count, 2)}
         arrays = {"position": centres}
         for key, value in given.items():
+            known = len(problems)
             array = _floats(value, key, problems)
             if array.size == 0 and count == 0:
                 array = array.reshape(wanted[key])
             if array.ndim == 0 and key != "velocity":
                 array = np.full(count, array)
-            if array.shape != wanted[key]:
+            if array.shape != wanted[key] and len(problems) == known:
                 shape = f"{wanted[key]}" if key == "velocity" else f"{wanted[key]} or a single number"
                 problems.append(f"disks.{key} has the shape {array.shape}: must be {shape}")
             arrays[key] = array
@@ -237,7 +238,10 @@ def _names(value: str | Sequence[str] | Names | None, count: int, problems: list
 def _floats(value: ArrayLike, key: str, problems: list[str]) -> Floats:
     """A fresh float64 copy of the value: whoever gave it may go on changing theirs."""
     try:
-        return np.array(value, dtype=np.float64)
+        found = np.asarray(value)
+        if found.dtype.kind in "USc":  # NumPy would read texts, and drop what is imaginary
+            raise TypeError
+        return np.array(found, dtype=np.float64)
     except (TypeError, ValueError):
         problems.append(f"disks.{key}: every entry must be a number, and the rows must have equal lengths")
         return np.empty(0)

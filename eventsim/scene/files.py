@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,8 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     Raises:
         SceneError: with all problems of the file.
     """
+    if not isinstance(path, str | PathLike):
+        raise SceneError(f"a scene is loaded from the path of a file, not from the type {type(path).__name__}")
     path, settings = Path(path), list(overrides or ())
     data, text = tables_of_file(path)
     changed = apply_overrides(data, settings)

@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -50,6 +51,7 @@ def plot(log: AnyLog, kind: str, ax: Axes | None = None) -> Axes:
     """
     draw = drawing_of(kind)
     if ax is not None:
+        _demand_axes(ax)
         draw(cast(Figure, OnAxes(ax, kind)), log)
         return ax
     from matplotlib import pyplot  # it chooses a window system, which files need not
@@ -61,6 +63,13 @@ def plot(log: AnyLog, kind: str, ax: Axes | None = None) -> Axes:
         pyplot.close(figure)
         raise
     return figure.axes[0]
+
+
+def _demand_axes(ax: object) -> None:
+    """Raise EventsimError for what is none of matplotlib's axes, as are several in an array."""
+    if not isinstance(ax, Axes):
+        several = " (of several, one: ax=axes.flat[0])" if isinstance(ax, np.ndarray) else ""
+        raise EventsimError(f"ax is of the type {type(ax).__name__}: must be axes of matplotlib{several}")
 
 
 def drawing_of(kind: str) -> Callable[[Figure, AnyLog], None]:

@@ -19,6 +19,7 @@ from eventsim.errors import EventsimError
 from eventsim.measure.trust import UNASKED, TrustLine
 from eventsim.record.events import SPINS, Column, Rows, has_spins, joined
 from eventsim.record.provenance import has_spin
+from eventsim.replay.any_log import LogInMemory
 from eventsim.replay.log import AnyLog, EventLog
 from eventsim.replay.motion import Motion
 from eventsim.replay.replay import Replay
@@ -80,7 +81,7 @@ def packed(log: AnyLog, color: str | None = None, seconds: float | None = None) 
     return description, base64.b64encode(column_bytes(columns)).decode("ascii")
 
 
-def trusted(log: EventLog) -> dict[str, float] | None:
+def trusted(log: LogInMemory) -> dict[str, float] | None:
     """Return the event, and its time, from which on places are beyond the digits; None where that is not known to come."""
     if not engine_named(log.provenance.engine).replays:
         return None
