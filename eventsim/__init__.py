@@ -27,7 +27,7 @@ from importlib import import_module
 
 TYPE_CHECKING = False  # type checkers know better; `typing` itself takes ten times as long to import as all of this
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"
 
 if TYPE_CHECKING:
     from eventsim.engines.base import Stop as Stop
