@@ -225,7 +225,7 @@ class Meter:
             if self.ensemble.angular_momentum is not None:
                 self._add_rotation(times, way)
             if self._profiler is not None:
-                self._profiler.add(times, way, velocity)
+                self._profiler.add(times, float(numbers[sums.INTERVAL]), way, velocity)
         counts[sums.FILLED] = 0
         if coarsen:
             self._correlator.coarsen()

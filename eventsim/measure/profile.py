@@ -82,7 +82,10 @@ class Profile:
 
 
 class Profiler:
-    """Sums states of all movers by slice and by stretch of time, in constant memory."""
+    """Sums states of all movers by slice and by stretch of time, in constant memory.
+
+    A sample counts for the time up to the next one: they become half as many where a run slows down.
+    """
 
     def __init__(self, scene: Scene, ensemble: Ensemble, axis: str) -> None:
         """Begin profiles along "x" or "y".
@@ -110,8 +113,8 @@ class Profiler:
         self._samples = np.zeros(BLOCKS)
         self._width = 0.0
 
-    def add(self, times: Floats, way: Floats, velocity: Floats) -> None:
-        """Add samples (S, W, 2) of all movers at times (S,) since what is discarded."""
+    def add(self, times: Floats, interval: float, way: Floats, velocity: Floats) -> None:
+        """Add samples (S, W, 2) of all movers at times (S,) since what is discarded, each for the time up to the next one."""
         along = AXES.index(self.axis)
         if not self._width:
             self._width = float(times[-1] - times[0]) / (BLOCKS // 2) or 1.0
@@ -126,12 +129,12 @@ class Profiler:
             share -= np.floor(share)
         slices = np.clip((share * SLICES).astype(np.int64), 0, SLICES - 1)
         block = np.minimum((times / self._width).astype(np.int64), BLOCKS - 1)
-        np.add.at(self._samples, block, 1.0)
+        np.add.at(self._samples, block, interval)
         flat = (block[:, None] * len(self._ensemble.species) + self._kind) * SLICES + slices
         vx, vy = velocity[..., 0], velocity[..., 1]
         for column, amount in ((COUNT, None), (VX, vx), (VY, vy), (V2, vx * vx + vy * vy)):
             weights = None if amount is None else amount.ravel()
-            found = np.bincount(flat.ravel(), weights, self._sums[..., column].size)
+            found = interval * np.bincount(flat.ravel(), weights, self._sums[..., column].size)
             self._sums[..., column] += found.reshape(self._sums.shape[:3])
 
     def result(self) -> Profile:

@@ -7,6 +7,8 @@ import pytest
 
 import eventsim as es
 from eventsim.measure import measure
+from eventsim.measure.ensemble import ensemble_of
+from eventsim.measure.profile import Profiler
 from eventsim.record.events import Kind
 from tests.engines.scenes import lattice_gas
 
@@ -60,6 +62,17 @@ def test_each_part_has_the_energy_of_its_own_time(scene, until, discard):
     # rounding of places in time, relative to a part
     scale = 1e-10 * expected.max()
     assert series.energy == pytest.approx(expected, rel=1e-10, abs=scale)
+
+
+def test_a_sample_of_a_profile_counts_for_the_time_to_the_next():
+    """Two units of time in the first of 32 slices, at speed 3, then eight in the last one, at speed 1, in one sample."""
+    scene = es.Scene(es.Disks([(0.5, 0.5)], [(1.0, 0.0)], 0.1), es.Box((32.0, 1.0)))
+    profiler = Profiler(scene, ensemble_of(scene), "x")
+    profiler.add(np.array([0.0, 1.0]), 1.0, np.zeros((2, 1, 2)), np.full((2, 1, 2), [3.0, 0.0]))
+    profiler.add(np.array([2.0]), 8.0, np.full((1, 1, 2), [31.0, 0.0]), np.array([[[1.0, 0.0]]]))
+    (one,) = profiler.result().species
+    assert one.density[[0, 1, 31]] == pytest.approx([0.2, 0.0, 0.8], rel=1e-15)
+    assert one.velocity[[0, 31], 0].tolist() == [3.0, 1.0]
 
 
 def test_a_disk_that_slides_down_was_tried():
