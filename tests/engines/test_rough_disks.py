@@ -272,29 +272,3 @@ def test_trajectories_of_disks_that_spin_are_not_judged(tmp_path):
         write_csv(file, state_columns(whole.scene, states))
     with pytest.raises(EventsimError, match="the disks of this scene spin"):
         es.validate(whole.scene, trajectory=path)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_other_labels_give_the_same_contacts_and_spins(seed):
-    from tests.engines.law_scenes import random_scene
-
-    scene = random_scene(seed, "rough")
-    order = np.random.default_rng(seed).permutation(len(scene.disks))
-    relabelled = es.Scene(
-        scene.disks.select(order), scene.domain, scene.walls, scene.gravity, scene.restitution,
-        tangential_restitution=scene.tangential_restitution,
-    )  # fmt: skip
-    one, other = run(scene, events=100).log, run(relabelled, events=100).log
-
-    def told(log, names):
-        """Rows by time and by disks as the first scene calls them: what each disk has after the contact."""
-        rows = []
-        for row in log.rows:
-            sides = [(names[row["a"]], *(row[key] for key in ("xa", "ya", "vxa", "vya", "spin_a")))]
-            if row["b"] >= 0:
-                sides.append((names[row["b"]], *(row[key] for key in ("xb", "yb", "vxb", "vyb", "spin_b"))))
-            rows.append((row["epoch"], row["remainder"], row["kind"], row["wall"], sorted(sides)))
-        return sorted(rows)
-
-    assert len(one) == len(other) > 20
-    assert told(one, range(len(order))) == told(other, order)
