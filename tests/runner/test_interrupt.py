@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from contextlib import suppress
 
 import numpy as np
@@ -196,6 +197,48 @@ except KeyboardInterrupt:
     assert not (tmp_path / f"{count}.csv").exists()
     if rest.exists():
         es.load_log(rest)
+
+
+def lone(domain, velocity=(0.7, 0.3)):
+    return es.Scene(es.Disks([[0.5, 0.5]], [velocity], 0.1), domain)
+
+
+ENDLESS = {
+    "cooled by 1e12": lambda: es.gallery("cooling", n=25, restitution=0.8),
+    "alone": lambda: lone(es.Periodic((1.3, 0.7))),
+    "alone in a box": lambda: lone(es.Box((1.3, 0.7))),
+    "quiet for long": lambda: es.Scene(
+        es.Disks([[0.25, 0.25], [0.75, 0.75]], [[1.0, 0.0], [1.0, 2.0**-50]], 0.1), es.Periodic((1.0, 1.0))
+    ),
+}
+
+
+@IN_MAIN
+@pytest.mark.parametrize("name", ENDLESS)
+def test_a_measured_run_hears_signals_within_a_second(name):
+    """A gas that had cooled was measured for 53 s after it had been asked to end.  Seconds are CPU time: others may run."""
+    scene, cools, asked = ENDLESS[name](), name.startswith("cooled"), []
+
+    def ask():
+        asked.append(time.process_time())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    def told(rows):
+        if waiting.ident is None and float(np.abs(rows["vxa"]).max()) < 1e-6:
+            waiting.start()
+
+    waiting = threading.Timer(0.05, ask)
+    wanted = {"until": 1e30 if cools else 1e9, "engine": "reference", "measure": True, "on_event": told if cools else None}
+    with interruptible() as interrupt:
+        if not cools:
+            waiting.start()
+        try:
+            run = es.simulate(scene, interrupt=interrupt, **wanted)
+        finally:
+            waiting.cancel()
+    assert time.process_time() - asked[0] < 1.0
+    assert run.stopped == "interrupted"
+    assert run.measures is not None
 
 
 @IN_MAIN
