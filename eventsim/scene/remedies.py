@@ -55,6 +55,9 @@ EXAMPLES = {
 """A line for each key that a table may have."""
 
 TEXTS = ("name", "kind", "arrangement", "path", "inside", "species", "contact_law")
+FILES = {"contact_law": r".+\.py:\w+", "path": r".+\.(csv|npz)"}
+"""Keys that name a file, and the form of the name."""
+
 WHOLES = ("events", "count", "seed", "frame")
 PAIRS = tuple(key for key, line in EXAMPLES.items() if re.fullmatch(r"\w+ = \[[^,]+, [^,]+\]", line))
 
@@ -311,6 +314,8 @@ def _of_value(table: str, key: str, value: Any) -> Remedy | None:
     line = 'kind = "segment"' if of_wall else EXAMPLES.get(key)
     example = None if line is None else Remedy("", line, example=True)
     mended: Any = None
+    if key in FILES and isinstance(value, str) and re.fullmatch(FILES[key], value):
+        return None  # what is wrong is in that file
     if key in WORDS and isinstance(value, str):
         word = value.lower()
         if of_wall and word.removesuffix("s") in NO_WALLS:

@@ -171,6 +171,16 @@ def test_a_file_that_cannot_be_run_is_refused_with_its_line(laws, text, words):
     assert words in str(refused.value)
 
 
+def test_what_is_wrong_in_the_file_of_a_law_is_not_mended_in_the_scene(laws):
+    """Another name was proposed, as if this one were wrong."""
+    scene = laws / "scene.toml"
+    scene.write_text('until = 1.0\ncontact_law = "laws.py:missing"\n[domain]\nkind = "box"\nsize = [1.0, 1.0]\n')
+    with pytest.raises(es.SceneError, match="has no function missing") as refused:
+        es.load_scene(scene)
+    assert 'line 2: contact_law = "laws.py:missing"' in str(refused.value)
+    assert "write:" not in str(refused.value)
+
+
 @pytest.mark.parametrize("law", ["laws.py", "laws.py:", "laws.py:a b", 3, {"name": "x"}])
 def test_a_name_is_a_file_and_a_function(laws, law):
     with pytest.raises(es.SceneError, match="contact_law"):
