@@ -212,7 +212,8 @@ def measures_text(asked: str, measures: Measures) -> str:
     eta = "" if measures.packing_fraction is None else f", packing fraction {short(measures.packing_fraction)}"
     who = [plural(measures.disks, "disk")] if measures.disks or not measures.tracers else []
     who += [plural(measures.tracers, "tracer")] if measures.tracers else []
-    lines = [f"{asked}: {' and '.join(who)}{eta}, over {short(measures.duration)} units of time"]
+    units = "unit" if measures.duration == 1.0 else "units"
+    lines = [f"{asked}: {' and '.join(who)}{eta}, over {short(measures.duration)} {units} of time"]
     if measures.table_seen is not None:
         area, perimeter = (short(number) for number in measures.table_seen)
         lines.append(f"  table of the centre: area {area}, perimeter {perimeter}")

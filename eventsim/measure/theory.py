@@ -239,11 +239,10 @@ def two_disk_box(a: float, b: float, d: float, kt: float, mass: float) -> TwoDis
 def rotation_ratio(restitution: float, tangential: float, moment: float) -> tuple[float, float, float]:
     """(kT of spins over kT of flights, decay, loss) in a homogeneous gas of equal rough disks, moments I / m r^2.
 
-    decay: by which factor exp(-decay) a contact of a disk brings a ratio nearer to it; loss: half of what one takes
-    of the energy then.  With Maxwell's distributions of
-    velocities and spins, independent of each other, contacts change the temperatures T and R, a contact of a disk being the unit
-    of time, by T' = -2 a T + 2 b R and R' = 4 b T - 4 c R, where h = q (1 + beta) / (2 (1 + q)), b = h^2 / 2 q,
-    a = (1 - e^2) / 4 + h (1 - h) / 2, c = h (1 - h / q) / 2 q.
+    decay: by which factor exp(-decay) a contact of a disk brings a ratio nearer to it; loss: half of what one takes of the
+    energy then.  With Maxwell's distributions of velocities and spins, independent of each other, contacts change the
+    temperatures T and R, a contact of a disk being the unit of time, by T' = -2 a T + 2 b R and R' = 4 b T - 4 c R, where
+    h = q (1 + beta) / (2 (1 + q)), b = h^2 / 2 q, a = (1 - e^2) / 4 + h (1 - h) / 2, c = h (1 - h / q) / 2 q.
     Source: M. Huthmann, A. Zippelius, Phys. Rev. E 56, R6275 (1997), doi:10.1103/PhysRevE.56.R6275; S. Luding, M. Huthmann,
     S. McNamara, A. Zippelius, Phys. Rev. E 58, 3416 (1998), doi:10.1103/PhysRevE.58.3416, equations 12-15.
     """

@@ -7,22 +7,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from eventsim.measure import sums, theory
+from eventsim.measure import sums
 from eventsim.measure.blocking import block_average
 from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.entries import Expected, average, beside, dash
 from eventsim.measure.measures import Measure
-from eventsim.measure.quantities.cooling import CHANGED, MOST_FLOWING, flowing
-from eventsim.measure.records import FEW, FEWEST_CONTACTS, Records
+from eventsim.measure.quantities.cooling import CHANGED, MOST_FLOWING, ROUGH_ACCURACY, SETTLED, flowing, rough_gas
+from eventsim.measure.records import FEWEST_CONTACTS, Records
 
 PARTS = 16
 """Stretches of equal numbers of contacts, of the second half of a run, whose means are averaged."""
-
-ACCURACY = 0.05
-"""Share to which theory is told: it knows neither the tails of distributions nor how spins and flights go together."""
-
-SETTLED = 3.0
-"""Decays of what a ratio begins with by the middle of a run, behind which it is averaged."""
 
 
 def measures(records: Records) -> Iterator[Measure]:
@@ -39,7 +33,11 @@ def measures(records: Records) -> Iterator[Measure]:
     if ensemble.law.keeps_energy():
         heat = 2.0 * records.channel(sums.TURNING) / ensemble.n
         yield average(records, "rotational_temperature", heat, records.time, "energy", remembered=True)
-    if ensemble.law.grips[0]:
+    if not ensemble.law.grips[0]:
+        return
+    if any(wall.velocity for wall in ensemble.law.treatments or ()):
+        yield dash("rotation_ratio", "1", "walls that slide make the disks flow: the energy of flights is not heat alone")
+    else:
         yield _ratio(records)
 
 
@@ -62,7 +60,8 @@ def _ratio(records: Records) -> Measure:
     spread = math.sqrt((first.var(ddof=1) + second.var(ddof=1)) / (PARTS // 2))
     note = None
     if decays < SETTLED:
-        note = f"it has not settled: {contacts:.2g} contacts of a disk before are {decays:.2g} of its decays"
+        needed = SETTLED * contacts / decays if decays > 0.0 else math.inf
+        note = f"it has not settled: {contacts:.2g} contacts of a disk before it is averaged, where it takes {needed:.2g}"
     elif math.isinf(decays) and contacts < FEWEST_CONTACTS:
         note = f"it may not have settled: {contacts:.2g} contacts of a disk before (at least {FEWEST_CONTACTS:g})"
     elif expected is None and abs(first.mean() - second.mean()) > CHANGED * spread:
@@ -77,13 +76,10 @@ def _expected(ensemble: Ensemble, contacts: float) -> tuple[Expected | None, flo
 
     None where theory does not speak of it, or not yet; inf decays where nobody knows.
     """
-    law, disks = ensemble.law, ensemble.scene.disks
-    moments = np.unique(disks.moments()[ensemble.counted])
-    plain = not law.by_speed and law.pairs is None and law.duration is None and ensemble.scene.gravity is None
-    alone = ensemble.torus and ensemble.alone and ensemble.equal and ensemble.n >= FEW and len(moments) == 1
-    if not plain or not alone or law.rough is None or ensemble.kicked:
+    told = rough_gas(ensemble)
+    if told is None:
         return None, math.inf
-    ratio, decay, loss = theory.rotation_ratio(law.pair, law.rough.pair, float(moments[0]))
+    ratio, decay, loss = told
     if decay * contacts < SETTLED or flowing(ensemble, 2.0 * contacts, loss) > MOST_FLOWING:
         return None, decay * contacts
-    return Expected(ratio, ACCURACY * ratio, "Luding et al. 1998, homogeneous"), decay * contacts
+    return Expected(ratio, ROUGH_ACCURACY * ratio, "Luding et al. 1998, homogeneous"), decay * contacts

@@ -36,6 +36,6 @@ def measures(records: Records) -> Iterator[Measure]:
             for side in hit:
                 yield average(records, f"force_{name}_{sides[side]}", impulse[side], records.time, FORCE)
         if pressed and length > 0.0:
-            for side in hit:
+            for side in hit or [0]:
                 called = f"pressure_{name}_{sides[side]}" if both else f"pressure_{name}"
                 yield average(records, called, impulse[side], length * records.time, PRESSURE)
