@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from eventsim.scene.numbers import FASTEST, LONGEST, SHORTEST, SLOWEST, SPEEDS, number
+from eventsim.scene.numbers import FASTEST, LONGEST, SHORTEST, SLOWEST, SPEED, number
 from eventsim.scene.restitution import line
 
 
@@ -61,11 +61,11 @@ def manner_problems(values: Mapping[str, Any]) -> Iterator[str]:
         yield f".restitution = {share}: must be from 0 to 1"
     shaking, warm, along = (values.get(key) for key in ("shaking", "temperature", "velocity"))
     if shaking is not None and shaking != 0.0 and not SLOWEST <= shaking <= FASTEST:
-        yield f".shaking = {shaking}: {SPEEDS}, and not below 0"
+        yield f".shaking = {shaking}: {SPEED}"
     if warm is not None and not SHORTEST <= warm <= LONGEST:
         yield f".temperature = {warm}: must be from {SHORTEST} to {LONGEST}"
     if along is not None and along != 0.0 and not SLOWEST <= abs(along) <= FASTEST:
-        yield f".velocity = {along}: {SPEEDS}"
+        yield f".velocity = {along}: {SPEED}, along the wall or, with a minus, against it"
     for key in ("restitution", "shaking"):
         if warm is not None and values.get(key) is not None:
             yield f".{key} stands beside temperature: a wall that heats takes no account of how a disk came"

@@ -15,6 +15,7 @@ SHORTEST, LONGEST = 1e-150, 1e150
 # Energies are squares of speeds, and their errors squares of these.
 SLOWEST, FASTEST = 1e-75, 1e75
 SPEEDS = f"must be two finite numbers, the larger {SLOWEST} to {FASTEST}, or both 0: else choose other units of length or time"
+SPEED = f"must be 0 or from {SLOWEST} to {FASTEST}"
 LENGTHS = f"must be above 0 (at least {SHORTEST}) and at most {LONGEST}"
 RADII = f"must be at least 0 and at most {LONGEST} (0 is a point, no other below {SHORTEST})"
 
