@@ -130,7 +130,7 @@ def in_theory(restitution, tangential, moment, contacts):
 @pytest.mark.parametrize("eta", [0.2, 0.05])
 @pytest.mark.parametrize(("restitution", "tangential"), [(1.0, 0.5), (0.99, -0.5), (0.95, 0.0), (1.0, 1.0)])
 def test_spins_warm_up_as_the_theory_of_rough_cooling_says(restitution, tangential, eta):
-    """Within 5 % at each point, with bars below .6 %: N = 10,000, sixteen starts; until shear modes grow, 8 contacts of a disk.
+    """Within 5 % at each point, with bars below .8 %: N = 10,000, sixteen starts; until shear modes grow, 8 contacts of a disk.
 
     At both densities spins are some 3 % late: fast disks meet more often and have their spins sooner than the mean disk has,
     while the theory takes speeds and spins for independent.
@@ -142,5 +142,5 @@ def test_spins_warm_up_as_the_theory_of_rough_cooling_says(restitution, tangenti
     theory = in_theory(restitution, tangential, 0.5, contacts)
     off, unsure = (100.0 * (mean / theory - 1.0)).round(2), (100.0 * bar / theory).round(2)
     print(f"e = {restitution}, beta = {tangential}, eta = {eta}: {mean.round(4)}, theory {theory.round(4)}: {off} +- {unsure} %")
-    assert np.all(bar < 0.006 * theory)
+    assert np.all(bar < 0.008 * theory)
     assert np.all(np.abs(mean / theory - 1.0) < 0.05)
