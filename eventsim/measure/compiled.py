@@ -31,9 +31,11 @@ class Kernels(NamedTuple):
     hold_all: Callable[[sums.Plan, sums.Sums, float], float]
 
 
-def kernels(rows: int) -> Kernels:
-    """The kernels for a run that has come to so many rows."""
+def kernels(rows: int, waits: bool = True) -> Kernels:
+    """The kernels for a run that has come to so many rows; waits: whether somebody waits for them to be compiled."""
     few = VERY_FEW_ROWS if "numba" in sys.modules else FEW_ROWS
+    if not waits and not _compiled.cache_info().currsize:
+        return PLAIN
     return _compiled() if rows > few and find_spec("numba") is not None else PLAIN
 
 

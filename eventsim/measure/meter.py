@@ -111,7 +111,7 @@ class Meter:
         self._filled, self._rows = 0, 0
         self._correlator: Correlator | None = None
         self._most_samples = len(self._sums.way)
-        self._time = 0.0
+        self._time, self._waits = 0.0, True
 
     def write(self, rows: Rows) -> None:
         """Take a block of full rows, the next of the run."""
@@ -125,8 +125,10 @@ class Meter:
                 self._take(self._block)
                 self._filled = 0
 
-    def finish(self, duration: float) -> Measures:
+    def finish(self, duration: float, waits: bool = True) -> Measures:
         """Return the measures of the run, which lasted `duration` (time since the start).
+
+        waits: whether somebody waits for kernels to be compiled; not where the run was asked to end at once.
 
         Raises:
             EventsimError: where no time has passed, or less than is to be discarded.
@@ -135,13 +137,14 @@ class Meter:
             raise EventsimError("there is nothing to measure: no time passes in this run")
         if self.discard is not None and self.discard >= duration:
             raise EventsimError(f"discard = {self.discard!r}: the run lasts {duration!r} only")
+        self._waits = waits
         if self._filled:
             self._take(self._block[: self._filled])
             self._filled = 0
         correlator = self._scales(duration, 0)
         end = max(duration, self._time)
         self._make_room(end)
-        kernel = kernels(self._rows)
+        kernel = kernels(self._rows, waits)
         while not kernel.finish(end, self._plan, self._sums):
             self._drain(coarsen=True)
         self._drain()
@@ -171,7 +174,7 @@ class Meter:
         self._rows += len(rows)
         pairs = rows["kind"] == Kind.PAIR
         self._groups.add(rows["a"][pairs].astype(np.intp), rows["b"][pairs].astype(np.intp))
-        kernel = kernels(self._rows)
+        kernel = kernels(self._rows, self._waits)
         self._hold(kernel)
         self._time = float(time[-1])
         self._make_room(self._time)
@@ -201,7 +204,7 @@ class Meter:
             numbers[sums.INTERVAL] = self._correlator.interval
             usual = MORE_SAMPLES * span / self._correlator.interval
             self._most_samples = int(min(max(usual, 4.0), float(len(self._sums.way))))
-            self._hold(kernels(rows))
+            self._hold(kernels(rows, self._waits))
         return self._correlator
 
     def _make_room(self, end: float) -> None:

@@ -39,7 +39,7 @@ def test_compiled_sums_have_the_bits_of_plain_ones(name, monkeypatch):
     run = es.simulate(scene, events=800, until=8.0, engine="reference", log=True)
     told = []
     for kernels in (compiled.PLAIN, compiled._compiled()):
-        monkeypatch.setattr(meter, "kernels", lambda rows, chosen=kernels: chosen)
+        monkeypatch.setattr(meter, "kernels", lambda rows, waits=True, chosen=kernels: chosen)
         measured = Meter(scene, 0.1 * run.time, profile="y")
         for first in range(0, len(run.log), 150):
             measured.write(run.log.rows[first : first + 150])

@@ -224,16 +224,21 @@ def test_a_measured_run_hears_signals_within_a_second(name):
         os.kill(os.getpid(), signal.SIGINT)
 
     def told(rows):
-        if waiting.ident is None and float(np.abs(rows["vxa"]).max()) < 1e-6:
+        cold.append(float(np.abs(rows["vxa"]).max()) < 1e-6)
+
+    def at_work(*_):  # only then is there a session to be asked
+        if waiting.ident is None and ((cold and cold[-1]) or not cools):
             waiting.start()
 
-    waiting = threading.Timer(0.05, ask)
-    wanted = {"until": 1e30 if cools else 1e9, "engine": "reference", "measure": True, "on_event": told if cools else None}
+    if cools:  # with numba loaded far fewer rows are measured by kernels: these were compiled after the signal
+        pytest.importorskip("numba")
+    waiting, cold = threading.Timer(0.05, ask), []
     with interruptible() as interrupt:
-        if not cools:
-            waiting.start()
         try:
-            run = es.simulate(scene, interrupt=interrupt, **wanted)
+            run = es.simulate(
+                scene, 1e30 if cools else 1e9, engine="reference", measure=True, interrupt=interrupt,
+                on_event=told if cools else None, progress=at_work,
+            )  # fmt: skip
         finally:
             waiting.cancel()
     assert time.process_time() - asked[0] < 1.0
