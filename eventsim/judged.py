@@ -50,6 +50,11 @@ class Judged:
         """The first wrong event, with its kind, time and disks; None where there is none."""
         return self.judgement.first_fault
 
+    @property
+    def compared(self) -> int:
+        """The contacts that were compared: without any, that no wrong event was seen says nothing."""
+        return self.judgement.compared
+
     def to_dict(self) -> dict[str, Any]:
         """All numbers as plain values: the keys of `eventsim validate --json`."""
         return judgement_data(self.judgement)

@@ -98,12 +98,14 @@ def command(
       orders                   engine -> measured order of convergence (null: not measurable)
       settings, versions       what each engine was told; of what is compared
       left_out, verdict        sentences
-    With --trajectory: source, told (the file; what it holds), first_fault {kind, time, disks, sentence}, faults, parting (of
-    the contacts: time, sentence), elapsed_per_time (of a step function), contacts {found, missed, doubled, false, ...},
+    With --trajectory: source, told (the file; what it holds), first_fault {kind, time, disks, sentence}, compared (how
+    many contacts), faults, parting (of the contacts: time, sentence), elapsed_per_time (of a step function), contacts {found,
+    missed, doubled, false, elsewhere, unseen (in the samples), untold (found, and nobody knows their impulse)},
     late, positions, lost, believed, energy, momentum, deepest_overlap, tolerance, remarks, verdict, versions.
 
     Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.
-    With --trajectory: 0 also where a wrong event is named: in a test ask whether first_fault of --json is null.
+    With --trajectory: 0 also where a wrong event is named: in a test ask whether first_fault of --json is null
+    and compared is above 0: of nothing nothing is wrong.
     """
     csv_path, figure_path = writable(csv, "--csv", (".csv",)), drawable(figure, "--figure")
     judging = trajectory is not None

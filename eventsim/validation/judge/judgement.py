@@ -75,6 +75,7 @@ class Judgement:
         looks: (L,) times at which positions were compared.
         errors: (L,) root mean square distance from the truth, in diameters.
         energy: (T,) relative change of the energy, at `times`; NaN where a velocity is not known; None without energy.
+        lawful: the same change at the end of the event-driven run, where contacts take or give energy; None elsewhere.
         momentum: the largest change, over sum m |v|, where nothing outside gives any; None elsewhere.
         deepest: (depth in reaches, a, b, time) of the deepest overlap at the looks.
         blind: why its contacts cannot be told; None where they can.
@@ -93,6 +94,7 @@ class Judgement:
     looks: Floats
     errors: Floats
     energy: Floats | None
+    lawful: float | None
     momentum: float | None
     deepest: tuple[float, int, int, float]
     blind: str | None = None
@@ -104,6 +106,11 @@ class Judgement:
     def first_fault(self) -> Fault | None:
         """The first wrong event; None where none was seen."""
         return self.faults[0] if self.faults else None
+
+    @property
+    def compared(self) -> int:
+        """The contacts that were compared with those of the event-driven run; without any, no wrong event says nothing."""
+        return self.charge.ahead
 
     @property
     def lost(self) -> float:
@@ -208,6 +215,7 @@ def judge(
         looks=looks,
         errors=np.sqrt(np.mean(apart**2, axis=1)),
         energy=_smooth(energy / energy[0] - 1.0, flights.told) if energy[0] > 0.0 and (flights.told or not blind) else None,
+        lawful=_lawful(truth, weight),
         momentum=_momentum(velocity, stage, mass),
         deepest=_deepest(scene, samples, looks, seen),
         blind=BLIND if blind and contacts is None else None,
@@ -258,6 +266,20 @@ def _energy(flights: Flights, velocity: Floats, weight: Floats) -> Floats:
     height = np.sum(weight * np.sum(flights.pull * flights.place, axis=-1), axis=1)
     kinetic = 0.5 * np.sum(weight * np.sum(velocity**2, axis=-1), axis=1)
     return np.asarray(kinetic - (height - height[0]))
+
+
+def _lawful(truth: Truth, weight: Floats) -> float | None:
+    """The change of the energy by the end of the event-driven run, of the kinetic energy at the start."""
+    stage, run = truth.stage, truth.run
+    pull = stage.gravity or (0.0, 0.0)
+    if stage.law.keeps_energy() or any(length is not None and g for length, g in zip(stage.period, pull, strict=True)):
+        return None
+    start = float(np.sum(weight * (stage.vx**2 + stage.vy**2)))
+    if not start > 0.0:
+        return None
+    fall = run.position[-1] - np.array(stage.corner) - np.column_stack([stage.x, stage.y])
+    last = float(weight @ (np.sum(run.velocity[-1] ** 2, axis=-1) - 2.0 * fall @ np.array(pull)))
+    return last / start - 1.0
 
 
 def _smooth(energy: Floats, told: bool) -> Floats:

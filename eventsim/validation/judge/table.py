@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eventsim.validation.judge.judgement import Judgement
-from eventsim.validation.judge.words import judged_in_words
+from eventsim.validation.judge.words import COUNTS, judged_in_words
 from eventsim.validation.versions import versions
 
 
@@ -23,8 +23,9 @@ def judgement_data(judgement: Judgement) -> dict[str, Any]:
         "source": judgement.source,
         "told": judgement.told,
         "first_fault": None if fault is None else asdict(fault),
+        "compared": judgement.compared,
         "parting": None if charge.parting is None else dict(zip(("time", "sentence"), charge.parting, strict=True)),
-        "contacts": {name: getattr(charge, name) for name in ("found", "missed", "doubled", "false", "elsewhere", "unseen")},
+        "contacts": {name: getattr(charge, name) for name in COUNTS},
         "tolerance": judgement.tolerance,
         "late": {
             "mean": float(late.mean()) if len(late) else None,

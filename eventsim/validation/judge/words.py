@@ -9,8 +9,8 @@ import numpy as np
 from eventsim.validation.judge.judgement import ASTRAY, Judgement
 from eventsim.validation.truth import BELIEVED
 
-ENOUGH = 0.5
-"""Of all contacts: where fewer could be compared, that none was wrong says little of an engine."""
+COUNTS = ("found", "missed", "doubled", "false", "elsewhere", "unseen", "untold")
+"""Of contacts."""
 
 
 def judged_in_words(judgement: Judgement) -> list[str]:
@@ -21,31 +21,53 @@ def judged_in_words(judgement: Judgement) -> list[str]:
 
 def contacts_in_short(judgement: Judgement) -> str:
     """The counts of contacts in one line."""
-    names = ("found", "missed", "doubled", "false", "elsewhere", "unseen")
-    return ", ".join(f"{name} {getattr(judgement.charge, name)}" for name in names)
+    return ", ".join(f"{name} {getattr(judgement.charge, name)}" for name in COUNTS)
 
 
 def _first(judgement: Judgement) -> str:
     """The first wrong event, or that there is none."""
-    fault, parting = judgement.first_fault, judgement.charge.parting
+    fault = judgement.first_fault
     if fault is None and judgement.blind is not None:
         return f"Whether an event is wrong cannot be told: {judgement.blind}."
     if fault is not None:
         seen, unchecked = _seen(judgement, fault.time), _unchecked(judgement, fault.time)
         return f"First wrong event{seen}: {fault.sentence}.{unchecked}{_further(judgement)}"
-    compared, every = judgement.charge.ahead, len(judgement.charge.all_at)
-    if compared < ENOUGH * every:
-        last = min(judgement.lost, max(judgement.charge.compared_at, default=judgement.truth.scene.start_time))
-        text = f"Cannot tell after t = {last:.4g} ({compared} of {every} contacts compared): no wrong event until then"
-        if parting is not None:
-            return f"{text}; it parts from the truth by the errors of its times: {parting[1]}."
-        return f"{text}; later, only what each contact does is looked at."
-    if parting is not None:
-        return f"No wrong event. It parts from the truth by the errors of its times: {parting[1]}."
+    if not judgement.compared:
+        last = min(judgement.lost, float(judgement.times[-1]))
+        return f"Nothing was compared: no disk that was still in its place met anything until t = {last:.4g}.{_rest(judgement)}"
+    return f"No wrong event{_right(judgement)}.{_rest(judgement)}"
+
+
+def _right(judgement: Judgement) -> str:
+    """How many contacts are right, until when; and of how many nobody knows what they did."""
+    charge, every = judgement.charge, len(judgement.charge.all_at)
+    until = f"until t = {judgement.times[-1]:.4g}" if charge.ahead == every else f"the last at t = {max(charge.compared_at):.4g}"
+    if not charge.untold:
+        return f": {charge.found} of {charge.ahead} contacts compared are right, {until}"
+    return (
+        f": {charge.found} of {charge.ahead} contacts compared are found, {until}; "
+        f"{charge.found - charge.untold} have the right impulse, the others are too slow, or too close to others, to tell"
+    )
+
+
+def _rest(judgement: Judgement) -> str:
+    """How many contacts could not be compared, and why."""
+    charge, parting = judgement.charge, judgement.charge.parting
+    rest = len(charge.all_at) - charge.ahead
+    if not rest:
+        return ""
+    many = "The only one" if rest == 1 and not charge.ahead else "The other one" if rest == 1 else f"The other {rest}"
     if math.isfinite(judgement.lost):
-        how = f"contacts can be compared until its late ones have shifted its disks, about t = {judgement.lost:.4g}"
-        return f"No wrong event: {how}; later, only what each contact does is looked at."
-    return f"No wrong event until t = {judgement.times[-1]:g}."
+        why = f"from t = {judgement.lost:.4g} on its disks are off by more than {ASTRAY:g} diameters, as every error grows"
+        if parting is not None:
+            why += f", and {parting[1]}"
+    elif parting is not None:
+        why = f"it parts from the truth by the errors of its times: {parting[1]}"
+    elif math.isfinite(judgement.believed):
+        why = f"float64 itself can be believed until t = {judgement.believed:.4g} alone"
+    else:
+        why = "too weak, too close to others, or too close to the end"
+    return f" {many} cannot be compared: {why}. Of them only what each contact does is looked at."
 
 
 def _seen(judgement: Judgement, time: float) -> str:
@@ -119,7 +141,9 @@ def _conserved(judgement: Judgement) -> str:
     if judgement.energy is not None and np.isfinite(judgement.energy[1:]).any():
         change = judgement.energy[np.isfinite(judgement.energy)]
         worst = int(np.argmax(np.abs(change)))
-        parts.append(f"the energy changes by {change[-1]:+.2e} in all, by {change[worst]:+.2e} at most")
+        right = "" if judgement.lawful is None else f" (the event-driven run: {judgement.lawful:+.2e})"
+        of = "" if judgement.truth.stage.gravity is None else " of the kinetic one at the start"
+        parts.append(f"the energy changes by {change[-1]:+.2e}{of} in all{right}, by {change[worst]:+.2e} at most")
     if judgement.momentum is not None:
         parts.append(f"the momentum by {judgement.momentum:.1e}")
     depth, a, b, time = judgement.deepest

@@ -211,8 +211,9 @@ def test_few_contacts_that_could_be_compared_are_no_acquittal():
     assert found.first_fault is None
     assert found.charge.ahead < 0.5 * len(found.charge.all_at)
     said = judged_in_words(found)[0]
-    assert said.startswith("Cannot tell after t = ")
-    assert f"({found.charge.ahead} of {len(found.charge.all_at)} contacts compared)" in said
+    assert said.startswith("No wrong event: ")
+    assert f"{found.compared} contacts compared" in said
+    assert f"The other {len(found.charge.all_at) - found.compared} cannot be compared: from t = " in said
 
 
 def crowd(seed):

@@ -101,3 +101,28 @@ def test_a_contact_whose_impulse_cannot_be_told_is_counted():
     time = exact.time[(exact.a == 2) & (exact.b == 4)][0]
     assert judged.first_fault is None
     assert time in judged.judgement.charge.untold_at
+
+
+def test_of_nothing_nothing_is_wrong(right):
+    """Until nothing has met anything: a test of another program can tell that from a right engine."""
+    scene, (times, places, _) = right
+    none = es.validate(scene, trajectory=(times[:2], places[:2]))
+    assert none.verdict[0] == "Nothing was compared: no disk that was still in its place met anything until t = 0.005."
+    assert none.first_fault is None
+    assert none.compared == none.to_dict()["compared"] == 0
+
+
+def test_the_verdict_on_a_right_engine_begins_with_what_is_right():
+    scene = replace(BOX, until=0.7)
+    judged = es.validate(scene, trajectory=run(Stepper(scene), scene)[:2])
+    assert judged.verdict[0].startswith(f"No wrong event: {judged.compared} of {judged.compared} contacts compared are ")
+    assert judged.to_dict()["compared"] == judged.judgement.charge.found > 2
+
+
+def test_energy_that_is_lost_is_told_beside_what_should_be():
+    scene = replace(BOX, until=0.7)
+    judged = es.validate(scene, trajectory=run(Stepper(scene), scene)[:2])
+    right, seen = judged.judgement.lawful, judged.judgement.energy[-1]
+    assert right < -0.05
+    assert seen == pytest.approx(right, rel=0.05)  # of steps of .001
+    assert any(f"(the event-driven run: {right:+.2e})" in text for text in judged.verdict)
