@@ -5,6 +5,7 @@
     matching      which contact is which of the truth       outcome        restitution, masses, momentum of a contact
     faults        what is wrong, and what comes first       judgement      all of it
     previous      how long ago the contact before was
+    gravity       the acceleration of free flights
     jumps         energy and momentum that no contact gives
     words         the verdict in sentences                  stepping       an engine that is a function
 """

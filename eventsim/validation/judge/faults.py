@@ -37,7 +37,7 @@ DRIFT = 1e-3
 class Fault:
     """Something that cannot be: when, of which kind, and a sentence.
 
-    kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, friction, drift, energy, momentum.
+    kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, friction, gravity, drift, energy, momentum.
     disks: whose.  clear: whether it is larger than what can happen between two samples.
     """
 

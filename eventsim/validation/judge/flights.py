@@ -210,31 +210,38 @@ class Gained(NamedTuple):
     largest: Floats
 
 
+def free_flights(flights: Flights) -> Iterator[tuple[int, int, int]]:
+    """(disk, first sample, last sample) of all flights of at least SHORTEST samples, disk by disk."""
+    count, n = flights.place.shape[:2]
+    ends: dict[int, list[tuple[int, int]]] = {disk: [] for disk in range(n)}
+    for turn in flights.turns():
+        ends[turn.disk].append((turn.first, turn.last))
+    for disk in range(n):
+        begin = 0
+        for first, last in [*ends[disk], (count, count)]:
+            if first - 1 - begin >= SHORTEST:
+                yield disk, begin, first - 1
+            begin = last + 1
+
+
 def energy_on_the_way(flights: Flights, mass: Floats) -> Gained:
     """What free flights gain: the second half of each against the first, by positions alone; mass: (n,), 0 where it is infinite.
 
     Flights of less than SHORTEST samples are left out.
     """
-    count, n = flights.place.shape[:2]
+    count = len(flights.times)
     energy, variance, largest = np.zeros(count), np.zeros(count), np.zeros(count)
     blur = flights.blur
-    ends: dict[int, list[tuple[int, int]]] = {disk: [] for disk in range(n)}
-    for turn in flights.turns():
-        ends[turn.disk].append((turn.first, turn.last))
-    for disk in np.flatnonzero(mass > 0.0).tolist():
-        begin = 0
-        for first, last in [*ends[disk], (count, count)]:
-            end = first - 1
-            if end - begin >= SHORTEST:
-                middle = (begin + end) // 2
-                at = [begin, middle, end]
-                (t0, t1, t2), (x0, x1, x2) = flights.times[at], flights.place[at, disk]
-                one, other = (x1 - x0) / (t1 - t0), (x2 - x1) / (t2 - t1)
-                push = 2.0 * (other - one - 0.5 * flights.pull[disk] * (t2 - t0))
-                speed = 0.5 * (one + other)
-                given = mass[disk] * float(speed @ push)
-                energy[end] += given
-                largest[end] = max(largest[end], abs(given))
-                variance[end] += (mass[disk] * math.hypot(*speed) * 8.0 * blur / (t2 - t0)) ** 2
-            begin = last + 1
+    for disk, begin, end in free_flights(flights):
+        if not mass[disk] > 0.0:
+            continue
+        at = [begin, (begin + end) // 2, end]
+        (t0, t1, t2), (x0, x1, x2) = flights.times[at], flights.place[at, disk]
+        one, other = (x1 - x0) / (t1 - t0), (x2 - x1) / (t2 - t1)
+        push = 2.0 * (other - one - 0.5 * flights.pull[disk] * (t2 - t0))
+        speed = 0.5 * (one + other)
+        given = mass[disk] * float(speed @ push)
+        energy[end] += given
+        largest[end] = max(largest[end], abs(given))
+        variance[end] += (mass[disk] * math.hypot(*speed) * 8.0 * blur / (t2 - t0)) ** 2
     return Gained(np.cumsum(energy), np.sqrt(np.cumsum(variance)), np.maximum.accumulate(largest))

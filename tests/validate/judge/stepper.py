@@ -20,10 +20,11 @@ class Stepper:
         self.radius, self.mass, self.size = swell * scene.disks.radius, scene.disks.mass, np.array(scene.domain.size)
         self.gravity = np.array(scene.gravity or (0.0, 0.0)) if gravity is None else np.array(gravity)
         self.restitution, self.halved, self.pairs, self.halved_at = restitution, halved, 0, None
+        self.drag = 0.0
 
     def step(self, x, v, dt):
         """One step."""
-        v = v + self.gravity * dt
+        v = (1.0 - self.drag * dt) * v + self.gravity * dt
         x = x + v * dt
         for a in range(len(x)):
             out = ((x[a] < self.radius[a]) & (v[a] < 0.0)) | ((x[a] > self.size - self.radius[a]) & (v[a] > 0.0))

@@ -126,3 +126,31 @@ def test_energy_that_is_lost_is_told_beside_what_should_be():
     assert right < -0.05
     assert seen == pytest.approx(right, rel=0.05)  # of steps of .001
     assert any(f"(the event-driven run: {right:+.2e})" in text for text in judged.verdict)
+
+
+@pytest.mark.parametrize("pull", [(0.0, 0.0), (0.0, -2.1), (-2.0, 0.0)])
+def test_another_gravity_is_told_by_the_flights(pull):
+    scene = replace(BOX, until=0.6)
+    first = es.validate(scene, trajectory=run(Stepper(scene, gravity=pull), scene)).first_fault
+    assert first.kind == "gravity"
+    assert first.sentence == f"gravity: disks fly with acceleration ({pull[0]:g}, {pull[1]:g}), not (0, -2), from t = 0 on"
+
+
+def test_gravity_where_there_is_none_is_told_and_a_drag_is_none():
+    scene = replace(BOX, gravity=None, until=0.6)
+    first = es.validate(scene, trajectory=run(Stepper(scene, gravity=(0.0, -0.2)), scene)[:2]).first_fault
+    assert first.kind == "gravity"
+    assert "acceleration (0, -0.2), not (0, 0)" in first.sentence
+    engine = Stepper(scene)
+    engine.drag = 0.1
+    assert es.validate(scene, trajectory=run(engine, scene)[:2]).first_fault.kind == "drift"
+
+
+def test_disks_that_lie_still_fly_nowhere():
+    """They do not fall: the ground holds them."""
+    scene = es.Scene(es.Disks([(0.3, 0.1), (1.0, 1.0)], [(0.0, 0.0), (0.1, 0.0)], 0.1), es.Box((2.0, 2.0)), gravity=(0.0, -1.0))
+    times = np.arange(0.0, 1.0, 0.005)
+    places = np.tile(scene.disks.position, (len(times), 1, 1))
+    places[:, 1, 0] += 0.1 * times
+    places[:, 1, 1] -= 0.5 * times**2
+    assert es.validate(scene, trajectory=(times, places)).first_fault is None
