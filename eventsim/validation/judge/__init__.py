@@ -6,6 +6,7 @@
     faults        what is wrong, and what comes first       judgement      all of it
     previous      how long ago the contact before was
     gravity       the acceleration of free flights
+    sizes         at which distance disks turn
     jumps         energy and momentum that no contact gives
     words         the verdict in sentences                  stepping       an engine that is a function
 """

@@ -37,8 +37,8 @@ DRIFT = 1e-3
 class Fault:
     """Something that cannot be: when, of which kind, and a sentence.
 
-    kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, friction, gravity, drift, energy, momentum.
-    disks: whose.  clear: whether it is larger than what can happen between two samples.
+    kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, friction, gravity, radius, drift, energy,
+    momentum.  disks: whose.  clear: whether it is larger than what can happen between two samples.
     """
 
     time: float

@@ -30,6 +30,7 @@ from eventsim.validation.judge.flights import Flights, Turn, energy_on_the_way, 
 from eventsim.validation.judge.gravity import wrong_gravity
 from eventsim.validation.judge.jumps import jumps
 from eventsim.validation.judge.previous import Previous
+from eventsim.validation.judge.sizes import wrong_sizes
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import Read, contacts_from
 from eventsim.validation.truth import BELIEVED, Truth, truth_of
@@ -197,12 +198,13 @@ def judge(
     weight, velocity = np.where(np.isfinite(mass), mass, 0.0), flights.velocity()
     energy = _energy(flights, velocity, weight)
     gravity = None if blind else wrong_gravity(flights, around, mass, truth.speed)
+    sizes = wrong_sizes(read.met, around, resolution)
     drift = None if blind or gravity is not None else witness.drift(energy_on_the_way(flights, weight), float(energy[0]))
     at_start = [turn for turn in read.unexplained if turn.last == 0]
     unexplained = [turn for turn in read.unexplained if turn.last > 0]
     if at_start:
         remarks.append(_other_velocities(at_start))
-    seen_here = [*map(witness.outcome, read.met), gravity, drift, *map(witness.turn, unexplained), *charge.faults]
+    seen_here = [*map(witness.outcome, read.met), gravity, sizes, drift, *map(witness.turn, unexplained), *charge.faults]
     faults = [fault for fault in seen_here if fault is not None]
     groups = [group for group in read.groups if any(turn.last > 0 for turn in group)]
     faults += jumps(groups, flights, around, mass, faults)

@@ -154,3 +154,17 @@ def test_disks_that_lie_still_fly_nowhere():
     places[:, 1, 0] += 0.1 * times
     places[:, 1, 1] -= 0.5 * times**2
     assert es.validate(scene, trajectory=(times, places)).first_fault is None
+
+
+@pytest.mark.parametrize(("swell", "told"), [(1.03, False), (0.97, True)])
+def test_other_radii_are_told_by_the_distance_at_which_disks_turn(swell, told):
+    motion = run(Stepper(BOX, swell=swell), BOX)
+    first = es.validate(BOX, trajectory=motion if told else motion[:2]).first_fault
+    assert first.kind == "radius"
+    assert float(first.sentence.split("turn at ")[1].split()[0]) == pytest.approx(swell, abs=0.005)  # half of what counts
+
+
+@pytest.mark.parametrize("dt", [0.001, 0.005])
+def test_contacts_that_are_late_by_a_step_tell_of_no_other_radii(dt):
+    motion = run(Stepper(BOX), BOX, dt=dt, every=1)
+    assert es.validate(BOX, trajectory=motion).first_fault is None
