@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from eventsim.errors import EventsimError
@@ -24,6 +26,15 @@ MANY = 3
 
 ROUNDS = 4
 """In which the factor of the unit and gravity in the first step are found together; what is left falls by their ratio."""
+
+DECIMALS = (1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 1e-6)
+"""To which positions are rounded in files."""
+
+ROUNDING = 1e-6
+"""Of the last decimal: how far from a multiple of it float64 may put a position."""
+
+STAGGERING = 0.05
+"""Of all samples: where more show so small a turn as rounding makes, positions are rounded; contacts make larger ones."""
 
 CLEARLY = 2.0
 """A factor that is no accident of contacts in the first step, where nobody knows of them."""
@@ -108,6 +119,28 @@ def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
     return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
 
 
+def rounded(samples: Samples, stage: Stage) -> Samples:
+    """The samples with the last digit that their positions have, where one sees that they are rounded to few decimals.
+
+    Disks may move in whole hundredths by themselves: rounding shows where free flights stagger.
+    """
+    dt = np.diff(samples.times)[:, None, None]
+    if len(dt) < MANY:
+        return samples
+    mass = np.full(stage.n, stage.common_mass) if stage.mass is None else stage.mass
+    moves = np.isfinite(mass)
+    told = samples.position[1:, moves]
+    for step in DECIMALS:
+        if np.all(np.abs(told / step - np.round(told / step)) < ROUNDING):
+            mean = stage.nearest(np.diff(told, axis=0)) / dt[1:]
+            pull = np.array(stage.gravity or (0.0, 0.0))
+            bends = np.abs(np.diff(mean, axis=0) - 0.5 * pull * (dt[2:] + dt[1:-1])) * dt[2:]
+            by_digits = (bends > 0.5 * step) & (bends < 2.5 * step)  # x2 - 2 x1 + x0 of places that are off by half of it
+            staggers = bends.size > 0 and float(np.mean(by_digits)) > STAGGERING
+            return replace(samples, step=max(samples.step, step)) if staggers else samples
+    return samples
+
+
 def demand_same_clock(scene: Scene, samples: Samples) -> None:
     """Raise EventsimError where the first step alone tells another unit of time: a run through all times would not end.
 
@@ -128,7 +161,7 @@ def demand_same_clock(scene: Scene, samples: Samples) -> None:
         raise _of_another_pace(samples.source, share)
 
 
-def demand_same_velocities(flights: Flights, start: Floats, truth: Truth, source: str) -> None:
+def demand_same_velocities(flights: Flights, start: Floats, truth: Truth, samples: Samples) -> None:
     """Raise EventsimError where a disk flies off, straight from its place, with another velocity than it should.
 
     start: (n, 2) velocities.
@@ -139,7 +172,7 @@ def demand_same_velocities(flights: Flights, start: Floats, truth: Truth, source
     dt, later = np.diff(times[:3]).tolist()
     begun = (place[1] - place[0]) / dt - 0.5 * pull * dt
     then = (place[2] - place[1]) / later - pull * (dt + 0.5 * later)
-    least = max(OTHER_PACE * truth.speed, flights.least)
+    least = max(OTHER_PACE * truth.speed, flights.least, 4.0 * samples.step / dt)  # two ends, two components
     off = np.hypot(*(begun - start).T)
     wrong = (off > least) & (np.hypot(*(then - begun).T) < 0.5 * least) & _free(truth.run.rows, len(start), float(times[2]))
     if not wrong.any():
@@ -148,7 +181,7 @@ def demand_same_velocities(flights: Flights, start: Floats, truth: Truth, source
     more = f" ({count} disks differ)" if count > 1 else ""
     (vx, vy), (ux, uy) = begun[disk].tolist(), start[disk].tolist()
     raise EventsimError(
-        f"{source}: disk {disk} begins with velocity ({vx:.4g}, {vy:.4g}), in the scene, at t = {times[0]:g}, with "
+        f"{samples.source}: disk {disk} begins with velocity ({vx:.4g}, {vy:.4g}), in the scene, at t = {times[0]:g}, with "
         f"({ux:.4g}, {uy:.4g}){more}: another scene, another order of disks, or another sign of an axis?"
     )
 
@@ -162,22 +195,24 @@ def _free(rows: Rows, n: int, until: float) -> Mask:
     return free
 
 
-def demand_same_pace(flights: Flights, start: Floats, rows: Rows, source: str) -> None:
+def demand_same_pace(flights: Flights, start: Floats, truth: Truth, samples: Samples) -> None:
     """Raise EventsimError where disks begin with one and the same multiple of the velocities that they should have.
 
-    start: (n, 2) velocities.  rows: of the event-driven run, which tell who flies free until the first samples.
+    start: (n, 2) velocities.  truth: the event-driven run, which tells who flies free until the first samples.
     """
     dt = float(flights.times[1] - flights.times[0])
+    if samples.step > OTHER_PACE * truth.speed * dt:
+        return  # what they move is less than what they are rounded by
     size = np.sum(start * start, axis=1)
     moves = size > 0.0
-    free = moves & _free(rows, len(start), float(flights.times[1]))
+    free = moves & _free(truth.run.rows, len(start), float(flights.times[1]))
     if free.any():
         moves = free
     elif moves.sum() < MANY:
         return
     share, off = _pace((flights.place[1] - flights.place[0]) / dt, start, flights.pull, dt, moves)
     if abs(share - 1.0) > OTHER_PACE and float(np.median(off)) < UNLIKE:
-        raise _of_another_pace(source, share)
+        raise _of_another_pace(samples.source, share)
 
 
 def _pace(mean: Floats, start: Floats, pull: Floats, dt: float, moves: Mask) -> tuple[float, Floats]:

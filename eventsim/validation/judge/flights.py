@@ -172,7 +172,7 @@ def flights_of(
     told = False
     if velocity is not None:
         unlike = np.abs(mean - 0.5 * (velocity[1:] + velocity[:-1]))[:calm]
-        told = float(np.median(unlike)) < UNLIKE * speed
+        told = float(np.median(unlike)) < UNLIKE * speed + step / float(np.median(dt))
     if told:
         assert velocity is not None
         before = after = velocity
@@ -188,6 +188,7 @@ def flights_of(
     least = max(LEAST_TURN * speed, ABOVE_NOISE * usual, blurred)
     bends = (np.diff(mean, axis=0) - 0.5 * pull * (dt[1:] + dt[:-1]))[:calm]
     noise = float(np.median(np.hypot(bends[..., 0], bends[..., 1]))) if len(bends) else 0.0
+    noise = max(noise, BLURRED_BY * step / float(np.median(dt)) / 12.0**0.5)
     return Flights(times, place, before, after, size > least, least, noise, told, pull)
 
 

@@ -16,11 +16,13 @@ from eventsim.scene.overlaps import period_of
 from eventsim.scene.stage import Stage, stage_of
 from eventsim.validation.follow import distances
 from eventsim.validation.judge.beginning import (
+    OTHER_PACE,
     begins_late,
     demand_same_clock,
     demand_same_pace,
     demand_same_velocities,
     placed,
+    rounded,
     scene_at,
     within,
 )
@@ -49,6 +51,9 @@ A step is that from sample to sample, or that of the contacts where they are tol
 
 SMALLEST = 1e-9
 """In radii: an overlap of paths below is rounding."""
+
+FEWEST = 1e-3
+"""Of a radius: positions that are rounded by more are said to be."""
 
 SMOOTHED = 5
 """Samples."""
@@ -154,7 +159,7 @@ def judge(
         scene, contacts = scene_at(scene, first), None if contacts is None else contacts.since(first)
         remarks.append(f"the motion begins at t = {first:g}: it is judged from the state that the event-driven run has then")
     stage = stage_of(scene)
-    samples = placed(scene, stage, samples)
+    samples = rounded(placed(scene, stage, samples), stage)
     if not late:
         demand_same_clock(scene, samples)
     times = samples.times
@@ -170,9 +175,11 @@ def judge(
     if truth.run.stopped is not None:
         remarks.append(f"the event-driven run stopped at {looks[-1]:g} ({truth.run.stopped})")
     blind = flights.least > COARSE * truth.speed
-    demand_same_pace(flights, start, truth.run.rows, samples.source)
+    demand_same_pace(flights, start, truth, samples)
     if not late:
-        demand_same_velocities(flights, start, truth, samples.source)
+        demand_same_velocities(flights, start, truth, samples)
+    if not blind and samples.step >= FEWEST * truth.radius:
+        remarks.append(f"positions are rounded to {samples.step:g}: weak contacts are hidden, and times blurred")
     if samples.velocity is not None and not flights.told:
         remarks.append("the velocities that are told are not those with which positions move: they are not used")
     read = Read() if blind else contacts_from(flights, around, mass)
@@ -222,7 +229,7 @@ def judge(
         lawful=_lawful(truth, weight),
         momentum=_momentum(velocity, stage, mass),
         deepest=_deepest(scene, samples, looks, seen),
-        blind=BLIND if blind and contacts is None else None,
+        blind=_why_blind(samples, flights, truth) if blind and contacts is None else None,
         faults=sorted(faults, key=lambda fault: fault.time),
         remarks=remarks,
     )
@@ -232,6 +239,17 @@ def _what_is_told(samples: Samples, flights: Flights, contacts: ToldContacts | N
     """In words."""
     told = ["positions", *(["velocities"] if flights.told else []), *(["contacts"] if contacts is not None else [])]
     return f"{', '.join(told)} of {samples.n} disks at {len(samples.times)} times"
+
+
+def _why_blind(samples: Samples, flights: Flights, truth: Truth) -> str:
+    """Why contacts cannot be told from positions: where these are rounded by as much as disks move, that is why."""
+    moved = truth.speed * float(np.median(np.diff(flights.times)))
+    if samples.step <= OTHER_PACE * moved:
+        return BLIND
+    return (
+        f"positions are rounded to {samples.step:g}, and disks move about {moved:.2g} from one time to the next: tell "
+        "more digits, velocities, or the contacts (--contacts)"
+    )
 
 
 def _other_velocities(turns: list[Turn]) -> str:

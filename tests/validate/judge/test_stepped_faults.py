@@ -168,3 +168,25 @@ def test_other_radii_are_told_by_the_distance_at_which_disks_turn(swell, told):
 def test_contacts_that_are_late_by_a_step_tell_of_no_other_radii(dt):
     motion = run(Stepper(BOX), BOX, dt=dt, every=1)
     assert es.validate(BOX, trajectory=motion).first_fault is None
+
+
+def test_positions_of_two_decimals_are_said_to_be_rounded(right):
+    """And no other unit of time, though most disks seem to stand still in the first step."""
+    scene, (times, places, speeds) = right
+    judged = es.validate(scene, trajectory=(times, places.round(2)))
+    assert "positions are rounded to 0.01, and disks move about 0.00" in judged.verdict[0]
+    told = es.validate(scene, trajectory=(times, places.round(2), speeds))
+    assert told.first_fault is None
+    assert told.judgement.blind is None
+    assert any(text.startswith("positions are rounded to 0.01") for text in told.verdict)
+
+
+def test_disks_that_move_in_whole_hundredths_are_not_rounded():
+    scene = es.Scene(es.Disks([(0.5, 1.0), (1.5, 1.0)], [(1.0, 0.0), (-1.0, 0.0)], 0.1), es.Box((2.0, 2.0)), until=1.0)
+    times = np.arange(101) / 100
+    way = np.where(times < 0.4, times, 0.8 - times)
+    places = np.stack([np.column_stack([0.5 + way, np.ones(101)]), np.column_stack([1.5 - way, np.ones(101)])], axis=1)
+    judged = es.validate(scene, trajectory=(times, places.round(2)))
+    assert judged.first_fault is None
+    assert judged.compared == 1
+    assert not any("rounded" in text for text in judged.verdict)
