@@ -78,10 +78,12 @@ def _of_rows(named: Columns, source: str, dt: float | None) -> Samples:
         raise EventsimError(
             f"{source}: holds {n} disks at the time {times[0]:g} and {counts[other]} at {times[other]:g}: must be the same"
         )
+    counted = 0
     if "disk" in named:
         which = disk[order].reshape(-1, n)
         if np.any(which != which[0]) or np.any(np.diff(which[0]) <= 0.0):
             raise EventsimError(f"{source}: the column disk must name the same {n} disks at each time, each once")
+        counted = int(which[0, 0]) if np.array_equal(which[0] - which[0, 0], np.arange(n)) else 0
 
     def of(name: str) -> Floats:
         return _numbers(named, name, source)[order].reshape(-1, n)
@@ -89,7 +91,7 @@ def _of_rows(named: Columns, source: str, dt: float | None) -> Samples:
     position = np.stack([of("x"), of("y")], axis=-1)
     velocity = np.stack([of("vx"), of("vy")], axis=-1) if "vx" in named and "vy" in named else None
     radius, mass = (of(name)[0] if name in named else None for name in ("radius", "mass"))
-    return checked(Samples(source, times, position, velocity, radius, mass, step=last_digit(named["x"])))
+    return checked(Samples(source, times, position, velocity, radius, mass, step=last_digit(named["x"]), counted=counted))
 
 
 def _of_times(named: Columns, source: str, dt: float | None) -> Samples:

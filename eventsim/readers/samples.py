@@ -31,6 +31,7 @@ class Samples:
         velocity: (T, n, 2), or None where none are told.
         radius, mass: (n,), or None where they are not told.
         cell: width and height of the cell in whose middle positions have their origin; None: they are on axes of their own.
+        counted: the number that its source gives to the first disk.
         step: about the last digit that positions have, length; 0 where they have all of a float64.
     """
 
@@ -42,6 +43,7 @@ class Samples:
     mass: Floats | None = None
     cell: tuple[float, float] | None = None
     step: float = 0.0
+    counted: int = 0
 
     @property
     def n(self) -> int:

@@ -116,7 +116,7 @@ def placed(scene: Scene, stage: Stage, samples: Samples) -> Samples:
         velocity = np.concatenate([scene.disks.velocity[None], samples.velocity])
     position = np.concatenate([own[None], samples.position])
     times = np.concatenate([[begin], samples.times])
-    return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step)
+    return Samples(samples.source, times, position, velocity, samples.radius, samples.mass, None, samples.step, samples.counted)
 
 
 def rounded(samples: Samples, stage: Stage) -> Samples:

@@ -153,6 +153,8 @@ def judge(
     """
     samples, left = within(scene, samples, until)
     remarks = [] if left is None else [left]
+    if samples.counted:
+        remarks.append(f"its disks are counted from {samples.counted} on; here the first one is disk 0")
     late = begins_late(scene, samples)
     if late:
         first = float(samples.times[0])

@@ -14,9 +14,9 @@ COUNTS = ("found", "missed", "doubled", "false", "elsewhere", "unseen", "untold"
 
 
 def judged_in_words(judgement: Judgement) -> list[str]:
-    """What a judgement comes to."""
-    lines = [_first(judgement), _contacts(judgement), _positions(judgement), _conserved(judgement)]
-    return [line for line in [*lines, *judgement.remarks] if line]
+    """What a judgement comes to: the verdict, what it does not rest on, the numbers."""
+    lines = [_first(judgement), *judgement.remarks, _contacts(judgement), _positions(judgement), _conserved(judgement)]
+    return [line for line in lines if line]
 
 
 def contacts_in_short(judgement: Judgement) -> str:

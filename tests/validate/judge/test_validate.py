@@ -111,7 +111,7 @@ def test_a_function_may_change_its_arrays_in_place():
 def test_velocities_of_another_unit_are_not_used(missed):
     times, places, speeds, _ = missed
     judged = es.validate(SCENE, trajectory=(times, places, 3.6 * speeds))
-    assert "they are not used" in judged.verdict[-1]
+    assert "they are not used" in judged.verdict[1]
     assert judged.first_fault.kind == "missed"
 
 
@@ -146,7 +146,7 @@ def test_a_motion_that_begins_late_is_judged_from_there_on():
     judged = es.validate(SCENE, trajectory=(times[begin:], places[begin:]), contacts=[(t, a, b) for t, a, b, _ in contacts])
     assert judged.first_fault is None
     assert judged.judgement.charge.found > 30
-    assert "it is judged from the state" in judged.verdict[-1]
+    assert "it is judged from the state" in judged.verdict[1]
     with pytest.raises(es.EventsimError, match=r"disk \d+ begins at"):
         es.validate(SCENE, trajectory=(times[begin:], places[:-begin]))
 
@@ -251,3 +251,12 @@ def test_disks_that_spin_are_not_judged():
     times, places, _, _ = motion(SCENE)
     with pytest.raises(es.EventsimError, match="the disks of this scene spin"):
         es.validate(replace(SCENE, tangential_restitution=1.0), trajectory=(times, places))
+
+
+def test_disks_that_are_counted_from_one_are_told_as_we_count_them(missed, tmp_path):
+    times, places, _, _ = missed
+    rows = [(time, disk + 1, *place) for time, row in zip(times, places, strict=True) for disk, place in enumerate(row)]
+    np.savetxt(tmp_path / "one.csv", rows, delimiter=",", header="time,disk,x,y", comments="")
+    judged = es.validate(SCENE, trajectory=tmp_path / "one.csv")
+    assert judged.verdict[1] == "its disks are counted from 1 on; here the first one is disk 0"
+    assert judged.first_fault.disks == (3, 4)
