@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim.cli.options import drawable, json_option, quiet_option, scene_options, writable
-from eventsim.cli.output import FAILED, say, say_data
+from eventsim.cli.output import FAILED, INTERRUPTED, say, say_data
 
 if TYPE_CHECKING:
     from eventsim.validation.compare import Comparison, Line
@@ -103,7 +103,8 @@ def command(
     missed, doubled, false, elsewhere, unseen (in the samples), untold (found, and nobody knows their impulse)},
     late, positions, lost, believed, energy, momentum, deepest_overlap, tolerance, remarks, verdict, versions.
 
-    Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene.
+    Exit codes: 0 done, whatever stepped engines did; 1 event-driven engines do not agree; 2 bad usage or scene; 130
+    interrupted: what was reached is told.
     With --trajectory: 0 also where a wrong event is named: in a test ask whether first_fault of --json is null
     and compared is above 0: of nothing nothing is wrong.
     """
@@ -134,7 +135,7 @@ def command(
         return
     competitors = chosen_competitors(against)
     with status_line(quiet or as_json) as tell:
-        comparison = compare(chosen, competitors, steps or None, until, patience, tell)
+        comparison = compare(chosen, competitors, steps or None, until, patience, tell, keeps=True)
     if csv_path is not None:
         facts = {
             "scene": scene,
@@ -166,6 +167,8 @@ def command(
         say_data(as_json_text(data))
     elif not quiet:
         say(_text(scene, comparison, verdict(comparison)))
+    if comparison.interrupted:
+        click.get_current_context().exit(INTERRUPTED)
     if not comparison.agrees:
         say("the event-driven engines do not write the same log", err=True)
         click.get_current_context().exit(FAILED)

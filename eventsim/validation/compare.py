@@ -84,7 +84,7 @@ class Comparison:
 
     checks: times after which each disk has had 1, 2, 4, 8 contacts, on average (of a shorter run less, in these proportions).
     settings: what each engine was told, in words.  orders: measured, of convergence.  agrees: whether the event-driven engines
-    write the same log.
+    write the same log.  interrupted: what was not reached by then is missing.
     """
 
     name: str
@@ -97,6 +97,7 @@ class Comparison:
     settings: dict[str, str] = field(default_factory=dict)
     orders: dict[str, float] = field(default_factory=dict)
     agrees: bool = True
+    interrupted: bool = False
 
 
 def compare(
@@ -106,8 +107,11 @@ def compare(
     until: float | None = None,
     patience_s: float = PATIENCE_S,
     tell: Tell = lambda _: None,
+    keeps: bool = False,
 ) -> Comparison:
     """Run a scene with every engine and step; steps are times, left out: USUAL_STEPS.
+
+    Interrupted, it raises KeyboardInterrupt; where it `keeps` what it has reached, it gives that if there is any.
 
     Raises EventsimError where the scene has no contact to compare, and where none of the engines can simulate it.
     """
@@ -125,26 +129,34 @@ def compare(
     duration = times[-1] - scene.start_time
     timing = timing_of(lambda: ENGINES[engine].open(truth.stage, keep_rows=True), times[-1:], [truth.run.elapsed_s])
     exact = _line(truth, "event-driven", math.nan, truth.run, Census(), checks, timing.per(duration))
-    lines = []
-    for competitor in ready:
-        taken = 0.0
-        for place, dt in enumerate(sizes):
-            if place and taken * sizes[place - 1] / dt > patience_s:
-                left_out.append(_given_up(competitor, sizes[place:], f"it would take more than {patience_s:g} s"))
-                break
-            tell(f"{competitor.label}, dt = {dt:.3g}")
-            opened = partial(STEPPED[competitor.engine].open, truth.stage, options=competitor.at(dt))
-            if not place:
-                warm_up(opened, times)
-            run = follow(opened(), times, patience_s)
-            taken = run.elapsed_s
-            if run.stopped is not None:
-                reason = f"it was stopped after {patience_s:g} s" if run.stopped == "patience" else f"it stopped ({run.stopped})"
-                left_out.append(_given_up(competitor, sizes[place:], reason))
-                break
-            found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt)
-            timing = timing_of(opened, times[-1:])  # stops on the way are ours
-            lines.append(_line(truth, competitor.label, dt, run, found, checks, timing.per(duration)))
+    lines: list[Line] = []
+    interrupted = False
+    try:
+        for competitor in ready:
+            taken = 0.0
+            for place, dt in enumerate(sizes):
+                if place and taken * sizes[place - 1] / dt > patience_s:
+                    left_out.append(_given_up(competitor, sizes[place:], f"it would take more than {patience_s:g} s"))
+                    break
+                tell(f"{competitor.label}, dt = {dt:.3g}")
+                opened = partial(STEPPED[competitor.engine].open, truth.stage, options=competitor.at(dt))
+                if not place:
+                    warm_up(opened, times)
+                run = follow(opened(), times, patience_s)
+                taken = run.elapsed_s
+                if run.stopped is not None:
+                    late = run.stopped == "patience"
+                    reason = f"it was stopped after {patience_s:g} s" if late else f"it stopped ({run.stopped})"
+                    left_out.append(_given_up(competitor, sizes[place:], reason))
+                    break
+                found = census(truth, STEPPED[competitor.engine], competitor.at(dt), dt)
+                timing = timing_of(opened, times[-1:])  # stops on the way are ours
+                lines.append(_line(truth, competitor.label, dt, run, found, checks, timing.per(duration)))
+    except KeyboardInterrupt:
+        if not (keeps and lines):
+            raise
+        interrupted = True
+        left_out.append("what was not reached is left out: it was interrupted")
     orders = {
         competitor.label: fitted_order(
             [line.dt for line in lines if line.label == competitor.label],
@@ -154,7 +166,8 @@ def compare(
     }
     settings = {competitor.label: competitor.settings for competitor in ready}
     name = scene.called
-    return Comparison(name, truth, engine, checks, exact, lines, left_out, settings, orders, engines_agree(truth))
+    agrees = interrupted or engines_agree(truth)
+    return Comparison(name, truth, engine, checks, exact, lines, left_out, settings, orders, agrees, interrupted)
 
 
 def _given_up(competitor: Competitor, steps: Sequence[float], why: str) -> str:

@@ -170,6 +170,29 @@ def test_the_time_of_pymunk_is_that_of_a_loop_of_ones_own(scene, dt, until):
         assert nearest.least * nearest.value == pytest.approx(own * dt, rel=0.3)
 
 
+def test_an_interrupt_leaves_what_was_reached():
+    """The second step is not begun; before the first one is over there is nothing to tell."""
+
+    def interrupt(after):
+        begun = iter(range(10))
+
+        def tell(text):
+            if "dt =" in text and next(begun) == after:
+                raise KeyboardInterrupt
+
+        return tell
+
+    scene = es.gallery("two-disks")
+    found = compare(scene, chosen_competitors(["stepped"]), (0.1, 0.05), tell=interrupt(1), keeps=True)
+    assert found.interrupted
+    assert [line.dt for line in found.lines] == [0.1]
+    assert found.left_out[-1] == "what was not reached is left out: it was interrupted"
+    assert verdict(found)
+    for after, keeps in ((0, True), (1, False)):
+        with pytest.raises(KeyboardInterrupt):
+            compare(scene, chosen_competitors(["stepped"]), (0.1, 0.05), tell=interrupt(after), keeps=keeps)
+
+
 def test_an_unknown_engine_is_named_with_those_that_there_are():
     with pytest.raises(es.EventsimError, match="no engine 'step' to compare with; there are frames"):
         chosen_competitors(["step"])
