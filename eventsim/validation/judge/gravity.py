@@ -22,6 +22,9 @@ MANY = 3
 ROUNDED = 10.0
 """Noise of positions, over the square of its time, in the acceleration of a flight from its ends and its middle."""
 
+DIGITS = 1e-3
+"""Of the acceleration: a component that is less is told as 0."""
+
 LAST_BITS = 1e-12
 """Of the size of a disk: positions of float64 are not better."""
 
@@ -60,9 +63,10 @@ def wrong_gravity(flights: Flights, around: Surroundings, mass: Floats, speed: f
             continue
         if len(weight) < MANY and not (own and abs(off[0] * pull[1] - off[1] * pull[0]) < UNEXPLAINED * size * own):
             continue
-        (x, y), (gx, gy) = pull + off, pull
+        flown, (gx, gy) = pull + off, pull
+        x, y = np.where(np.abs(flown) > DIGITS * max(own, size), flown, 0.0).tolist()
         said = f"gravity: disks fly with acceleration ({x:.3g}, {y:.3g}), not ({gx:g}, {gy:g}), from t = {begun:.6g} on"
-        return Fault(begun, "gravity", said.replace("-0,", "0,").replace("-0)", "0)"))
+        return Fault(begun, "gravity", said)
     return None
 
 

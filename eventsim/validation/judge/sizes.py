@@ -81,5 +81,5 @@ def _fault(rows: Floats, pairs: bool) -> Fault | None:
     if abs(size - 1.0) <= max(OTHER_SIZE, SURE * error, float(resolution.max())):
         return None
     what = "the sum of their radii" if pairs else "their radius from walls"
-    said = f"radius: disks turn at {size:.3g} of {what} ({len(rows)} contacts from t = {time[0]:.6g} on): other radii?"
+    said = f"radius: disks turn at {size:.3g} of {what} ({len(rows)} contacts from t = {time[0]:.6g} on)"
     return Fault(float(time[0]), "radius", said)
