@@ -91,6 +91,7 @@ FORMS: dict[str, tuple[dict[str, Any], ...]] = {
         ),
         form(
             string="scene source told",
+            integer="compared",
             number_or_null="tolerance lost believed energy momentum elapsed_per_time",
             array="faults remarks verdict",
             object="contacts late positions versions",
