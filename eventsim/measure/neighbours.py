@@ -20,6 +20,9 @@ Indices: TypeAlias = NDArray[np.int64]
 MARGIN = 4.0
 """How wide the rim of images is at first, in mean distances between neighbours; it doubles until it is wide enough."""
 
+TILE = 80.0
+"""Side of a tile whose points are triangulated together, in the same unit."""
+
 
 def wrapped(place: Floats, size: Floats) -> Floats:
     """Places (n, 2) in a domain that begins at 0: at least 0 and below its size, however they are rounded."""
@@ -41,21 +44,44 @@ def pairs_within(place: Floats, size: Floats, far: float) -> Indices:
 def voronoi_neighbours(place: Floats, size: Floats) -> tuple[Indices, Indices, Floats]:
     """Neighbours in Voronoi's sense: (one, other, from one to the other (m, 2)), each pair in both directions.
 
+    The domain is looked at tile by tile: a triangulation of many points is slower than several ones of few, which caches hold.
+
     place: (n, 2), at least 0 and below the size (2,) of the domain, n >= 3.
     """
-    margin = MARGIN * math.sqrt(float(size.prod()) / len(place))
+    spacing = math.sqrt(float(size.prod()) / len(place))
+    tiles = np.maximum(size // (TILE * spacing), 1.0)
+    margin = MARGIN * spacing
     while True:
         points, own = _with_images(place, size, margin)
-        corners = _triangles(points)
-        corners = corners[(corners < len(place)).any(axis=1)]
-        if _is_settled(points[corners], size, margin):
+        found = [
+            _neighbours_in(points, len(place), size * corner / tiles, size * (np.array(corner) + 1.0) / tiles, margin)
+            for corner in product(*(range(int(count)) for count in tiles))
+        ]
+        edges = [edge for edge in found if edge is not None]
+        if len(edges) == len(found):
             break
         margin *= 2.0
+    one, other = np.concatenate(edges, axis=1)
+    return one, own[other], points[other] - points[one]
+
+
+def _neighbours_in(points: Floats, n: int, low: Floats, high: Floats, margin: float) -> Indices | None:
+    """Edges (2, m) from those of the first n points that lie in a tile; None where the margin around it is too narrow."""
+    x, y = points.T
+    (left, bottom), (right, top) = low.tolist(), high.tolist()
+    inside = (x[:n] >= left) & (x[:n] < right) & (y[:n] >= bottom) & (y[:n] < top)
+    around = (x > left - margin) & (x < right + margin) & (y > bottom - margin) & (y < top + margin)
+    around[:n] &= ~inside
+    local = np.concatenate([np.flatnonzero(inside), np.flatnonzero(around)])
+    mine = int(inside.sum())
+    corners = _triangles(points[local])
+    corners = corners[(corners < mine).any(axis=1)]
+    if not _is_settled(points[local[corners]], low, high, margin):
+        return None
     # triangles turn counter-clockwise, so an edge of two triangles comes once in each direction
     one, other = corners.T.ravel(), np.roll(corners, -1, axis=1).T.ravel()
-    kept = one < len(place)
-    one, other = one[kept], other[kept]
-    return one, own[other], points[other] - points[one]
+    kept = one < mine
+    return np.stack([local[one[kept]], local[other[kept]]])
 
 
 def _with_images(place: Floats, size: Floats, margin: float) -> tuple[Floats, Indices]:
@@ -68,7 +94,7 @@ def _with_images(place: Floats, size: Floats, margin: float) -> tuple[Floats, In
             near = np.flatnonzero(((moved > -margin) & (moved < size + margin)).all(axis=1))
             points.append(moved[near])
             own.append(near)
-    return np.concatenate(points), np.concatenate(own)
+    return np.asfortranarray(np.concatenate(points)), np.concatenate(own)
 
 
 def _triangles(points: Floats) -> Indices:
@@ -80,8 +106,8 @@ def _triangles(points: Floats) -> Indices:
     return corners
 
 
-def _is_settled(corners: Floats, size: Floats, margin: float) -> bool:
-    """Whether no image that was left out lies in the circle through the corners of any of these triangles (m, 3, 2)."""
+def _is_settled(corners: Floats, low: Floats, high: Floats, margin: float) -> bool:
+    """Whether no point beyond a margin around a tile lies in a circle through the corners of one of these triangles (m, 3, 2)."""
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         twice = 2.0 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
@@ -89,4 +115,4 @@ def _is_settled(corners: Floats, size: Floats, margin: float) -> bool:
         middle = np.column_stack([b[:, 1] * a2 - a[:, 1] * b2, a[:, 0] * b2 - b[:, 0] * a2]) / twice[:, None]
         radius = np.hypot(middle[:, 0], middle[:, 1])[:, None]
         middle = middle + corners[:, 0]
-        return bool(((middle - radius > -margin) & (middle + radius < size + margin)).all())
+        return bool(((middle - radius > low - margin) & (middle + radius < high + margin)).all())

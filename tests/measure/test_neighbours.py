@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from eventsim.measure import neighbours
 from eventsim.measure.neighbours import pairs_within, voronoi_neighbours, wrapped
 
 freud = pytest.importorskip("freud")
@@ -30,6 +31,16 @@ def test_neighbours_are_those_of_freud(count, share):
     assert len(one) == 6 * count  # Euler, on a torus
     moved = apart - (place[other] - place[one])
     assert np.abs(moved - SIZE * np.round(moved / SIZE)).max() < 1e-12
+
+
+def test_neighbours_found_tile_by_tile_are_those_of_the_whole(monkeypatch):
+    place = places(900, 3)
+    edges = []
+    for side in (1000.0, 7.0):
+        monkeypatch.setattr(neighbours, "TILE", side)
+        one, other, apart = voronoi_neighbours(place, SIZE)
+        edges.append(sorted(zip(one.tolist(), other.tolist(), apart.round(9).tolist(), strict=True)))
+    assert edges[0] == edges[1]
 
 
 def test_pairs_are_those_of_a_plain_count():

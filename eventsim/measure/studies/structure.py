@@ -157,11 +157,18 @@ def _entry(name: str, series: Floats, note: str | None, expected: Expected | Non
 
 
 def _waves(phase: Floats, steps: Indices) -> Floats:
-    """Cosines and sines in turn (blocks, SHORT_BLOCK, 2 steps) of multiples of the phases of disks; 0 behind the last one."""
+    """Cosines and sines in turn (blocks, SHORT_BLOCK, 2 steps) of multiples of the phases of disks; 0 behind the last one.
+
+    Where a step follows the one before, its wave is the product of that one with the first.
+    """
     waves = np.zeros((-(-len(phase) // SHORT_BLOCK) * SHORT_BLOCK, len(steps), 2))
-    multiples = np.outer(phase, steps)
-    np.cos(multiples, out=waves[: len(phase), :, 0])
-    np.sin(multiples, out=waves[: len(phase), :, 1])
+    powers = waves[: len(phase)].view(np.complex128)[:, :, 0]
+    one = np.exp(1j * phase)
+    for place, step in enumerate(steps.tolist()):
+        if place and step == steps[place - 1] + 1:
+            np.multiply(powers[:, place - 1], one, out=powers[:, place])
+        else:
+            np.exp(1j * (phase * step), out=powers[:, place])
     return waves.reshape(-1, SHORT_BLOCK, 2 * len(steps))
 
 
