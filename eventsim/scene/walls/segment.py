@@ -20,19 +20,6 @@ from eventsim.scene.numbers import Point
 from eventsim.scene.walls.wall import Bounds, Part, Wall, distances, length_problems
 
 
-def _image_problems(start: Point, end: Point, period: Sequence[float]) -> Iterator[str]:
-    """A straight piece lies on its image where it is parallel to the way there, exactly, and longer."""
-    way = [Fraction(b) - Fraction(a) for a, b in zip(start, end, strict=True)]
-    if any(d != 0 and math.isinf(length) for d, length in zip(way, period, strict=True)):
-        return
-    x, y = (0 if d == 0 else d / Fraction(length) for d, length in zip(way, period, strict=True))
-    whole = math.gcd(x.numerator * y.denominator, y.numerator * x.denominator)
-    longer = Fraction(whole, x.denominator * y.denominator)
-    if longer > 1:
-        piece = f"from {list(start)} to {list(end)}"
-        yield f": {piece} it is {float(longer):.6g} times as long as the way to its own image, and lies on it"
-
-
 @dataclass(frozen=True, slots=True)
 class Segment(Part):
     """A straight wall, hard on both sides; its ends are round posts of radius 0."""
@@ -61,9 +48,17 @@ class Segment(Part):
         else:
             yield from length_problems("", self.start, self.end)
 
-    def image_problems(self, period: Sequence[float]) -> Iterator[str]:
-        """Where it goes along a period, it is no longer than that."""
-        return _image_problems(self.start, self.end, period)
+    def own_image_problems(self, period: Sequence[float]) -> Iterator[str]:
+        """It lies on its image where it is parallel to the way there, exactly, and longer."""
+        way = [Fraction(b) - Fraction(a) for a, b in zip(self.start, self.end, strict=True)]
+        if any(d != 0 and math.isinf(length) for d, length in zip(way, period, strict=True)):
+            return
+        x, y = (0 if d == 0 else d / Fraction(length) for d, length in zip(way, period, strict=True))
+        whole = math.gcd(x.numerator * y.denominator, y.numerator * x.denominator)
+        longer = Fraction(whole, x.denominator * y.denominator)
+        if longer > 1:
+            piece = f"from {list(self.start)} to {list(self.end)}"
+            yield f": {piece} it is {float(longer):.6g} times as long as the way to its own image, and lies on it"
 
     def bounds(self) -> Bounds:
         """The rectangle of its ends."""
@@ -115,11 +110,6 @@ class _Chain(Wall):
         shapes: list[tuple[Shape, int]] = [(face(*moved(a), *moved(b)), k) for k, (a, b) in enumerate(edges)]
         shapes += [(Post(*moved(p)), min(k, len(edges) - 1)) for k, p in enumerate(self.points)]
         return shapes
-
-    def image_problems(self, period: Sequence[float]) -> Iterator[str]:
-        """Where an edge goes along a period, it is no longer than that."""
-        for start, end in self.edges():
-            yield from _image_problems(start, end, period)
 
     def shape_problems(self) -> Iterator[str]:
         """It needs enough points, and its edges a length."""

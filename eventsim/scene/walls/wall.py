@@ -121,7 +121,8 @@ class Wall(Manner, ABC):
 
     def image_problems(self, period: Sequence[float]) -> Iterator[str]:
         """Pieces that lie on images of themselves; period: of each axis, inf where it has none."""
-        return iter(())
+        for part in self.parts(""):
+            yield from part.own_image_problems(period)
 
     def problems(self) -> Iterator[str]:
         """Every rule that the wall breaks, each problem beginning with the key that breaks it."""
@@ -141,6 +142,10 @@ class Part(Wall):
     @abstractmethod
     def bounds(self) -> Bounds:
         """A rectangle that the piece lies in."""
+
+    def own_image_problems(self, period: Sequence[float]) -> Iterator[str]:
+        """As `image_problems`, of this piece: what bends lies on no image of itself."""
+        return iter(())
 
     def span(self, axis: int) -> tuple[Fraction, Fraction]:
         """Where its points, as they are given, begin and end along an axis, exactly."""
