@@ -45,10 +45,8 @@ class ExactTimes:
 
     def _is_round(self, number: int, side: int, i: int) -> bool:
         """Whether a wall is round where disk i meets it on that side; a post is none for a point, which hits it exactly."""
-        surface = self._stage.surfaces[number]
-        if isinstance(surface, Boundary) or side < 0 or self._stage.is_exact_hit(number, float(self._stage.radius[i])):
-            return False
-        return surface.shape.line() is None
+        stage = self._stage
+        return stage.is_round_outside(number, side) and not stage.is_exact_hit(number, float(stage.radius[i]))
 
     def _root(self, a: int, b: int, image: tuple[int, int]) -> Moment | None:
         """The time of a contact as a root of a quadratic; None where it is none."""

@@ -173,6 +173,11 @@ class Stage:
         found = self.surfaces[surface]
         return is_float(radius) and self.points and not isinstance(found, Boundary) and is_post_to(found.shape, radius)
 
+    def is_round_outside(self, surface: int, side: int) -> bool:
+        """Whether this surface is round, and bends away from a disk that meets it on that side."""
+        found = self.surfaces[surface]
+        return not isinstance(found, Boundary) and side >= 0 and found.shape.line() is None
+
     @property
     def slopes(self) -> Floats:
         """(walls, 2) the acceleration that a disk has which rests on a wall; 0 for walls on which none does."""

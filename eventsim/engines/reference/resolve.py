@@ -22,7 +22,6 @@ from eventsim.formulas.real import NEVER, Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
 from eventsim.formulas.rough import SMOOTH, Roughness, grip_strength, gripped, pair_grip, wall_grip
 from eventsim.formulas.simultaneous import JointContact, Outcome, are_apart, resolve_together
-from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Kind
 from eventsim.scene.stage import Stage
@@ -295,13 +294,9 @@ class Resolver:
     def _may_be_a_graze(self, event: Event) -> bool:
         """Whether a contact with something round is so tangential that rounding may have made it."""
         state, stage, a, b = self._state, self._stage, event.a, event.b
-        reach = self._radius[a]
-        if b < 0:
-            surface = stage.surfaces[-1 - b]
-            if isinstance(surface, Boundary) or surface.shape.line() is not None or event.image[0] < 0:
-                return False
-        else:
-            reach += self._radius[b]
+        if b < 0 and not stage.is_round_outside(-1 - b, event.image[0]):
+            return False
+        reach = self._radius[a] + (self._radius[b] if b >= 0 else 0.0)
         if not reach > 0.0:
             return False
         at = [(*state.place(i, event.time), *state.speed(i, event.time), event.time - state.t[i]) for i in disks_of(event)]
