@@ -6,8 +6,8 @@ numba, which keeps compiled code by the file it came from, notices every edit.
 What disks do between contacts without gravity is a constant: speed, energy, the bin of the speed histogram.  A channel holds the
 sum of these over all disks, its rate, and rate x time goes to the present bin of time when the rate changes or the bin ends.
 So sums are right to the very end of a run, flights under way included.  A flight under gravity is added when it ends: to each bin
-that it passed through, what it did in there.  Bins double in width when the run outgrows them, and so does the interval between
-samples, so a run that slows down by many decades costs no more than one that does not.
+that it passed through, what it did in there.  When the run outgrows the bins, they double in width, and so does the interval
+between samples.  So a run that slows down by many decades costs no more than one that does not.
 """
 
 from __future__ import annotations

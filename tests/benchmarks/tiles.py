@@ -5,12 +5,12 @@
 The cells of the fast engine are dealt out among rectangular tiles.  The records of all disks lie in memory tile by tile, cell by
 cell, so what a tile needs is read in a few long streams.  In a window of time each tile is done once, in any order:
 
-1. It copies its own disks and those of a halo of cells around it, as they are at the beginning of the window, into memory of its
-   own that the caches hold, with slots, a calendar and room for a list.  Scheduled events come along.
+1. It copies its own disks and those of a halo of cells around it, as they are at the beginning of the window.  It has memory of
+   its own that the caches hold, with slots, a calendar and room for a list.  Scheduled events come along.
 2. It lets all of them live until the end of the window, by the fast engine's own laws, as if nothing else existed.  In the
    halo that goes wrong: first in the outermost cells, then further in, no faster than contacts follow each other.  So a disk
    in the halo is followed the shorter, the further out it is: behind its limit nothing that it does can matter.
-3. It logs the contacts whose first disk it owns, and writes the disks that are in its cells at the end of the window to the
+3. It logs the contacts whose first disk it owns.  It writes the disks that are in its cells at the end of the window to the
    second copy of all records, again cell by cell.
 4. It tells those of its neighbours that are still to be done each flight of its disks near the border.  They load no more of it
    than a strip, whose disks fly as they are told.  So a border costs a halo on one side only.
