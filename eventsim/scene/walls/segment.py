@@ -49,7 +49,7 @@ class Segment(Part):
             yield from length_problems("", self.start, self.end)
 
     def own_image_problems(self, period: Sequence[float]) -> Iterator[str]:
-        """It lies on its image where it is parallel to the way there, exactly, and longer."""
+        """It lies on its image by `period` where it is parallel to the way there, exactly, and longer."""
         way = [Fraction(b) - Fraction(a) for a, b in zip(self.start, self.end, strict=True)]
         if any(d != 0 and math.isinf(length) for d, length in zip(way, period, strict=True)):
             return

@@ -144,7 +144,7 @@ class Part(Wall):
         """A rectangle that the piece lies in."""
 
     def own_image_problems(self, period: Sequence[float]) -> Iterator[str]:
-        """As `image_problems`, of this piece: what bends lies on no image of itself."""
+        """As `image_problems`, of this piece by `period`: what bends lies on no image of itself."""
         return iter(())
 
     def span(self, axis: int) -> tuple[Fraction, Fraction]:
