@@ -7,8 +7,8 @@ velocities likewise, or to
   what rounding and its growth permit (`doubt`), whichever is more.
 * The run must stop for the same reason.  Where there is no answer (`collapse` in the story) it must stop with a
 reason there.
-* A run that stops with a reason earlier has *refused*: honest, but the oracle knows the answer.  It has not where floats do not
-determine the next contact: the doubt about its time is as long as the flight that leads to it.
+* A run that stops with a reason before a contact that floats determine has *refused*: honest, but the oracle knows the answer.
+Floats do not determine a contact where the doubt about its time is as long as the flight that leads to it.
 * What floats do not determine is not judged.  Nothing that is exact in the starting floats is excused.
 
 A series of bounces may end with its row `rest` before the oracle's does, at the oracle's time, once its flights are
@@ -438,32 +438,16 @@ class _Judge:
         total = len(seen.rows)
         left = self._left()
         now = exact(seen.time) - exact(seen.start_time)
-        if seen.stopped in STOPS:
-            if left and (left[0].may_refuse or self._is_in_doubt(left[0])):
-                return RIGHT, ""
-            slack = Decimal(1e3 * CLOSE * max(self.free_time, float(abs(story.time)) * 1e-3))
-            if story.ending == "collapse" and (not left or now >= story.time - slack):
-                return RIGHT, ""
-            if story.ending == "beyond" and (not left or now >= story.time - slack):
-                return RIGHT, ""
-            told = left[0] if left else None
-            if told is not None and self._ends_series(told, left):
-                return RIGHT, ""
-            what = (
-                story.ending
-                if told is None
-                else f"{told.kind} of {[p.disk for p in told.parts]} at {float(told.time):.9g}"
-            )
-            return REFUSED, f"stopped by {seen.stopped} at {float(now):.9g}; true: {what}; {seen.reason}"
+        if seen.stopped in STOPS and self._knows_no_more(left):
+            return RIGHT, ""
         if seen.stopped == "events":
             return RIGHT, ""
         missed = [row for row in left if row.time < now - Decimal(self._time_slack(row, row.parts[0].disk))]
         if missed:
-            row = missed[0]
-            raise _MistakeError(
-                f"missed: {_told(row)}; {seen.stopped} at {float(now):.12g}",
-                total,
-            )
+            raise _MistakeError(f"missed: {_told(missed[0])}; {seen.stopped} at {float(now):.12g}", total)
+        if seen.stopped in STOPS:
+            true = _told(left[0]) if left else story.ending
+            return REFUSED, f"stopped by {seen.stopped} at {float(now):.9g}; true: {true}; {seen.reason}"
         if story.ending == "collapse" and now > story.time + Decimal(
             max(1e3 * self.close * self.free_time, NOTICED * self.unit)
         ):
@@ -473,6 +457,12 @@ class _Judge:
                 raise _MistakeError(f"stopped: {seen.stopped}, true: {story.ending}", total)
             self._compare_state(total)
         return RIGHT, ""
+
+    def _knows_no_more(self, left: list[Row]) -> bool:
+        """Whether a stop with a reason is behind the last contact that floats determine, or as right as what comes next."""
+        if not left:
+            return self.story.ending in ("collapse", "beyond")
+        return left[0].may_refuse or self._is_in_doubt(left[0]) or self._ends_series(left[0], left)
 
     def _is_in_doubt(self, row: Row) -> bool:
         """Whether floats do not determine a contact: its time is known no better than since when its disks fly towards it."""

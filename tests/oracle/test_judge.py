@@ -87,6 +87,23 @@ def test_a_stop_with_a_reason_is_a_refusal_where_the_oracle_goes_on(gas: tuple[S
     assert judge(told, early).word == REFUSED
 
 
+def test_a_stop_is_right_only_behind_the_last_contact_that_floats_determine() -> None:
+    """Four contacts before its stop a run knows the next flight to one part in thousands, however short that is."""
+    disks = es.Disks([(1.0, 0.0), (3.0, 0.0)], [(0.0, 0.0), (-1.0, 0.0)], 0.5)
+    wall = es.Segment((-0.5, -9.0), (-0.5, 9.0))
+    scene = es.Scene(disks, es.Open(), [wall], restitution=0.1, until=1e3, events=200)
+    told, seen = story(scene), observe(scene, "reference")
+    assert (seen.stopped, judge(told, seen).word) == ("collapse", RIGHT)
+    early = replace(seen, rows=seen.rows[:-4], time=float(seen.rows["time"][-5]))
+    assert seen.time - early.time < 1e-8
+    assert judge(told, early).word == REFUSED
+
+
+def test_a_run_that_misses_a_contact_is_wrong_even_if_it_stops_with_a_reason(gas: tuple[Story, Seen]) -> None:
+    told, seen = gas
+    assert judge(told, replace(changed(seen, lambda rows: rows[:-1]), stopped="digits")).word == WRONG
+
+
 def test_what_floats_do_not_determine_is_not_judged() -> None:
     """A wall of posts beside a fast small disk: after a few contacts its order is a matter of last bits, and is not judged."""
     rng = np.random.default_rng(1)
