@@ -1222,7 +1222,8 @@ def rates(tiles: Tiles, session: FastSession, step: float, chosen: Any) -> None:
         advance_ordinary(session, tiles.epoch, tiles.now, False)
         ended = process_time()
         done = tiles.events - events
-        while small.advance(Stop(events=small.counters.events + SMALL_CONTACTS), 1 << 20) is None:
+        small_stop = Stop(events=small.counters.events + SMALL_CONTACTS)
+        while small.advance(small_stop, 1 << 20) is None:
             small.take_rows()
         small.take_rows()
         in_caches.append((process_time() - ended) / SMALL_CONTACTS)

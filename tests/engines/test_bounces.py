@@ -9,7 +9,6 @@ import pytest
 from mpmath import mp, mpf
 
 import eventsim as es
-from eventsim.engines.auto import has_compiler
 from eventsim.record.events import Kind
 from eventsim.replay.replay import Replay
 from tests.engines.falling import ENGINES, dropped
@@ -283,11 +282,10 @@ def test_in_the_middle_of_a_series_a_run_goes_on_and_replays_alike(kind, tmp_pat
     assert es.load_log(path).expand().digest() == whole.digest
 
 
-@pytest.mark.skipif(not has_compiler(), reason="needs numba")
-@pytest.mark.parametrize(
-    "kind", [*DROPS, "vertex", pytest.param("arc", marks=pytest.mark.slow), pytest.param("container", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("kind", [*DROPS, *ROUND])
+@pytest.mark.kernels
 def test_engines_agree_on_every_kind_of_bounce(kind):
+    pytest.importorskip("numba")
     if kind in DROPS:
         scene, _ = DROPS[kind][0](np.random.default_rng(7), 0.97)
     else:

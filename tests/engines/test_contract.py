@@ -15,7 +15,9 @@ from eventsim.run import ENGINES
 from eventsim.scene.stage import stage_of
 
 TWO = es.gallery("two-disks")
-EVERY = pytest.mark.parametrize("name", TABLE)
+EVERY = pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.kernels) if name == "fast" else name for name in TABLE]
+)
 
 
 def opened(name, **options):

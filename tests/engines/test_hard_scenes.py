@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Stop
 from eventsim.engines.reference import ReferenceOptions
 from eventsim.engines.reference.loop import ReferenceSession
@@ -16,6 +17,7 @@ from eventsim.validation.stress.catalogue.scenes import on_plane
 from tests.engines.scenes import lattice_gas
 
 ULP = 2.0**-52
+EVENTS = 500 if is_interpreted() else 2000
 BOTH = ["reference", "fast"]
 
 
@@ -87,16 +89,17 @@ def test_f21_the_slowest_disk_meets_the_nearest_one_in_time(engine):
 
 
 @pytest.mark.parametrize("domain", [es.Box, es.Periodic])
+@pytest.mark.kernels
 def test_f30_ties_with_cell_crossings_leave_the_log_of_all_pairs(domain):
     """Disks along diagonals, which pass corners of cells of width 1 (and 2) at the times of contacts on their edges."""
     sites = np.array([(i, j) for i in range(6) for j in range(6)], float)
     signs = np.random.default_rng(30).choice([-1.0, 1.0], size=(36, 2))
     scene = es.Scene(es.Disks(2.0 * sites + 0.5, signs, 0.5), domain((12.0, 12.0)))
     session = ReferenceSession(stage_of(scene), options=ReferenceOptions(grid=None))
-    session.advance(Stop(None, 2000), 10**9)
+    session.advance(Stop(None, EVENTS), 10**9)
     rows = session.take_rows()
     for engine in BOTH:
-        assert log_of(scene, engine, events=2000).rows.tobytes() == rows.tobytes()
+        assert log_of(scene, engine, events=EVENTS).rows.tobytes() == rows.tobytes()
 
 
 def swapped(scene):
@@ -134,6 +137,7 @@ def test_f32_a_mirror_image_has_the_same_contacts(engine):
     np.testing.assert_allclose(other.vya, one.vya, rtol=0.0, atol=1e-10)
 
 
+@pytest.mark.kernels
 def test_f29_both_boundaries_passed_at_one_time_are_passed_in_one_order():
     """A disk flies along the diagonal of a torus and through its corner, then into another one; places that round differently."""
     side = 7.8

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
+from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Stop
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import in_far_corner, lattice_gas, session_of
@@ -52,10 +53,6 @@ SCENES = {
     "cooling": lambda: in_far_corner(lattice_gas(16, 0.3, restitution=0.9, contact_duration=1e-4), SIZE),
     "round walls": among_round_walls,
 }
-QUICK = ("corner",)
-"""The others need kernels of their own, which take seconds to compile."""
-
-
 def test_disks_touch_to_the_last_bits_of_their_coordinates():
     run = es.simulate(SCENES["corner"](), events=2000, engine="reference")
     assert run.residuals.max_overlap < 4.0 * math.ulp(SIZE)
@@ -68,11 +65,10 @@ def test_invariants_hold_after_every_event(name):
     assert session.counters.events >= 100
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in SCENES]
-)
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.kernels
 def test_both_engines_have_one_log(name):
     pytest.importorskip("numba")
     from tests.engines.fast.test_same_log import assert_same
 
-    assert_same(stage_of(SCENES[name]()), Stop(None, 1000))
+    assert_same(stage_of(SCENES[name]()), Stop(None, 100 if is_interpreted() else 1000))

@@ -107,7 +107,7 @@ def test_equipartition_between_species():
 
 
 def test_two_disks_have_their_closed_forms():
-    measures = es.simulate(two_on_a_torus(), events=30_000, engine="reference", measure=True).measures
+    measures = es.simulate(two_on_a_torus(), events=12_000, engine="reference", measure=True).measures
     assert measures["Z"].theory == pytest.approx(1.75, rel=1e-8)
     assert measures["collision_rate"].theory == pytest.approx(1.909859317, rel=1e-8)
     assert abs(measures["Z"].deviation) < 4.0
@@ -139,7 +139,7 @@ def test_the_beginning_is_left_out_when_asked_or_when_the_scene_says(gas_log):
 
 def test_a_crystal_that_does_not_melt_is_not_called_equilibrated():
     scene = es.gallery("periodic-fluid", n=64, packing_fraction=0.71)
-    measures = es.simulate(scene, events=20_000, engine="reference", measure=True).measures
+    measures = es.simulate(scene, events=10_000, engine="reference", measure=True).measures
     assert not measures.equilibrated
     assert any("diameters" in doubt or "melting" in doubt for doubt in measures.doubts)
 

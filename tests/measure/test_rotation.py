@@ -68,6 +68,7 @@ def test_perfectly_rough_disks_share_alike():
     assert rotation_ratio(1.0, -1.0, 0.5)[0] == 0.0  # what never turns stays as cold as it is
 
 
+@pytest.mark.slow
 def test_the_ratio_is_told_beside_theory():
     run = es.simulate(gallery("rough"), engine="reference", log=True)
     found = measure(run.log)
@@ -77,6 +78,9 @@ def test_the_ratio_is_told_beside_theory():
     assert "cooling_exponent" not in measure(es.simulate(gallery("rough", roughness=1.0), events=600, log=True).log).by_name
     assert cooling.theory == pytest.approx(2.0 * rotation_ratio(1.0, 0.5, 0.5)[2])
     assert abs(cooling.deviation) < 4.0
+
+
+def test_before_it_has_settled_no_theory_stands_beside_the_ratio():
     early = measure(es.simulate(gallery("rough"), events=600, engine="reference", log=True).log)
     assert math.isnan(early["rotation_ratio"].error)
     for one in (early["rotation_ratio"], early["cooling_exponent"]):

@@ -109,7 +109,7 @@ def test_it_says_when_the_run_parts_from_its_proof(seed):
     assert 1.0 / 1.5 < (line.event + 1) / (event + 1) < 1.5
 
 
-@pytest.mark.parametrize("seed", [6, 11])
+@pytest.mark.parametrize("seed", [6, pytest.param(11, marks=pytest.mark.slow)])
 def test_it_says_so_of_disks_that_spin(seed):
     pytest.importorskip("flint")
     scene = rough(seed)

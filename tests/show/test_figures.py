@@ -24,8 +24,14 @@ from eventsim.show.output import name_of
 from tests.measure.ways import displacements
 
 
-@pytest.mark.parametrize("kind", TITLES)
-@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+DRAWN = [
+    pytest.param(suffix, kind, marks=pytest.mark.slow) if suffix != ".png" and kind not in ("speeds", "space-time") else (suffix, kind)
+    for suffix in (".png", ".svg", ".pdf")
+    for kind in TITLES
+]
+
+
+@pytest.mark.parametrize(("suffix", "kind"), DRAWN)
 def test_every_kind_is_written_in_every_format(shown_in, tmp_path, kind, suffix):
     path = tmp_path / f"a{suffix}"
     write_figure(shown_in(kind), kind, path)
@@ -89,7 +95,7 @@ def test_a_piece_across_a_periodic_boundary_is_drawn_in_both_images():
 
 
 def test_theory_of_free_paths_is_a_density_with_mean_one():
-    x = np.linspace(0.0, 60.0, 60_001)
+    x = np.linspace(0.0, 60.0, 6001)
     density = path_density(x)
     assert np.trapezoid(density, x) == pytest.approx(1.0, abs=2e-3)
     assert np.trapezoid(x * density, x) == pytest.approx(1.0, abs=2e-2)

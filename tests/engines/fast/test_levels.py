@@ -19,7 +19,7 @@ from tests.engines.scenes import lattice_gas, wide_mixture
 
 pytestmark = pytest.mark.kernels
 
-STOP, SEEDS = (Stop(until=100.0, events=200), 1) if is_interpreted() else (Stop(until=100.0, events=3000), 4)
+STOP, SEEDS = (Stop(until=100.0, events=60), 1) if is_interpreted() else (Stop(until=100.0, events=3000), 4)
 slow = pytest.mark.slow
 
 

@@ -25,7 +25,7 @@ EVENTS = 20 if is_interpreted() else 60
 KINDS = None if is_interpreted() else 3
 """Of how many kinds scenes of a law are, each of which is compiled."""
 
-SEEDS = 5 if is_interpreted() else 200
+SEEDS = 3 if is_interpreted() else 200
 
 
 def followed(session, seed, other=None, order=None):
