@@ -128,7 +128,8 @@ QUICK = "box at 0", "box at 2^20, clock at 2^30", "corner (1, 1) of a wide box"
 
 @pytest.mark.parametrize(
     ("place", "seeds"),
-    [(place, range(2 if "corner" in place else 4)) for place in QUICK] + [pytest.param(place, range(24), marks=pytest.mark.slow) for place in PLACES],
+    [(place, range(2 if "corner" in place else 4)) for place in QUICK]
+    + [pytest.param(place, range(24), marks=pytest.mark.slow) for place in PLACES],
 )
 def test_float64_follows_the_true_order_for_330_events_and_for_200_at_a_million_diameters(place, seeds):
     found = [first_difference(PLACES[place](lattice_gas(16, 0.3, seed=seed))) for seed in seeds]

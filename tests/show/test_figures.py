@@ -23,9 +23,8 @@ from eventsim.show.images import wrapped_pieces
 from eventsim.show.output import name_of
 from tests.measure.ways import displacements
 
-
 DRAWN = [
-    pytest.param(suffix, kind, marks=pytest.mark.slow) if suffix != ".png" and kind not in ("speeds", "space-time") else (suffix, kind)
+    (suffix, kind) if suffix == ".png" or kind in ("speeds", "space-time") else pytest.param(suffix, kind, marks=pytest.mark.slow)
     for suffix in (".png", ".svg", ".pdf")
     for kind in TITLES
 ]
