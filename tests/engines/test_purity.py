@@ -43,8 +43,8 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_every_invariant_holds_after_every_event(name):
     session = session_of(SCENES[name](), check=True)
-    stopped = session.advance(Stop(None, 150), 10**6)
-    assert session.counters.events >= 150 or stopped == "quiet"
+    stopped = session.advance(Stop(None, 90), 10**6)
+    assert session.counters.events >= 90 or stopped == "quiet"
 
 
 @pytest.mark.parametrize("name", SCENES)
