@@ -440,11 +440,11 @@ class _Judge:
         now = exact(seen.time) - exact(seen.start_time)
         if seen.stopped in STOPS and self._knows_no_more(left):
             return RIGHT, ""
-        if seen.stopped == "events":
-            return RIGHT, ""
         missed = [row for row in left if row.time < now - Decimal(self._time_slack(row, row.parts[0].disk))]
         if missed:
             raise _MistakeError(f"missed: {_told(missed[0])}; {seen.stopped} at {float(now):.12g}", total)
+        if seen.stopped == "events":
+            return RIGHT, ""
         if seen.stopped in STOPS:
             true = _told(left[0]) if left else story.ending
             return REFUSED, f"stopped by {seen.stopped} at {float(now):.9g}; true: {true}; {seen.reason}"

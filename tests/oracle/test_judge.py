@@ -99,9 +99,10 @@ def test_a_stop_is_right_only_behind_the_last_contact_that_floats_determine() ->
     assert judge(told, early).word == REFUSED
 
 
-def test_a_run_that_misses_a_contact_is_wrong_even_if_it_stops_with_a_reason(gas: tuple[Story, Seen]) -> None:
+@pytest.mark.parametrize("word", ["digits", "events"])
+def test_a_run_that_misses_a_contact_is_wrong_whatever_it_stops_by(gas: tuple[Story, Seen], word: str) -> None:
     told, seen = gas
-    assert judge(told, replace(changed(seen, lambda rows: rows[:-1]), stopped="digits")).word == WRONG
+    assert judge(told, replace(seen, rows=seen.rows[:-1], stopped=word)).word == WRONG
 
 
 def test_what_floats_do_not_determine_is_not_judged() -> None:
