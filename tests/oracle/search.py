@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from tests.oracle.digits import HALF, ONE, ZERO, exact, sign
 from tests.oracle.roots import Polynomial, survey
-from tests.oracle.table import Bow, Line, Oval, Ring, Shape, Table, Tip, Vector, across, along, ends_of
+from tests.oracle.table import TOUCHING, Bow, Line, Oval, Ring, Shape, Table, Tip, Vector, across, along, ends_of
 
 NEAR = 1e-2
 """A miss by more than this part of the scene's size is no close call: errors as large end the judging before."""
@@ -438,7 +438,10 @@ class Search:
             rate = mx * u + my * w
             share = (fx * u + fy * w) / rate if rate != 0.0 else 0.0
             calls.append(Call(now + t, margin, _cleaned(fx - share * mx, fy - share * my)))
-        return None if min(ends) < 0 else min(ends) == 0
+        if min(ends) < 0:
+            end = one.start if ends[0] < 0 else one.end
+            return False if end in self.table.sealed and -min(foot, rest) <= _last_bits(end) * one.norm else None
+        return min(ends) == 0
 
     def _bow(
         self,
@@ -549,7 +552,10 @@ class Search:
             rate = mx * u + my * w
             share = (-my * u + mx * w) / rate if rate != 0.0 else 0.0
             calls.append(Call(now + t, away, _cleaned(-my - share * mx, mx - share * my)))
-        return None if side < 0 else side == 0
+        if side < 0:
+            end = shape.start if at_start < at_end else shape.end
+            return False if end in self.table.sealed and away <= _last_bits(end) else None
+        return side == 0
 
 
 def _round(
@@ -657,6 +663,11 @@ def _centre(shape: Shape) -> Vector:
 
 def _rate_size(one: Line, speed: Vector) -> Decimal:
     return abs(one.normal[0] * speed[0]) + abs(one.normal[1] * speed[1])
+
+
+def _last_bits(end: Vector) -> Decimal:
+    """How far a sealed end of a wall goes on, for points: nothing passes between it and what it lies on."""
+    return TOUCHING * max(abs(end[0]), abs(end[1]))
 
 
 def _distance(p: Vector, q: Vector) -> float:

@@ -109,7 +109,7 @@ class Table:
     radius, mass: of every disk; mass None: infinite.  period: along x and y, None where there is none.  bonds: for
     each shape, the shapes that continue it: the ends of a line or bow, and what ends at a tip.  supports: for each
     line, its index or that of the first line that it is in line with and joined to (bends below the last bits of the
-    points are none).
+    points are none).  sealed: ends that lie on another wall but for the last bits, so that no point passes between.
     """
 
     radius: list[Decimal]
@@ -123,6 +123,7 @@ class Table:
     shapes: list[Shape]
     bonds: list[frozenset[int]]
     supports: dict[int, tuple[int, ...]]
+    sealed: frozenset[Vector]
     corner: Vector
     largest: float
     size: tuple[float, float] | None
@@ -172,6 +173,7 @@ def table_of(scene: Any) -> Table:
         shapes=shapes,
         bonds=_bonds(shapes),
         supports=_supports(shapes),
+        sealed=frozenset(one.place for one in shapes if isinstance(one, Tip) and _is_sealed(one, shapes)),
         corner=corner,
         largest=largest,
         size=size,
@@ -313,6 +315,30 @@ def _supports(shapes: list[Shape]) -> dict[int, tuple[int, ...]]:
                     low, high, grown = min(low, a), max(high, b), True
         found[k] = tuple(sorted(group))
     return found
+
+
+def _is_sealed(tip: Tip, shapes: list[Shape]) -> bool:
+    """Whether an end of walls lies on another wall."""
+    x, y = tip.place
+    for k, other in enumerate(shapes):
+        if k in tip.walls:
+            continue
+        if isinstance(other, Line):
+            if in_line(other, tip.place) and (other.length2 is None or 0 < along(other, tip.place) < other.length2):
+                return True
+        elif isinstance(other, Ring | Bow):
+            dx, dy = x - other.centre[0], y - other.centre[1]
+            size = max(abs(x), abs(y), other.radius)
+            near = abs(root(dx * dx + dy * dy) - other.radius) <= TOUCHING * size
+            if near and (isinstance(other, Ring) or _is_beyond(other, tip.place)):
+                return True
+    return False
+
+
+def _is_beyond(one: Bow, p: Vector) -> bool:
+    """Whether a point is on the side of the chord where the bow is."""
+    fx, fy = p[0] - one.start[0], p[1] - one.start[1]
+    return one.bulge * (one.chord[0] * fy - one.chord[1] * fx) > 0
 
 
 def along(one: Line, p: Vector) -> Decimal:

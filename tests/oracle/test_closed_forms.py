@@ -296,3 +296,12 @@ def test_a_drop_on_a_vertex_has_no_answer_behind_its_zeno_time() -> None:
     )
     assert told.ending == "collapse"
     assert float(told.time) == pytest.approx(3.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("short", "first"), [(4 * 2.0**-51, "chord"), (1e-10, "round")])
+def test_a_point_does_not_pass_between_a_chord_and_the_circle_that_it_ends_on(short: float, first: str) -> None:
+    """It flies into the middle of a gap of some last bits, which is none, or of one that can be told."""
+    walls = [es.Circle((0.0, 0.0), 5.0, name="round"), es.Segment((3.0, -4.0), (3.0, 4.0 - short), name="chord")]
+    told = story(es.Scene(disks([(0.0, 4.0 - short / 2)], [(1.0, 0.0)], 0.0), es.Open(), walls, until=3.5))
+    assert told.rows[0].walls == {first}
+    assert float(told.rows[0].time) == pytest.approx(3.0, abs=1e-9)
