@@ -143,8 +143,9 @@ def validate(
         found.elapsed = done.elapsed
         return Judged(found)
     assert trajectory is not None
-    told = None if contacts is None else _contacts(contacts, len(scene.disks))
-    return Judged(judge(scene, _samples(trajectory, dt), told, tolerance, until))
+    samples = _samples(trajectory, dt)
+    told = None if contacts is None else _contacts(contacts, len(scene.disks), samples.counted)
+    return Judged(judge(scene, samples, told, tolerance, until))
 
 
 def _samples(trajectory: Source, dt: float | None) -> Samples:
@@ -158,14 +159,14 @@ def _samples(trajectory: Source, dt: float | None) -> Samples:
     return checked(Samples("the arrays", times, arrays[0][..., :2], velocity))
 
 
-def _contacts(contacts: Source | ArrayLike, n: int) -> ToldContacts:
-    """Contacts from a file or from rows."""
+def _contacts(contacts: Source | ArrayLike, n: int, counted: int) -> ToldContacts:
+    """Contacts from a file or from rows, of disks that are counted as those of the motion."""
     if isinstance(contacts, str | PathLike):
-        return read_contacts(Path(contacts), n)
+        return read_contacts(Path(contacts), n, counted)
     try:
         given: Any = contacts
         rows = [(float(time), float(a), float(b), str(*wall)) for time, a, b, *wall in given]
     except (TypeError, ValueError):
         raise EventsimError('contacts: must be rows (time, a, b) or (time, a, b, "wall"), b = -1 at a wall') from None
     numbers = np.array([row[:3] for row in rows]).reshape(-1, 3)
-    return told_from(numbers[:, 0], numbers[:, 1], numbers[:, 2], [row[3] for row in rows], n, "the contacts")
+    return told_from(numbers[:, 0], numbers[:, 1], numbers[:, 2], [row[3] for row in rows], n, "the contacts", counted)

@@ -69,11 +69,11 @@ def command(
     total difference of times; its first wrong event is named, with disks and time. --dt: time between frames (XYZ, column frame).
 
     
-    Columns of --trajectory (CSV, NPZ, Parquet), disks counted from 0 in the order of the scene:
+    Columns of --trajectory (CSV, NPZ, Parquet), disks in the order of the scene, counted from 0, or from 1:
       time, disk, x, y [, vx, vy]        a row for each disk and time
       time, x0, y0, x1, y1, ...          a row for each time
       time, position [, velocity]        arrays (T,), (T, n, 2) of an .npz file
-    Columns of --contacts: time, a, b (-1: a wall) [, wall]
+    Columns of --contacts: time, a, b (-1: a wall) [, wall], disks counted as in --trajectory
 
     
     Examples:

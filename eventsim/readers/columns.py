@@ -1,7 +1,7 @@
 """From named columns to samples: one row for each disk and time, one row for each time, or arrays of all disks.
 
     time, disk, x, y [, vx, vy] [, radius, mass]     a row for each disk and time; without `disk`: in one order at each time
-    time, x0, y0, x1, y1, ... [, vx0, vy0, ...]      a row for each time
+    time, x0, y0, x1, y1, ... [, vx0, vy0, ...]      a row for each time; from x1 on as well
     time (T,), position (T, n, 2) [, velocity], or x, y (T, n) [, vx, vy]     arrays, in .npz
 
 `t` is another name of `time`, `id` of `disk` (`read_columns`).
@@ -18,6 +18,9 @@ from eventsim.errors import EventsimError
 from eventsim.readers.samples import Column, Columns, Floats, Samples, checked, last_digit, times_of_frames
 from eventsim.reading import NUMBERS, as_floats
 
+WIDE = re.compile(r"x(\d+)")
+"""The column of one disk in a row for each time."""
+
 
 def samples_of(named: Columns, source: str, dt: float | None = None) -> Samples:
     """The samples that columns hold; EventsimError, naming the source, where they are of no such kind."""
@@ -25,7 +28,7 @@ def samples_of(named: Columns, source: str, dt: float | None = None) -> Samples:
         return _of_arrays(named, source, dt)
     if "x" in named and "y" in named:
         return _of_rows(named, source, dt)
-    if "x0" in named and "y0" in named:
+    if any(WIDE.fullmatch(name) for name in named):
         return _of_times(named, source, dt)
     raise EventsimError(
         f"{source}: has the columns {', '.join(named)}; positions are time, disk, x, y (a row for each disk and time) "
@@ -95,14 +98,16 @@ def _of_rows(named: Columns, source: str, dt: float | None) -> Samples:
 
 
 def _of_times(named: Columns, source: str, dt: float | None) -> Samples:
-    """A row for each time."""
-    n = 1 + max(int(match[1]) for name in named if (match := re.fullmatch(r"x(\d+)", name)))
-    position = np.stack([_stacked(named, (f"x{i}", f"y{i}"), source) for i in range(n)], axis=1)
-    moving = all(f"v{axis}{i}" in named for axis in "xy" for i in range(n))
-    velocity = np.stack([_stacked(named, (f"vx{i}", f"vy{i}"), source) for i in range(n)], axis=1) if moving else None
+    """A row for each time; its disks may be counted from any number on."""
+    numbers = [int(match[1]) for name in named if (match := WIDE.fullmatch(name))]
+    disks = range(min(numbers), max(numbers) + 1)
+    position = np.stack([_stacked(named, (f"x{i}", f"y{i}"), source) for i in disks], axis=1)
+    moving = all(f"v{axis}{i}" in named for axis in "xy" for i in disks)
+    velocity = np.stack([_stacked(named, (f"vx{i}", f"vy{i}"), source) for i in disks], axis=1) if moving else None
     frames: list[float | None] = [None] * len(position)
     times = _numbers(named, "time", source) if "time" in named else times_of_frames(source, frames, dt)
-    return checked(Samples(source, times, position, velocity, step=last_digit(named["x0"])))
+    step = last_digit(named[f"x{disks[0]}"])
+    return checked(Samples(source, times, position, velocity, step=step, counted=disks[0]))
 
 
 def _stacked(named: Columns, names: tuple[str, str], source: str) -> Floats:

@@ -47,13 +47,17 @@ class ToldContacts:
         return ToldContacts(self.time[first:], self.a[first:], self.b[first:], self.wall[first:])
 
 
-def read_contacts(path: Path, n: int) -> ToldContacts:
-    """The contacts between n disks and with walls; EventsimError, naming the file, for what is no such table."""
+def read_contacts(path: Path, n: int, counted: int = 0) -> ToldContacts:
+    """The contacts between n disks, the first of which is number `counted`, and with walls.
+
+    Raises:
+        EventsimError: naming the file, for what is no such table.
+    """
     with told_as(path, EventsimError, "does not tell contacts"):
-        return _told(read_columns(path), path, n)
+        return _told(read_columns(path), path, n, counted)
 
 
-def _told(named: Columns, path: Path, n: int) -> ToldContacts:
+def _told(named: Columns, path: Path, n: int, counted: int) -> ToldContacts:
     missing = [name for name in ("time", "a", "b") if name not in named]
     if missing:
         raise EventsimError(f"{path}: lacks {', '.join(missing)}: contacts have the columns time, a, b (-1: a wall), wall")
@@ -68,27 +72,34 @@ def _told(named: Columns, path: Path, n: int) -> ToldContacts:
     time, a, b = (
         numbers_of(column, name, str(path)) for name, column in (("time", named["time"][kept]), ("a", named["a"][kept]), ("b", b))
     )
-    return told_from(time, a, np.where(np.isfinite(b), b, -1.0), wall, n, str(path))
+    return told_from(time, a, np.where(np.isfinite(b), b, -1.0), wall, n, str(path), counted)
 
 
-def told_from(time: Floats, a: Floats, b: Floats, wall: Sequence[str], n: int, source: str) -> ToldContacts:
-    """Contacts from columns; EventsimError where they name disks that there are not."""
+def told_from(
+    time: Floats, a: Floats, b: Floats, wall: Sequence[str], n: int, source: str, counted: int = 0
+) -> ToldContacts:
+    """Contacts from columns, in which the first of n disks is number `counted`.
+
+    Raises:
+        EventsimError: where they name disks that there are not.
+    """
     if not np.all(np.isfinite(time)):
         row = int(np.argmin(np.isfinite(time)))
         raise EventsimError(f"{source}: row {row}: time = {time[row]}: must be finite")
-    for name, column, least in (("a", a, 0), ("b", b, -1)):
-        wrong = ~((column >= least) & (column < n) & (column == np.floor(column)))
+    alone = b == -1.0
+    for name, column, at_wall in (("a", a, False), ("b", b, alone)):
+        wrong = ~(((column >= counted) & (column < counted + n) & (column == np.floor(column))) | at_wall)
         if wrong.any():
             row = int(np.argmax(wrong))
-            raise EventsimError(f"{source}: row {row}: {name} = {column[row]:g}: names no disk; they are 0 to {n - 1}")
+            count = f"{counted} to {counted + n - 1}{', as in the motion' if counted else ''}"
+            raise EventsimError(f"{source}: row {row}: {name} = {column[row]:g}: names no disk; they are {count}")
     if np.any(a == b):
         raise EventsimError(f"{source}: row {int(np.argmax(a == b))}: a disk meets itself")
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    alone = b < 0
+    low, high = np.minimum(a, b) - counted, np.maximum(a, b) - counted
     order = np.argsort(time, kind="stable")
     return ToldContacts(
         time[order],
-        np.where(alone, a, low)[order].astype(np.int64),
+        np.where(alone, a - counted, low)[order].astype(np.int64),
         np.where(alone, -1, high)[order].astype(np.int64),
         tuple(wall[k] for k in order),
     )

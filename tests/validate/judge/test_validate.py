@@ -253,10 +253,20 @@ def test_disks_that_spin_are_not_judged():
         es.validate(replace(SCENE, tangential_restitution=1.0), trajectory=(times, places))
 
 
-def test_disks_that_are_counted_from_one_are_told_as_we_count_them(missed, tmp_path):
-    times, places, _, _ = missed
-    rows = [(time, disk + 1, *place) for time, row in zip(times, places, strict=True) for disk, place in enumerate(row)]
-    np.savetxt(tmp_path / "one.csv", rows, delimiter=",", header="time,disk,x,y", comments="")
-    judged = es.validate(SCENE, trajectory=tmp_path / "one.csv")
+@pytest.mark.parametrize("wide", [False, True])
+def test_disks_that_are_counted_from_one_are_told_as_we_count_them(missed, tmp_path, wide):
+    """In rows, in columns x1, y1, ..., and in contacts beside them."""
+    times, places, _, contacts = missed
+    if wide:
+        rows, head = np.column_stack([times, places.reshape(len(times), -1)]), "time,x1,y1,x2,y2,x3,y3,x4,y4,x5,y5,x6,y6,x7,y7"
+    else:
+        rows = [(time, disk + 1, *place) for time, row in zip(times, places, strict=True) for disk, place in enumerate(row)]
+        head = "time,disk,x,y"
+    np.savetxt(tmp_path / "one.csv", rows, delimiter=",", header=head, comments="")
+    met = [(time, a + 1, b + 1 if b >= 0 else -1) for time, a, b, _ in contacts]
+    judged = es.validate(SCENE, trajectory=tmp_path / "one.csv", contacts=met)
     assert judged.verdict[1] == "its disks are counted from 1 on; here the first one is disk 0"
     assert judged.first_fault.disks == (3, 4)
+    assert judged.judgement.charge.false == 0
+    with pytest.raises(es.EventsimError, match=r"row \d+: a = 0: names no disk; they are 1 to 7, as in the motion"):
+        es.validate(SCENE, trajectory=tmp_path / "one.csv", contacts=[row[:3] for row in contacts])
