@@ -15,7 +15,7 @@ from eventsim.record.contacts import Key
 from eventsim.record.events import Floats, Kind
 from eventsim.scene.stage import Stage
 from eventsim.validation.judge.flights import Flights, Gained, Turn
-from eventsim.validation.judge.outcome import is_told, named, wrong_outcome
+from eventsim.validation.judge.outcome import named, outcome_of, restitutions, wrong_outcome
 from eventsim.validation.judge.previous import Previous
 from eventsim.validation.judge.surroundings import Surroundings
 from eventsim.validation.judge.told import NEAR, Met
@@ -147,18 +147,18 @@ class Witness:
 
     def outcome(self, met: Met) -> Fault | None:
         """The fault of what a contact did; None where it is right, or where a wall may have had its part in it."""
-        said = wrong_outcome(met, self._stage, self._mass, self._flights.least, self._previous.since(met))
-        if said is None:
-            return None
-        if self._may_be_shared(met):
+        found = outcome_of(met, self._mass, self._flights.least)
+        said = None if found is None else wrong_outcome(met, found, self._stage, self._mass, self._previous.since(met))
+        if said is None or self._may_be_shared(met):
             return None
         kind = said.split(":")[0]
         disks = tuple(disk for disk in met.key[1:] if disk >= 0) if met.key[0] == Kind.PAIR else met.key[1:2]
         return Fault(met.time, kind, f"{said} (t = {met.time:.6g})", disks)
 
     def tells(self, met: Met) -> bool:
-        """Whether the paths tell what a contact did."""
-        return is_told(met, self._stage, self._mass, self._flights.least) and not self._may_be_shared(met)
+        """Whether the paths tell what a contact did, and the law what it should have done."""
+        found = outcome_of(met, self._mass, self._flights.least)
+        return found is not None and restitutions(met, found, self._stage) is not None and not self._may_be_shared(met)
 
     def _may_be_shared(self, met: Met) -> bool:
         """Whether one of two disks, or a disk at a wall for several samples, may have met a wall unseen besides."""

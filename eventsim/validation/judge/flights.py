@@ -211,8 +211,24 @@ class Gained(NamedTuple):
     largest: Floats
 
 
-def free_flights(flights: Flights) -> Iterator[tuple[int, int, int]]:
-    """(disk, first sample, last sample) of all flights of at least SHORTEST samples, disk by disk."""
+class Flight(NamedTuple):
+    """A free flight, and what its second half tells against the first, by positions alone.
+
+    disk: whose.  begun, lasts: when it begins, and how long it is, time.  middle, end: samples.  velocity: the mean of those of
+    both halves.  acceleration: what makes the one of the other.
+    """
+
+    disk: int
+    begun: float
+    lasts: float
+    middle: int
+    end: int
+    velocity: Floats
+    acceleration: Floats
+
+
+def free_flights(flights: Flights) -> Iterator[Flight]:
+    """All flights of at least SHORTEST samples, disk by disk."""
     count, n = flights.place.shape[:2]
     ends: dict[int, list[tuple[int, int]]] = {disk: [] for disk in range(n)}
     for turn in flights.turns():
@@ -221,28 +237,33 @@ def free_flights(flights: Flights) -> Iterator[tuple[int, int, int]]:
         begin = 0
         for first, last in [*ends[disk], (count, count)]:
             if first - 1 - begin >= SHORTEST:
-                yield disk, begin, first - 1
+                yield _flight(flights, disk, begin, first - 1)
             begin = last + 1
 
 
+def _flight(flights: Flights, disk: int, begin: int, end: int) -> Flight:
+    middle = (begin + end) // 2
+    at = [begin, middle, end]
+    (t0, t1, t2), (x0, x1, x2) = flights.times[at].tolist(), flights.place[at, disk]
+    one, other = (x1 - x0) / (t1 - t0), (x2 - x1) / (t2 - t1)
+    return Flight(disk, t0, t2 - t0, middle, end, 0.5 * (one + other), 2.0 * (other - one) / (t2 - t0))
+
+
 def energy_on_the_way(flights: Flights, mass: Floats) -> Gained:
-    """What free flights gain: the second half of each against the first, by positions alone; mass: (n,), 0 where it is infinite.
+    """What free flights gain beside what gravity gives; mass: (n,), 0 where it is infinite.
 
     Flights of less than SHORTEST samples are left out.
     """
     count = len(flights.times)
     energy, variance, largest = np.zeros(count), np.zeros(count), np.zeros(count)
     blur = flights.blur
-    for disk, begin, end in free_flights(flights):
-        if not mass[disk] > 0.0:
+    for flight in free_flights(flights):
+        m, end = float(mass[flight.disk]), flight.end
+        if not m > 0.0:
             continue
-        at = [begin, (begin + end) // 2, end]
-        (t0, t1, t2), (x0, x1, x2) = flights.times[at], flights.place[at, disk]
-        one, other = (x1 - x0) / (t1 - t0), (x2 - x1) / (t2 - t1)
-        push = 2.0 * (other - one - 0.5 * flights.pull[disk] * (t2 - t0))
-        speed = 0.5 * (one + other)
-        given = mass[disk] * float(speed @ push)
+        push = (flight.acceleration - flights.pull[flight.disk]) * flight.lasts
+        given = m * float(flight.velocity @ push)
         energy[end] += given
         largest[end] = max(largest[end], abs(given))
-        variance[end] += (mass[disk] * math.hypot(*speed) * 8.0 * blur / (t2 - t0)) ** 2
+        variance[end] += (m * math.hypot(*flight.velocity) * 8.0 * blur / flight.lasts) ** 2
     return Gained(np.cumsum(energy), np.sqrt(np.cumsum(variance)), np.maximum.accumulate(largest))

@@ -45,14 +45,11 @@ def wrong_gravity(flights: Flights, around: Surroundings, mass: Floats, speed: f
     own = math.hypot(*pull)
     excess, weight = np.empty((0, 2)), np.empty(0)
     longest, begun = 0.0, math.inf
-    for disk, begin, end in sorted(free_flights(flights), key=lambda flight: flight[2]):
-        middle = (begin + end) // 2
-        if not math.isfinite(mass[disk]) or _lies(flights, around, disk, middle):
+    for flight in sorted(free_flights(flights), key=lambda flight: flight.end):
+        if not math.isfinite(mass[flight.disk]) or _lies(flights, around, flight.disk, flight.middle):
             continue
-        (t0, t1, t2), (x0, x1, x2) = flights.times[[begin, middle, end]], flights.place[[begin, middle, end], disk]
-        given = 2.0 * ((x2 - x1) / (t2 - t1) - (x1 - x0) / (t1 - t0)) / (t2 - t0)
-        excess, weight = np.vstack([excess, given - pull]), np.append(weight, (t2 - t0) ** 4 / noise**2)
-        longest, begun = max(longest, float(t2 - t0)), min(begun, float(t0))
+        excess, weight = np.vstack([excess, flight.acceleration - pull]), np.append(weight, flight.lasts**4 / noise**2)
+        longest, begun = max(longest, flight.lasts), min(begun, flight.begun)
         off = weight @ excess / weight.sum()
         size = math.hypot(*off)
         least = CLEAR * own if own else CLEAR * speed / longest

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from eventsim.record.contacts import Key
 from eventsim.record.events import Floats, Kind
 from eventsim.scene.stage import Stage
@@ -35,58 +33,53 @@ class Outcome(NamedTuple):
     ratio: float
 
 
-def outcome_of(met: Met, mass: Floats) -> Outcome | None:
-    """What a contact did; None where its turns are not its own."""
-    one, other = met.turns
-    if not met.alone or (one is None and other is None):
-        return None
-    zero = np.zeros(2)
-    change_a, change_b = (zero if turn is None else turn.change for turn in (one, other))
-    along = change_a - change_b
-    size = math.hypot(*along)
-    if size == 0.0:
-        return None
-    normal = along / size
-    approach = _approach(met, normal)
-    if approach <= 0.0:
-        return Outcome(approach, math.inf, 0.0, math.nan)
-    restitution = size / approach - 1.0
-    if one is None or other is None:
-        return Outcome(approach, restitution, 0.0, math.nan)
-    given_a, given_b = mass[one.disk] * change_a, mass[other.disk] * change_b
-    whole = math.hypot(*given_a) + math.hypot(*given_b)
-    unbalanced = abs(math.hypot(*given_a) - math.hypot(*given_b)) / whole if 0.0 < whole < math.inf else 0.0
-    moved = math.hypot(*change_a)
-    return Outcome(approach, restitution, unbalanced, math.hypot(*change_b) / moved if moved > 0.0 else math.nan)
-
-
-def _approach(met: Met, normal: Floats) -> float:
-    """The speed before along the normal, at which a and b (or the wall) come nearer.
-
-    What does not turn has no velocity here but the one that its partner's turn cannot tell: it counts as at rest.
-    """
-    one, other = met.turns
-    before_a = np.zeros(2) if one is None else one.before
-    before_b = np.zeros(2) if other is None else other.before
-    return -float((before_a - before_b) @ normal)
-
-
-def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float, since: float) -> str | None:
-    """What is wrong with what a contact did, in words; None where nothing is, or it cannot be told.
+def outcome_of(met: Met, mass: Floats, least: float) -> Outcome | None:
+    """What a contact did; None where its turns are not its own, or do not tell it to a part of CLEAR.
 
     Args:
         met: the contact.
-        stage: the scene.
         mass: (n,), inf for immovable disks.
         least: the smallest change of velocity that is seen.
+    """
+    one, other = met.turns
+    if not met.alone or one is None or (other is None and met.key[0] == Kind.PAIR):
+        return None  # a disk that does not turn may move, and leaves it open
+    along = one.change if other is None else one.change - other.change
+    closing = one.before if other is None else one.before - other.before
+    size = math.hypot(*along)
+    if size == 0.0:
+        return None
+    approach = -float(closing @ along) / size
+    if approach <= BLUR * least / CLEAR:
+        return None
+    restitution = size / approach - 1.0
+    if other is None:
+        return Outcome(approach, restitution, 0.0, math.nan)
+    given_a, given_b = mass[one.disk] * one.change, mass[other.disk] * other.change
+    whole = math.hypot(*given_a) + math.hypot(*given_b)
+    unbalanced = abs(math.hypot(*given_a) - math.hypot(*given_b)) / whole if 0.0 < whole < math.inf else 0.0
+    moved = math.hypot(*one.change)
+    return Outcome(approach, restitution, unbalanced, math.hypot(*other.change) / moved if moved > 0.0 else math.nan)
+
+
+def restitutions(met: Met, found: Outcome, stage: Stage, since: float = 0.0) -> tuple[float, ...] | None:
+    """What the law of the scene may have given a contact, so long after the one before; None: nobody knows."""
+    kind, a, other = met.key
+    usual = stage.usual(a, other) if kind == Kind.PAIR else stage.law.of_wall(other)
+    return stage.law.possible(usual, found.approach, since)
+
+
+def wrong_outcome(met: Met, found: Outcome, stage: Stage, mass: Floats, since: float) -> str | None:
+    """What is wrong with what a contact did, in words; None where nothing is, or the law does not say.
+
+    Args:
+        met: the contact.
+        found: what it did.
+        stage: the scene.
+        mass: (n,), inf for immovable disks.
         since: the least time since the contact before of one of its disks.
     """
-    found = outcome_of(met, mass)
-    if found is None or not _is_clear(met, found, least):
-        return None
-    who = named(met.key, stage)
-    usual = _usual(met.key, stage)
-    possible = stage.law.possible(usual, found.approach, since)
+    who, possible = named(met.key, stage), restitutions(met, found, stage, since)
     right = math.nan if possible is None else possible[0]
     if met.across > ACROSS:
         return f"friction: the contact of {who} gives {met.across:.2g} of its impulse across the normal: disks are smooth here"
@@ -100,27 +93,6 @@ def wrong_outcome(met: Met, stage: Stage, mass: Floats, least: float, since: flo
     if abs(found.restitution - twice) <= CLEAR * (1.0 + twice):
         return f"double impulse: the contact of {who} gives twice the impulse"
     return f"restitution: the contact of {who} has {found.restitution:.4g}, not {right:.4g}"
-
-
-def is_told(met: Met, stage: Stage, mass: Floats, least: float) -> bool:
-    """Whether the turns of a contact tell what it did, and the law what it should have done."""
-    found = outcome_of(met, mass)
-    if found is None or not _is_clear(met, found, least):
-        return False
-    return stage.law.possible(_usual(met.key, stage), found.approach) is not None
-
-
-def _is_clear(met: Met, found: Outcome, least: float) -> bool:
-    """Whether the outcome is known to a part of CLEAR; disks that move and do not turn leave it open."""
-    still = [disk for disk, turn in zip(met.key[1:], met.turns, strict=True) if turn is None]
-    if met.key[0] == Kind.PAIR and still:
-        return False
-    return found.approach > BLUR * least / CLEAR
-
-
-def _usual(key: Key, stage: Stage) -> float:
-    kind, a, other = key
-    return stage.usual(a, other) if kind == Kind.PAIR else stage.law.of_wall(other)
 
 
 def named(key: Key, stage: Stage) -> str:
