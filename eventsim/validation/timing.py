@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from statistics import median
+from math import ceil
+from statistics import fmean, median
 from typing import NamedTuple
 
 from eventsim.engines.base import Session
@@ -11,7 +12,11 @@ from eventsim.engines.stepped.session import SteppedSession
 from eventsim.validation.follow import follow
 
 REPEATS, SHORT_S = 5, 0.2
-"""Runs that are timed, of those that are shorter than this; of longer ones there is one."""
+"""How often runs are timed that are shorter than this; of longer ones there is one."""
+
+MEASURABLE_S, MOST = 1e-3, 100
+"""CPU seconds that are read from a stopwatch at least: a shorter run is done so often, from new, that it takes so long in all;
+but not more often than this."""
 
 WARM_S = 0.2
 """CPU seconds for which an engine runs before any stopwatch does: the first steps of a library load and compile."""
@@ -20,7 +25,7 @@ Open = Callable[[], Session]
 
 
 class Timing(NamedTuple):
-    """CPU seconds of runs that did the same: their median, the least, the most, and how many there were."""
+    """CPU seconds of runs that did the same: their median, the least, the most, and how often they were timed."""
 
     median: float
     least: float
@@ -46,10 +51,9 @@ def timing_of(opened: Open, times: Sequence[float], known_s: Sequence[float] = (
         known_s: what runs of the very same work have taken already.
     """
     seconds = list(known_s) or [_seconds(opened(), times)]
-    if not known_s and seconds[0] < SHORT_S:
-        seconds.clear()  # caches are warm now, which is most of a run of some microseconds
-    while len(seconds) < (REPEATS if not seconds or min(seconds) < SHORT_S else 1):
-        seconds.append(_seconds(opened(), times))
+    if min(seconds) < SHORT_S:  # caches are warm now, which is most of a run of some microseconds
+        often = ceil(MEASURABLE_S / max(min(seconds), MEASURABLE_S / MOST))
+        seconds = [fmean(_seconds(opened(), times) for _ in range(often)) for _ in range(REPEATS)]
     return Timing(median(seconds), min(seconds), max(seconds), len(seconds))
 
 
