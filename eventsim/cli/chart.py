@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eventsim.cli.options import complete_scene, drawable, json_option, quiet_option, writable
-from eventsim.cli.output import say, say_data
+from eventsim.cli.output import INTERRUPTED, say, say_data
 
 if TYPE_CHECKING:
     from eventsim.validation.chart import Chart
@@ -57,7 +57,7 @@ def command(
       conclusions              [{question, answer}]
       left_out                 sentences
 
-    Exit codes: 0 done; 2 bad usage or scene.
+    Exit codes: 0 done; 2 bad usage or scene; 130 interrupted: what was measured is written, and said to be a part.
     """
     figure, page = drawable(out, "--out"), drawable(details, "--details")
     assert figure is not None
@@ -77,9 +77,13 @@ def command(
     from eventsim.validation.conclusions import conclusions
     from eventsim.validation.table import chart_rows, provenance_lines, write_csv
 
-    with status_line(quiet or as_json) as tell:
-        tasks = [seeded_task(name) for name in scenes] if scenes else default_tasks()
-        chart = chart_of(tasks, patience, further=not scenes, tell=tell)
+    try:
+        with status_line(quiet or as_json) as tell:
+            tasks = [seeded_task(name) for name in scenes] if scenes else default_tasks()
+            chart = chart_of(tasks, patience, further=not scenes, tell=tell, keeps=True)
+    except KeyboardInterrupt:
+        say("interrupted before two engines were measured: nothing is written", err=True)
+        click.get_current_context().exit(INTERRUPTED)
     names = [task.name for task in tasks]
     rows = chart_rows(chart)
     command_line = click.get_current_context().obj
@@ -101,6 +105,8 @@ def command(
     elif not quiet:
         say(_text(chart))
         say(f"\ncharted in {figure}, numbers in {table}")
+    if chart.interrupted:
+        click.get_current_context().exit(INTERRUPTED)
 
 
 def seeded_task(name: str) -> Task:

@@ -19,7 +19,7 @@ from eventsim.scene import Scene
 from eventsim.scene.disks import typical_speed
 from eventsim.scene.gallery import gallery
 from eventsim.scene.stage import Stage, stage_of
-from eventsim.validation.compare import Comparison, Tell, compare, truth_to_compare
+from eventsim.validation.compare import UNREACHED, Comparison, Tell, compare, truth_to_compare
 from eventsim.validation.competitors import COMPETITORS, Competitor
 from eventsim.validation.follow import follow, position_errors
 from eventsim.validation.pile import pile
@@ -61,17 +61,20 @@ class Chart:
     """All that the figure shows.
 
     losses: contacts and energy of the gas against the step.  rates: contacts per second against the number of disks, per engine.
+    interrupted: what was not reached by then is missing.
     """
 
     tasks: list[Curves] = field(default_factory=list)
     losses: Comparison | None = None
     chaos: Chaos | None = None
     rates: dict[str, list[tuple[int, float]]] = field(default_factory=dict)
+    interrupted: bool = False
 
     @property
     def left_out(self) -> list[str]:
-        """Who could not take part, a sentence each, once."""
-        return list(dict.fromkeys(f"{c.task.name}: {text}" for c in self.tasks for text in c.left_out))
+        """Who could not take part, a sentence each, once; and that not all was reached."""
+        sentences = dict.fromkeys(f"{c.task.name}: {text}" for c in self.tasks for text in c.left_out)
+        return [*sentences, *([UNREACHED] if self.interrupted else [])]
 
 
 def default_tasks() -> list[Task]:
@@ -104,16 +107,35 @@ def task_of(
 
 
 def chart_of(
-    tasks: Sequence[Task], patience_s: float, further: bool = True, tell: Tell = lambda _: None
+    tasks: Sequence[Task],
+    patience_s: float,
+    further: bool = True,
+    tell: Tell = lambda _: None,
+    keeps: bool = False,
 ) -> Chart:
-    """Measure all tasks; further: also losses, chaos and rates, on the gas."""
+    """Measure all tasks; further: also losses, chaos and rates, on the gas.
+
+    Interrupted, it raises KeyboardInterrupt; where it `keeps` what it has reached, it gives that if there is any.
+    """
     competitors = list(COMPETITORS.values())
-    chart = Chart([curves_over_seeds(task, competitors, patience_s, tell) for task in tasks])
-    if further:
-        chart.losses = compare(gallery("gas"), competitors, until=LOSSES_UNTIL, patience_s=patience_s, tell=tell)
-        tell("chaos")
-        chart.chaos = chaos()
-        chart.rates = rates(patience_s, tell)
+    chart = Chart()
+    try:
+        for task in tasks:
+            chart.tasks.append(curves_over_seeds(task, competitors, patience_s, tell, keeps))
+            if chart.tasks[-1].interrupted:
+                raise KeyboardInterrupt
+        if further:
+            gas = gallery("gas")
+            chart.losses = compare(gas, competitors, until=LOSSES_UNTIL, patience_s=patience_s, tell=tell, keeps=keeps)
+            if chart.losses.interrupted:
+                raise KeyboardInterrupt
+            tell("chaos")
+            chart.chaos = chaos()
+            chart.rates = rates(patience_s, tell)
+    except KeyboardInterrupt:
+        if not (keeps and chart.tasks):
+            raise
+        chart.interrupted = True
     return chart
 
 

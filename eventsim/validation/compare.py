@@ -42,6 +42,9 @@ TRUTH_SHARE = 10.0
 COMPARED_ROWS = 2000
 """Rows of the log that the reference engine has to confirm."""
 
+UNREACHED = "what was not reached is left out: it was interrupted"
+"""What an interrupt leaves to say."""
+
 Tell = Callable[[str], None]
 
 
@@ -156,7 +159,7 @@ def compare(
         if not (keeps and lines):
             raise
         interrupted = True
-        left_out.append("what was not reached is left out: it was interrupted")
+        left_out.append(UNREACHED)
     orders = {
         competitor.label: fitted_order(
             [line.dt for line in lines if line.label == competitor.label],

@@ -16,7 +16,8 @@ from functools import partial
 
 import numpy as np
 
-from eventsim.engines import ENGINES, STEPPED
+from eventsim.compiler import has_compiler
+from eventsim.engines import ENGINES, ONE_LOG, STEPPED
 from eventsim.engines.base import Counters, Session
 from eventsim.engines.certified import CertifiedOptions
 from eventsim.engines.reference.loop import ReferenceSession
@@ -91,12 +92,17 @@ class Task:
 
 @dataclass(slots=True)
 class Curves:
-    """All points of one task; floor: the error below which nothing can be told; left_out: who could not take part, and why."""
+    """All points of one task.
+
+    floor: the error below which nothing can be told.  left_out: who could not take part, and why.  interrupted: engines that were
+    not reached, or not to their end, are missing.
+    """
 
     task: Task
     points: list[Point] = field(default_factory=list)
     floor: float = 0.0
     left_out: list[str] = field(default_factory=list)
+    interrupted: bool = False
 
     def of(self, label: str) -> list[Point]:
         """The points of one engine, from its coarsest parameter to its finest."""
@@ -120,9 +126,26 @@ class _Runner:
 
 
 def curves(
-    task: Task, competitors: Sequence[Competitor], patience_s: float, tell: Tell = lambda _: None, timed: bool = True
+    task: Task,
+    competitors: Sequence[Competitor],
+    patience_s: float,
+    tell: Tell = lambda _: None,
+    timed: bool = True,
+    keeps: bool = False,
 ) -> Curves:
-    """Run every engine over its parameter; a run that would take longer than `patience_s` is left out; timed: time them again."""
+    """Run every engine over its parameter.
+
+    Interrupted, it raises KeyboardInterrupt; where it `keeps` what it has reached, it gives the engines that were timed to their
+    end, if there are two of them.
+
+    Args:
+        task: the scene, and what is asked of it.
+        competitors: the stepped engines.
+        patience_s: a run that would take longer is left out, CPU seconds.
+        tell: is told what is done.
+        timed: whether runs are timed again.
+        keeps: whether an interrupt leaves what was reached.
+    """
     tell(f"{task.name}: event-driven run")
     result = Curves(task)
     stage = stage_of(task.scene)
@@ -137,24 +160,32 @@ def curves(
         if task.measure == "pressure":
             error = _pressure_error(truth)
             result.floor = _chance(truth, error)
-            runners = _event_driven(stage, lambda run, _: result.floor)
+            runners = _event_driven(stage, lambda run, _: result.floor, result)
         else:
             best = _proven(stage, task.until, patience_s, result) or truth.run
             error = _trajectory_error(stage, best)
             if best is truth.run:
-                runners = _event_driven(stage, lambda run, _: float(truth.uncertainty[-1]))
+                runners = _event_driven(stage, lambda run, _: float(truth.uncertainty[-1]), result)
             else:
-                runners = _event_driven(stage, error)
+                runners = _event_driven(stage, error, result)
                 runners.append([_plain(stage, error)])
                 runners.append([_balls(stage, bits) for bits in BITS])
     radius = float(np.median(stage.radius)) or 1.0
     for competitor in ready:
         runners.append([_step_of(stage, competitor, step * radius / speed, error) for step in STEPS])
-    begin = task.scene.start_time
-    for runner_list in runners:
-        _run_list(result, runner_list, task.until, task.until - begin, patience_s, tell)
-    if timed:
-        _time(result, [runner for each in runners for runner in each], task.until, task.until - begin)
+    duration = task.until - task.scene.start_time
+    whole = 0
+    try:
+        for engine in runners:
+            _run_list(result, engine, task.until, duration, patience_s, tell)
+            if timed:
+                _time(result, engine, task.until, duration)
+            whole = len(result.points)
+    except KeyboardInterrupt:
+        del result.points[whole:]
+        if not keeps or len(result.labels) < 2:
+            raise
+        result.interrupted = True
     return result
 
 
@@ -223,12 +254,20 @@ def _time(result: Curves, runners: Sequence[_Runner], until: float, duration: fl
             point.elapsed, point.least, point.most = timing[:3]
 
 
-def _event_driven(stage: Stage, error: ErrorOf) -> list[list[_Runner]]:
-    """The event-driven engines, each with its own 53 bits: the reference engine, and a better one where there is one."""
+def _event_driven(stage: Stage, error: ErrorOf, result: Curves) -> list[list[_Runner]]:
+    """The event-driven engines, each with its own 53 bits, however small the scene; who cannot take part is noted."""
     runners = []
-    for name in dict.fromkeys(("reference", best_engine(stage.n))):
-        engine = ENGINES[name]
-        runners.append([_Runner(name, "bits", 53.0, partial(engine.open, stage), error)])
+    for name in ONE_LOG:
+        if name == "fast" and not has_compiler():
+            result.left_out.append("fast is left out: nothing is compiled here, as numba is missing or told not to")
+            continue
+        opened = partial(ENGINES[name].open, stage)
+        try:
+            opened()
+        except EventsimError as refused:
+            result.left_out.append(f"{name} is left out: {refused}")
+        else:
+            runners.append([_Runner(name, "bits", 53.0, opened, error)])
     return runners
 
 

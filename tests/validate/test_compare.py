@@ -21,7 +21,7 @@ from eventsim.scene.stage import stage_of
 from eventsim.scene.writing import scene_to_toml
 from eventsim.show.versus.losses import NONE, draw_energy, draw_missed
 from eventsim.validation.advantages import Advantage, advantages, cell, table
-from eventsim.validation.chart import Chaos, Chart
+from eventsim.validation.chart import Chaos, Chart, chart_of
 from eventsim.validation.compare import compare
 from eventsim.validation.competitors import COMPETITORS, able, chosen_competitors
 from eventsim.validation.conclusions import conclusions
@@ -35,7 +35,7 @@ from eventsim.validation.verdict import verdict
 def no_compiler():
     """The reference engine alone: these scenes are small, and its log is that of the fast one."""
     with pytest.MonkeyPatch.context() as patch:
-        for home in ("eventsim.engines.auto", "eventsim.validation.truth"):
+        for home in ("eventsim.engines.auto", "eventsim.validation.truth", "eventsim.validation.precision"):
             patch.setattr(f"{home}.has_compiler", lambda: False)
         yield
 
@@ -191,6 +191,46 @@ def test_an_interrupt_leaves_what_was_reached():
     for after, keeps in ((0, True), (1, False)):
         with pytest.raises(KeyboardInterrupt):
             compare(scene, chosen_competitors(["stepped"]), (0.1, 0.05), tell=interrupt(after), keeps=keeps)
+
+
+def interrupt_at(beginning):
+    def tell(text):
+        if text.startswith(beginning):
+            raise KeyboardInterrupt
+
+    return tell
+
+
+def test_an_interrupted_chart_keeps_the_engines_that_were_timed(monkeypatch):
+    two = {name: COMPETITORS[name] for name in ("stepped", "stepped-located")}
+    monkeypatch.setattr("eventsim.validation.chart.COMPETITORS", two)
+    monkeypatch.setattr("eventsim.validation.timing.WARM_S", 0.01)
+    task = Task("two", es.gallery("two-disks"), "trajectory", 6.0)
+    chart = chart_of([task, replace(task, name="later")], 0.01, False, interrupt_at("two: stepped-located, dt"), keeps=True)
+    (found,) = chart.tasks
+    assert {"reference", "stepped"} <= set(found.labels)
+    assert "stepped-located" not in found.labels
+    assert all(math.isfinite(point.most) for point in found.points)
+    assert chart.interrupted
+    assert chart.left_out[-1] == "what was not reached is left out: it was interrupted"
+    with pytest.raises(KeyboardInterrupt):
+        chart_of([task], 0.01, False, interrupt_at("two: reference"), keeps=True)
+    with pytest.raises(KeyboardInterrupt):
+        chart_of([task], 0.01, False, interrupt_at("two: stepped,"))
+
+
+@pytest.mark.parametrize(("reached", "said"), [(True, "what was not reached is left out"), (False, "nothing is written")])
+def test_ctrl_c_while_a_chart_measures_is_told(reached, said, tmp_path, monkeypatch):
+    def measure(*_, keeps, **__):
+        if not reached:
+            raise KeyboardInterrupt
+        return replace(a_chart(), interrupted=keeps)
+
+    monkeypatch.setattr("eventsim.validation.chart.chart_of", measure)
+    done = CliRunner().invoke(main, ["chart", "two-disks", "--out", str(tmp_path / "two.png")])
+    assert done.exit_code == 130
+    assert said in done.output
+    assert sorted(path.name for path in tmp_path.iterdir()) == (["two.csv", "two.png"] if reached else [])
 
 
 def test_an_unknown_engine_is_named_with_those_that_there_are():

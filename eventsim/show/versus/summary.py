@@ -93,4 +93,5 @@ def _draw_answers(axes: Axes, chart: Chart) -> None:
         axes.legend(loc="lower left", bbox_to_anchor=(0.02, 0.055), frameon=False, fontsize=9.5, labelspacing=0.35)
     told = ", ".join(f"{name} {number}" for name, number in versions().items())
     bars = "bars: least and most of warm runs" + (", and of seeds" if any(c.task.others for c in chart.tasks) else "")
-    axes.text(0.05, 0.05, "\n".join([*wrap(told, 62), *wrap(bars, 62)]), fontsize=8, **{**style, "color": LIGHT.faint})
+    part = ["interrupted: a part of what was asked for"] if chart.interrupted else []
+    axes.text(0.05, 0.05, "\n".join([*wrap(told, 62), *wrap(bars, 62), *part]), fontsize=8, **{**style, "color": LIGHT.faint})
