@@ -29,6 +29,7 @@ from eventsim.validation.pile import pile, unrest
 from eventsim.validation.precision import Curves, Point, Task, curves
 from eventsim.validation.table import chart_rows, comparison_rows, write_csv
 from eventsim.validation.verdict import verdict
+from tests.benchmarks.stopwatches import own_loop
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -140,28 +141,8 @@ def test_no_step_is_dropped_without_a_line():
 )
 def test_the_time_of_pymunk_is_that_of_a_loop_of_ones_own(scene, dt, until):
     """What is asked of an engine before and after its steps was charged to it: of four steps up to .8 of their time."""
-    pymunk = pytest.importorskip("pymunk")
-
-    def own_loop():
-        space = pymunk.Space()
-        for (x, y), (vx, vy) in zip(scene.disks.position.tolist(), scene.disks.velocity.tolist(), strict=True):
-            body = pymunk.Body(float(scene.disks.mass[0]), math.inf)
-            body.position, body.velocity = (x, y), (vx, vy)
-            circle = pymunk.Circle(body, float(scene.disks.radius[0]))
-            circle.elasticity = 1.0
-            space.add(body, circle)
-        width, height = scene.domain.size
-        corners = [(-1, -1), (width + 1, -1), (width + 1, height + 1), (-1, height + 1)]
-        for ends in zip(corners, corners[1:] + corners[:1], strict=True):
-            space.add(wall := pymunk.Segment(space.static_body, *ends, 1.0))
-            wall.elasticity = 1.0
-        begun = time.thread_time()
-        for _ in range(round(until / dt)):
-            space.step(dt)
-        return (time.thread_time() - begun) / until
-
-    own_loop()
-    own = min(own_loop() for _ in range(9))  # the least: others who use the machine only add to it
+    pytest.importorskip("pymunk")
+    own = min(own_loop(scene, dt, round(until / dt)))  # the least: others who use the machine only add to it
     (line,) = compare(scene, chosen_competitors(["pymunk"]), steps=(dt,), until=until).lines
     assert line.timing.least == pytest.approx(own, rel=0.3)
     found = curves(Task("own", scene, "trajectory", until), [COMPETITORS["pymunk"]], patience_s=1.0).of("pymunk")
