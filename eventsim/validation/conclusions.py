@@ -74,7 +74,7 @@ def _energy(chart: Chart) -> Answer | None:
         return None
     worst = blind[0]
     lost = worst.census.share(worst.census.missed)
-    text = f"Lost contacts: {worst.label} at {worst.step:.2g} radii a step misses {lost:.0%} and keeps it to the last bits."
+    text = f"Lost contacts: {worst.label} at {worst.step:.2g} radii a step misses {lost:.0%} and looks perfect by it."
     return Answer("What does energy hide?", text)
 
 

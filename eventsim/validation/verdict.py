@@ -39,17 +39,15 @@ def _energy(comparison: Comparison) -> list[str]:
     if not blind:
         return []
     worst = blind[0]
+    census = worst.census
     return [
-        f"Energy hides it: {worst.label} with a step of {worst.step:.2g} radii keeps the energy to "
-        f"{max(abs(worst.energy or 0.0), ROUNDING):.0e} and finds {worst.census.share(worst.census.found):.0%} of the "
-        f"contacts ahead of an exact state, {worst.ratio:.0%} of their number over the whole run ({_angle(worst)}); "
-        f"{len(blind)} of {len(comparison.lines)} runs are of this kind."
+        f"Energy hides it: {worst.label} at {worst.step:.2g} radii a step looks perfect by it, "
+        f"and finds {census.share(census.found):.0%} of the contacts ahead of exact states.",
+        f"It keeps the energy to {max(abs(worst.energy or 0.0), ROUNDING):.0e}.",
+        f"Over the whole run it has {worst.ratio:.0%} of the true number of contacts.",
+        *([] if math.isnan(census.angle) else [f"The angles of those that it finds are {census.angle:.2g} degrees off."]),
+        f"Of this kind are {len(blind)} of {len(comparison.lines)} runs.",
     ]
-
-
-def _angle(line: Line) -> str:
-    angle = line.census.angle
-    return "no angle to compare" if math.isnan(angle) else f"its angles are {angle:.2g} degrees off"
 
 
 def whole_from(comparison: Comparison) -> tuple[list[Line], list[Line]]:

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator, NullFormatter, NullLocator
 from eventsim.show.figures.style import label
 from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import NAMES, look
-from eventsim.show.versus.notes import ACROSS, note, panel_title
+from eventsim.show.versus.notes import ACROSS, note
 from eventsim.validation.compare import Comparison, Line
 from eventsim.validation.verdict import ALL, PERFECT_ENERGY, ROUNDING, blindest
 
@@ -23,6 +23,9 @@ NOTE_LETTERS = 20
 
 PERFECT = "#eef3ea"
 """Background where energy says that all is well."""
+
+BESIDE = 1.3
+"""How far the axis of steps goes beyond the least and the largest, as a factor."""
 
 NONE = 0.2
 """Per cent: where runs that miss no contact are drawn, at most; half a contact may be more, and would lie above real losses."""
@@ -44,7 +47,8 @@ def draw_missed(axes: Axes, comparison: Comparison) -> None:
 def draw_energy(axes: Axes, comparison: Comparison) -> None:
     """The relative change of energy of the same runs."""
     _draw(axes, comparison, lambda line: math.nan if line.energy is None else max(abs(line.energy), ROUNDING))
-    axes.set_ylim(0.3 * ROUNDING, 3.0)
+    largest = max((abs(line.energy) for line in comparison.lines if line.energy is not None), default=0.0)
+    axes.set_ylim(0.3 * ROUNDING, 3.0 * max(largest, 1.0) if math.isfinite(largest) else 3.0)
     axes.axhspan(0.3 * ROUNDING, PERFECT_ENERGY, color=PERFECT, zorder=0)
     blind = blindest(comparison)
     text = "green: energy looks perfect"
@@ -52,7 +56,7 @@ def draw_energy(axes: Axes, comparison: Comparison) -> None:
         share = blind[0].census.share(blind[0].census.missed)
         text += f", yet up to {share:.0%} of the contacts are missed ({blind[0].label})"
     note(axes, fill(text, NOTE_LETTERS), (0.02, 1e-10), ACROSS, va="top", back=PERFECT)
-    label(axes, STEP, "relative change of energy", panel_title("What does energy hide? The losses on the left"))
+    label(axes, STEP, "relative change of energy", "What does energy hide? The losses")
 
 
 def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) -> None:
@@ -66,10 +70,15 @@ def _draw(axes: Axes, comparison: Comparison, value: Callable[[Line], float]) ->
 
 
 def scale_steps(axes: Axes, comparison: Comparison) -> None:
-    """Make the axis of steps logarithmic, with labels that do not run into each other; within a decade few and plain numbers."""
+    """Make the axis of steps logarithmic, the same for all panels, with labels that do not run into each other.
+
+    Within a decade these are few and plain numbers.
+    """
     axes.set_xscale("log")
     axes.xaxis.set_minor_formatter(NullFormatter())
     steps = [line.step for line in comparison.lines]
+    if steps:
+        axes.set_xlim(min(steps) / BESIDE, max(steps) * BESIDE)
     if steps and max(steps) < 10.0 * min(steps):
         axes.xaxis.set_major_locator(MaxNLocator(4))
         axes.xaxis.set_major_formatter("{x:.3g}")

@@ -45,7 +45,7 @@ def _right(judgement: Judgement) -> str:
     if not charge.untold:
         return f": {charge.found} of {charge.ahead} contacts compared are right, {until}"
     return (
-        f": {charge.found} of {charge.ahead} contacts compared are found, {until}; "
+        f": {charge.found} of {charge.ahead} contacts compared are found, {until}. Of those found "
         f"{charge.found - charge.untold} have the right impulse, the others are too slow, or too close to others, to tell"
     )
 
@@ -103,20 +103,22 @@ def _contacts(judgement: Judgement) -> str:
         return ""
     if not charge.ahead and not charge.doubled and not charge.false:
         return "No contact could be charged: no disk that was still in its place met anything."
-    text = (
+    sentences = [
         f"Of {charge.ahead} contacts of disks that were in their places it finds {charge.found} and misses {charge.missed}; "
-        f"{charge.doubled} are doubled, {charge.false} false"
-    )
+        f"{charge.doubled} are doubled, {charge.false} false."
+    ]
     if charge.unseen:
-        text += f"; {charge.unseen} more are too weak, or too close to others, to be seen in the samples"
+        more = "1 more is" if charge.unseen == 1 else f"{charge.unseen} more are"
+        sentences.append(f"{more} too weak, or too close to others, to be seen in the samples.")
     if charge.found:
         late = charge.errors[:, 1]
         worst = int(np.argmax(np.abs(late)))
-        text += (
-            f". Times are late by {late.mean():+.2g} (mean), {np.sqrt(np.mean(late**2)):.2g} (root mean square), "
-            f"{late[worst]:+.2g} (the worst, at t = {charge.errors[worst, 0]:.5g})"
-        )
-    return f"{text}. Contacts are matched within {judgement.tolerance:.2g}."
+        sentences += [
+            f"Times are late by {late.mean():+.2g} on average.",
+            f"Their root mean square is {np.sqrt(np.mean(late**2)):.2g}.",
+            f"The worst is {late[worst]:+.2g}, at t = {charge.errors[worst, 0]:.5g}.",
+        ]
+    return " ".join([*sentences, f"Contacts are matched within {judgement.tolerance:.2g}."])
 
 
 def _positions(judgement: Judgement) -> str:
@@ -125,31 +127,31 @@ def _positions(judgement: Judgement) -> str:
     free = judgement.truth.mean_free_time
     early = int(np.searchsorted(looks, judgement.truth.scene.start_time + free))
     early = min(early, len(looks) - 1)
-    text = f"Positions are off by {errors[early]:.2g} diameters at t = {looks[early]:.4g} (a contact a disk)"
+    text = f"Positions are off by {errors[early]:.2g} diameters after a contact a disk, at t = {looks[early]:.4g}."
     if math.isfinite(judgement.lost):
-        text += f", by more than {ASTRAY:g} from t = {judgement.lost:.4g} on"
+        text += f" They are off by more than {ASTRAY:g} from t = {judgement.lost:.4g} on."
     else:
-        text += f", never by more than {errors.max():.2g}"
+        text += f" They are never off by more than {errors.max():.2g}."
     if math.isfinite(judgement.believed):
-        text += f"; float64 itself can be believed (to {BELIEVED:g}) until t = {judgement.believed:.4g}"
-    return f"{text}."
+        text += f" Float64 itself can be believed, to {BELIEVED:g}, until t = {judgement.believed:.4g}."
+    return text
 
 
 def _conserved(judgement: Judgement) -> str:
     """Energy, momentum, overlaps."""
-    parts = []
+    sentences = []
     if judgement.energy is not None and np.isfinite(judgement.energy[1:]).any():
         change = judgement.energy[np.isfinite(judgement.energy)]
         worst = int(np.argmax(np.abs(change)))
-        right = "" if judgement.lawful is None else f" (the event-driven run: {judgement.lawful:+.2e})"
         of = "" if judgement.truth.stage.gravity is None else " of the kinetic one at the start"
-        parts.append(f"the energy changes by {change[-1]:+.2e}{of} in all{right}, by {change[worst]:+.2e} at most")
+        sentences.append(f"The energy changes by {change[-1]:+.2e}{of} in all, and by {change[worst]:+.2e} at most.")
+        if judgement.lawful is not None:
+            sentences.append(f"That of the event-driven run changes by {judgement.lawful:+.2e} in all.")
     if judgement.momentum is not None:
-        parts.append(f"the momentum by {judgement.momentum:.1e}")
+        sentences.append(f"The momentum changes by {judgement.momentum:.1e}.")
     depth, a, b, time = judgement.deepest
     if depth > 0.0:
-        parts.append(f"the deepest overlap is {depth:.2%} of the reach (disks {a} and {b}, t = {time:.5g})")
+        sentences.append(f"The deepest overlap is {depth:.2%} of the reach, of disks {a} and {b} at t = {time:.5g}.")
     else:
-        parts.append("no disks overlap at the times that were looked at")
-    text = ", ".join(parts)
-    return f"{text[0].upper()}{text[1:]}."
+        sentences.append("No disks overlap at the times that were looked at.")
+    return " ".join(sentences)

@@ -125,7 +125,7 @@ def test_energy_that_is_lost_is_told_beside_what_should_be():
     right, seen = judged.judgement.lawful, judged.judgement.energy[-1]
     assert right < -0.05
     assert seen == pytest.approx(right, rel=0.05)  # of steps of .001
-    assert any(f"(the event-driven run: {right:+.2e})" in text for text in judged.verdict)
+    assert any(f"That of the event-driven run changes by {right:+.2e} in all." in text for text in judged.verdict)
 
 
 @pytest.mark.parametrize("pull", [(0.0, 0.0), (0.0, -2.1), (-2.0, 0.0)])
