@@ -90,7 +90,8 @@ def _stepped_wins(chart: Chart) -> Answer | None:
     wins = [win for curves in chart.tasks if (win := winning(curves)) is not None]
     question = "Where does a stepped engine win?"
     if not wins:
-        return Answer(question, "On none of these scenes.") if advantages(chart) else None
+        none = "Not on this scene." if len(chart.tasks) == 1 else "On none of these scenes."
+        return Answer(question, none) if advantages(chart) else None
     win = max(wins, key=lambda one: one.ratio)
     return Answer(question, f"Where contacts last: on the {win.scene} {win.label} comes to rest {amount(win.ratio)} x sooner.")
 

@@ -368,6 +368,30 @@ def test_titles_of_panels_end_before_the_next_panel(gas):
         assert box.x1 < figure.bbox.x1
 
 
+def assert_apart(axes):
+    """No words of a panel overlap others, nor the legend."""
+    axes.figure.canvas.figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in axes.texts if text.get_text()] + [axes.get_legend().get_window_extent()]
+    assert len(boxes) > 3
+    assert not any(one.overlaps(other) for place, one in enumerate(boxes) for other in boxes[:place])
+
+
+def test_words_of_a_chart_do_not_run_into_each_other():
+    """Of one scene: its answers, the table beside the panel, and the legend."""
+    from eventsim.show.versus.precision import HEAD_WIDTH, answer_lines, draw_head
+    from eventsim.show.versus.summary import draw_summary
+
+    chart = Chart(a_chart().tasks[:1])
+    figure = Figure(figsize=(16.0, 9.0), layout="constrained")
+    draw_summary(figure, chart)
+    (words,) = figure.subfigs[0].axes
+    assert {"stepped", "10 x", ">30 x"} <= {text.get_text() for text in words.texts}
+    assert_apart(words)
+    head = Figure(figsize=(HEAD_WIDTH, 2.0)).add_axes((0.07, 0.0, 0.93, 1.0))
+    draw_head(head, chart, answer_lines(chart), 2.0)
+    assert_apart(head)
+
+
 def test_notes_lie_above_the_curves_on_a_back_that_hides_them(gas):
     axes = Figure().subplots()
     draw_energy(axes, gas)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from os import PathLike
-from textwrap import wrap
+from textwrap import fill, wrap
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -25,7 +25,7 @@ from eventsim.validation.conclusions import conclusions
 COLUMNS, PANEL = 3, (4.4, 3.9)
 """Panels in a row; inches of one."""
 
-LETTERS, LINE = 108, 0.215
+LETTERS, LINE = 92, 0.215
 """Letters in a line of the answers; inches of its height."""
 
 TITLE, LEGEND_LINE = 0.42, 0.24
@@ -34,13 +34,16 @@ TITLE, LEGEND_LINE = 0.42, 0.24
 HEAD_WIDTH = COLUMNS * PANEL[0]
 """Inches that the answers need."""
 
-ANSWERS_AT = 0.275
+ANSWERS_AT = 0.37
 """Where the answers begin, as a share of the width; the questions stand before them."""
 
 TABLE_TITLE = (
-    "How far event-driven is ahead of each engine: its time at equal error (head) | its error in equal time,\n"
+    "How far event-driven is ahead of each engine: its time at equal error (head) | its error in equal time, "
     "as multiples (>: never came to that error; <: event-driven did not; -: even its coarsest run takes longer)"
 )
+
+TABLE_LETTERS = {1: 76, 2: 105}
+"""In a line of its title, by the panels in whose place it stands."""
 
 Draw = Callable[[Axes], None]
 
@@ -51,9 +54,9 @@ def write_chart(chart: Chart, path: str | PathLike[str]) -> None:
     head, rows = table(chart)
     lines = answer_lines(chart)
     across = min(COLUMNS, max(len(panels), 2))
-    # The table takes what is left of the last row of panels where that is most of it; else a row of its own.
+    # The table takes what is left of the last row of panels where it has room there; else a row of its own.
     free = -len(panels) % across
-    beside = free >= 2
+    beside = free >= 2 or (free == 1 and len(chart.tasks) == 1)
     last = -(-len(panels) // across)
     head_height = TITLE + LINE * (len(lines) + 1) + LEGEND_LINE * -(-len(present(chart)) // COLUMNS)
     table_height = [] if beside or not rows else [0.34 * (len(rows) + 3)]
@@ -65,7 +68,7 @@ def write_chart(chart: Chart, path: str | PathLike[str]) -> None:
         draw(figure.add_subplot(grid[1 + place // across, place % across]))
     if rows:
         where = grid[last, across - free :] if beside else grid[last + 1, :]
-        draw_table(figure.add_subplot(where), head, rows)
+        draw_table(figure.add_subplot(where), head, rows, TABLE_LETTERS[min(free, 2) if beside else 2])
     save_page(figure, path)
 
 
@@ -119,10 +122,10 @@ def draw_rates(axes: Axes, chart: Chart) -> None:
     label(axes, "disks", "contacts simulated per second", f"Rates in the gas (stepped: {RATE_STEP:g} radii a step)")
 
 
-def draw_table(axes: Axes, head: list[str], rows: list[list[str]]) -> None:
-    """By what the event-driven engine is ahead of every other one on every scene."""
+def draw_table(axes: Axes, head: list[str], rows: list[list[str]], letters: int) -> None:
+    """By what the event-driven engine is ahead of every other one on every scene; letters: in a line of the title."""
     axes.set_axis_off()
-    axes.set_title(TABLE_TITLE, loc="left", fontsize=10.5, color=LIGHT.ink)
+    axes.set_title(fill(TABLE_TITLE, letters), loc="left", fontsize=10.5, color=LIGHT.ink)
     widths = [0.19, *[0.81 / (len(head) - 1)] * (len(head) - 1)]
     names = [text.replace(": ", "\n") for text in head]
     drawn = axes.table(rows, colLabels=names, colWidths=widths, cellLoc="center", loc="upper left", edges="horizontal")

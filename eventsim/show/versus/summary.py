@@ -10,6 +10,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from eventsim.show.output import as_written
 from eventsim.show.palette import LIGHT
@@ -18,6 +19,7 @@ from eventsim.show.versus.colours import NAMES, look
 from eventsim.show.versus.losses import draw_energy, draw_missed
 from eventsim.show.versus.page import save_page
 from eventsim.show.versus.work import draw_work
+from eventsim.validation.advantages import table
 from eventsim.validation.chart import Chart
 from eventsim.validation.conclusions import conclusions
 from eventsim.validation.versions import versions
@@ -35,12 +37,18 @@ TEXT_SHARE, LETTERS, QUESTION_LETTERS, LINE = 0.25, 42, 34, 0.0235
 """The column of answers: its share of the width, letters in a line of an answer and of a question, the height of a line as a
 share of the page."""
 
+UNKNOWN = ">: not reached in so much; <: event-driven did not; -: no run so short"
+"""What the signs in the table mean."""
+
+TABLE_AT = (0.05, 0.47, 0.73)
+"""Where the columns of the table begin, as shares of the column of answers."""
+
 Draw = Callable[[Axes], None]
 
 
 def write_summary(chart: Chart, path: str | PathLike[str]) -> None:
     """Draw the page to `path`: .png, .svg or .pdf.  Raises EventsimError where it cannot be written."""
-    figure = Figure(figsize=SIZE, dpi=100, facecolor="white", layout="constrained")
+    figure = Figure(figsize=SIZE, dpi=100, facecolor="white", layout=ConstrainedLayoutEngine(h_pad=0.08))
     draw_summary(figure, chart)
     save_page(figure, path)
 
@@ -74,6 +82,23 @@ def panels_of(chart: Chart) -> list[Draw]:
     return panels
 
 
+def _draw_table(axes: Axes, height: float, rows: list[list[str]]) -> None:
+    """How far each engine is behind on the only scene, from a height on, as a share of the page."""
+    if not rows:
+        return
+    style: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "color": LIGHT.ink}
+    axes.text(0.05, height, "How far behind is each engine?", fontsize=12, weight="bold", **style)
+    for x, text in zip(TABLE_AT, ("", "its time at\nequal error", "its error in\nequal time"), strict=True):
+        axes.text(x, height - 1.2 * LINE, text, fontsize=9, linespacing=1.1, **{**style, "color": LIGHT.faint})
+    for place, (name, told) in enumerate(rows):
+        cells = [name, *(f"{number} x" if number != "-" else "-" for number in told.split(" | "))]
+        for x, text in zip(TABLE_AT, cells, strict=True):
+            colour = look(name).colour if text == name else LIGHT.ink
+            axes.text(x, height - (2.9 + 0.9 * place) * LINE, text, fontsize=10.5, **{**style, "color": colour})
+    below = height - (3.1 + 0.9 * len(rows)) * LINE
+    axes.text(0.05, below, UNKNOWN, fontsize=8, **{**style, "color": LIGHT.faint})
+
+
 def _draw_answers(axes: Axes, chart: Chart) -> None:
     """The questions with their answers, the legend, and what was compared."""
     axes.set_axis_off()
@@ -86,6 +111,8 @@ def _draw_answers(axes: Axes, chart: Chart) -> None:
             axes.text(0.05, height, as_written("\n".join(lines)), fontsize=12, weight=weight, linespacing=1.2, **style)
             height -= LINE * len(lines)
         height -= LINE
+    if len(chart.tasks) == 1:
+        _draw_table(axes, height, table(chart)[1])
     names = [name for name in NAMES if any(name in curves.labels for curves in chart.tasks)]
     for name in names:
         axes.plot([], [], label=NAMES[name], **look(name).drawn(7))

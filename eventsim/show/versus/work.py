@@ -19,7 +19,6 @@ from eventsim.validation.advantages import (
     advantages_on,
     amount,
     own_points,
-    stepped_labels,
     time_at,
 )
 from eventsim.validation.conclusions import Win, winning
@@ -98,21 +97,20 @@ def _draw_advantages(axes: Axes, curves: Curves) -> None:
         right = _is_right(axes, best.elapsed)
         note(axes, text, (best.elapsed, middle), offset=(-6 if right else 6, 0), va="center", ha="right" if right else "left")
     axes.axhline(wanted, color=ARROW, lw=0.8, ls=(0, (4, 3)), zorder=1)
-    note(axes, f"{wanted:g}", (1.0, wanted), ACROSS, (0, 3), ha="right")
-    _draw_time(axes, curves, found, time_at(own, wanted), wanted)
+    note(axes, f"{wanted:g}", (0.0, wanted), ACROSS, (3, 3))
+    _draw_time(axes, found, time_at(own, wanted), wanted)
 
 
-def _draw_time(axes: Axes, curves: Curves, found: list[Advantage], mine: float, wanted: float) -> None:
+def _draw_time(axes: Axes, found: list[Advantage], mine: float, wanted: float) -> None:
     """The arrow at equal error, to the first stepped engine that comes to it; a sentence where none does."""
     reached = [a for a in found if a.bound == "" and not math.isnan(a.time_ratio)]
+    text = f"no stepped engine\ncomes to {wanted:g}"
     if reached:
         nearest = min(reached, key=lambda a: a.time_ratio)
         _arrow(axes, (mine, wanted), (mine * nearest.time_ratio, wanted))
-        text, place = f"equal error: {amount(nearest.time_ratio)} x the time", mine * math.sqrt(nearest.time_ratio)
-    else:
-        longest = max(point.elapsed for name in stepped_labels(curves) for point in curves.of(name))
-        text, place = f"no stepped engine comes to {wanted:g}", math.sqrt(mine * longest)
-    note(axes, text, (place, wanted), offset=(0, -4), ha="right" if _is_right(axes, place) else "center", va="top")
+        text = f"equal error:\n{amount(nearest.time_ratio)} x the time"
+    right = _is_right(axes, mine)
+    note(axes, text, (mine, wanted), offset=(-6 if right else 6, -4), ha="right" if right else "left", va="top")
 
 
 def _is_right(axes: Axes, elapsed: float) -> bool:
