@@ -83,7 +83,6 @@ def command(
       eventsim validate corner --against stepped --against penalty
       eventsim validate my.toml --dt 0.01 --dt 0.001 --json
 
-    \b
     Columns: found, missed, doubled, spurious in per cent of the contacts ahead; angle: mean error of
     deflection, degrees; overlap: the deepest, in reaches; stuck: longest time at a wall; position: error
     after two contacts a disk, diameters; energy: relative change; rate, pressure: relative to event-driven;
@@ -98,6 +97,7 @@ def command(
       orders                   engine -> measured order of convergence (null: not measurable)
       settings, versions       what each engine was told; of what is compared
       left_out, verdict        sentences
+
     With --trajectory: source, told (the file; what it holds), first_fault {kind, time, disks, sentence}, compared (how
     many contacts), faults, parting (of the contacts: time, sentence), elapsed_per_time (of a step function), contacts {found,
     missed, doubled, false, elsewhere, unseen (in the samples), untold (found, and nobody knows their impulse)},
