@@ -28,10 +28,10 @@ class Run(PastRun):
 
     begun_by: the engine that handed over to `engine`, where `auto` began with another one.
     log_path: where the log was streamed to.  measures: where they were asked for.  trust: until when positions hold, where that
-    was asked for or cost little.  stopped: `until`, `events`, `quiet` (no event ahead), `collapse`, `digits`, `interrupted`.
-    reason: a sentence about that where there is more to say.  elapsed_s: simulating only; compile_s and write_s (waiting for rows
-    to be written and measured) apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its
-    log.
+    was asked for or cost little.  stopped: `until`, `events`, `quiet` (no event ahead), `collapse`, `digits`, `law` (none
+    tells what a contact does), `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s: simulating
+    only; compile_s and write_s (waiting for rows to be written and measured) apart, seconds.  trajectory: samples, of a stepped
+    engine, whose motion does not follow from its log.
 
     >>> import eventsim as es
     >>> run = es.simulate(es.gallery("galperin", mass_ratio=100), engine="reference", log=True)

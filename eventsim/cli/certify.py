@@ -73,7 +73,8 @@ def command(
       deviation_share          the same as a part of the scene's largest length
       velocity_deviation       its largest error of a component of a velocity after them, and
       velocity_deviation_share the same as a part of the fastest speed
-      stopped, reason          until | events | quiet | collapse | undecided tie | interrupted; and why
+      stopped, reason          until | events | quiet | collapse | law | undecided tie |
+                               interrupted; and why
       elapsed_s, log           seconds of the proof; the file written (null without)
 
     Exit codes: 0 proven; 2 bad usage, scene or file; 3 an undecided tie or a collapse; 130 interrupted.

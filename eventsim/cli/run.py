@@ -115,7 +115,7 @@ def command(
                                length, the smallest reach; events looked at; gentle: errors grow as a power
                                of time; reason: why there is no estimate}
       stopped, reason          until | events | quiet (no event ahead) | collapse | digits |
-                               undecided tie | interrupted; and why, in words
+                               law | undecided tie | interrupted; and why, in words
       log, state, checkpoint   the files written (null without)
 
     Exit codes: 0 done; 2 bad usage, scene or file; 3 collapse, digits, or what no law tells; 130 interrupted.

@@ -38,6 +38,10 @@ LAST_ROUNDS = 4
 """The ratio is that of so many rounds, the last ones that are known well, where it has settled."""
 
 
+LEAST_FALL = 2.0**-20
+"""Where speeds fall by less than this part from round to round, gaps do not close by what contacts take, but by what nothing
+stops."""
+
 STEADY = 1.005
 """Ratios of rounds that differ by no more than this factor are one; near the critical restitution they drift by more."""
 
@@ -60,6 +64,7 @@ class Rounds(NamedTuple):
     disks: those that meet at the last instant.  number: how many rounds followed each other ever faster.  ratio: how long the
     last ones took, each in terms of the one before; nan where there were none.  first, last: the longest and the shortest.
     ends_now: whether a series with this ratio is over within what the clock can tell.  steady: whether the ratio has settled.
+    slackens: whether speeds fall from round to round; elsewhere something closes in.
     """
 
     disks: list[int]
@@ -69,6 +74,7 @@ class Rounds(NamedTuple):
     last: float
     ends_now: bool
     steady: bool
+    slackens: bool
 
 
 def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -> tuple[str, str] | None:
@@ -101,10 +107,22 @@ def _of_an_instant(rows: Rows, disks: list[int], stage: Stage, time: float) -> t
     last, before = mine[-1], mine[:-1]
     same = (before["a"] == last["a"]) & (before["b"] == last["b"]) & (before["wall"] == last["wall"])
     ratio = float(last["impulse"] / before["impulse"][same][-1])
+    what, remedy = _called(disks, stage, slackens=ratio <= 1.0 - LEAST_FALL)
     return "collapse", (
-        f"inelastic collapse of {named(disks)} at time {time:.9g}: contacts at that instant, in rounds of which each has "
-        f"{ratio:.3g} of the impulses of the one before, and there is no end of them; {stage.law.remedy()}"
+        f"{what} of {named(disks)} at time {time:.9g}: contacts at that instant, in rounds of which each has "
+        f"{ratio:.3g} of the impulses of the one before, and there is no end of them; {remedy}"
     )
+
+
+def _called(disks: list[int], stage: Stage, slackens: bool) -> tuple[str, str]:
+    """What a series is called, and what is left to do; slackens: whether speeds fall from round to round.
+
+    Where they do not, and one of the disks deflects no other, or is deflected by none, contacts take nothing that could end it.
+    """
+    uneven = stage.mass is not None and np.any(np.isinf(stage.mass[disks]) | (stage.mass[disks] == 0.0))
+    if uneven and not slackens:
+        return "contacts without end", "speeds do not fall: one is squeezed between others, or walls, that it cannot deflect"
+    return "inelastic collapse", stage.law.remedy()
 
 
 def diagnosis_of_sunk(rows: Rows, stage: Stage, time: float) -> tuple[str, str] | None:
@@ -130,16 +148,17 @@ def _of_rounds(rounds: Rounds, stage: Stage, time: float, collapses: bool) -> tu
     series = (
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
+    what, remedy = _called(rounds.disks, stage, rounds.slackens)
     if collapses:
         if rounds.last * rounds.ratio <= (1.0 - rounds.ratio) * SEEN * abs(time):
-            return "collapse", f"inelastic collapse of {names} at time {time:.9g}: {series}; {stage.law.remedy()}"
+            return "collapse", f"{what} of {names} at time {time:.9g}: {series}; {remedy}"
         return "collapse", (
-            f"inelastic collapse of {names} soon after time {time:.9g}: {series}, and there is no end of them; the gaps sank "
-            f"below the digits of float64 when a round still took {rounds.last:.2g}; {stage.law.remedy()}"
+            f"{what} of {names} soon after time {time:.9g}: {series}, and there is no end of them; the gaps sank "
+            f"below the digits of float64 when a round still took {rounds.last:.2g}; {remedy}"
         )
     return "digits", (
         f"{names}: {series}, then the gaps sank below the digits of float64 at time {time:.9g}, when a round still took "
-        f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {stage.law.remedy()}"
+        f"{rounds.last:.2g}; whether the contacts ever end cannot be told with these digits; {remedy}"
     )
 
 
@@ -171,10 +190,10 @@ def rounds_before_the_end(
 def _series(disks: list[int], rows: Rows, times: Floats, end: float, clean: float) -> Rounds:
     """The rounds of rows at these times: as many rows as there are different contacts make one."""
     period = len(set(zip(rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True)))
-    return _rounds(disks, times[period:] - times[:-period] if len(times) > period else times[:0], period, end, clean)
+    return _rounds(disks, rows, times[period:] - times[:-period] if len(times) > period else times[:0], period, end, clean)
 
 
-def _rounds(disks: list[int], lengths: Floats, period: int, end: float, clean: float) -> Rounds:
+def _rounds(disks: list[int], rows: Rows, lengths: Floats, period: int, end: float, clean: float) -> Rounds:
     """The longest series of rounds that became shorter and shorter; none of those after it, which are noise, was as long.
 
     end: a time that is as good as none.  clean: see CLEAN.
@@ -190,11 +209,28 @@ def _rounds(disks: list[int], lengths: Floats, period: int, end: float, clean: f
             if counts[k] > best:
                 best, last = counts[k], k
     if best < 2 * period:
-        return Rounds(disks, best // period, math.nan, math.nan, math.nan, False, False)
+        return Rounds(disks, best // period, math.nan, math.nan, math.nan, False, False, True)
     series = lengths[last + 1 - best : last + 1]
     ratio = _ratio(series, period, clean * float(lengths[last:].min()))
     ends_now = float(series[-1]) * ratio <= (1.0 - ratio) * 2.0 * end
-    return Rounds(disks, best // period, ratio, float(series[0]), float(series[-1]), ends_now, _is_steady(series, period))
+    slackens = _slackens(rows[: last + period + 1], period, best // period)
+    first, final = float(series[0]), float(series[-1])
+    return Rounds(disks, best // period, ratio, first, final, ends_now, _is_steady(series, period), slackens)
+
+
+def _slackens(rows: Rows, period: int, rounds: int) -> bool:
+    """Whether what the last rounds do to velocities becomes less."""
+    rounds = min(rounds, LAST_ROUNDS)
+    before: dict[int, tuple[float, float]] = {}
+    changes = np.zeros(len(rows))
+    for k, row in enumerate(rows):
+        for i, u, w in ((row["a"], row["vxa"], row["vya"]), (row["b"], row["vxb"], row["vyb"])):
+            if i >= 0:
+                after = float(u), float(w)
+                changes[k] = max(changes[k], math.dist(after, before.get(int(i), after)))
+                before[int(i)] = after
+    now, then = (float(changes[end - period : end].sum()) for end in (len(rows), len(rows) - rounds * period))
+    return now <= then * (1.0 - LEAST_FALL) ** rounds
 
 
 def _is_steady(series: Floats, period: int) -> bool:

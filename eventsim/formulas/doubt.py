@@ -52,6 +52,10 @@ lets no disk through where one wall goes on in another one; a post is met so muc
 CLOCK_BITS = 1.0 + 2.0**-50
 """What the clock rounds: 4 to 8 units in the last place of a contact time; each is right to about two."""
 
+OUTRUN = 2.0**26
+"""A disk that comes so many times through all places in a time of the clock is too fast for it: a last bit of that time moves it
+by 2**-27 of them.  At the start it is some tens."""
+
 GAP_ROUNDINGS = 4.0
 """Roundings in a gap: a place x + v lag has one of the lag, one of the product, one of the sum; the difference is one more."""
 
@@ -136,6 +140,17 @@ def is_sunk(approach: Real, lag: Real, size: Real, pile: float, slowly: float) -
     """
     gap = approach * lag
     return (lag > 0.0) & ((gap <= BELOW * size) | ((lag > slowly) & (gap <= pile * size)))
+
+
+def outruns_clock(speed: Real, time: Real, size: Real) -> Real:
+    """Whether a disk has become too fast for the clock, in whose window it is, under a law that may give energy.
+
+    Args:
+        speed: at which it parts from what it meets.
+        time: the clock's remainder at that contact.
+        size: of the places of the scene.
+    """
+    return not speed * time <= OUTRUN * size
 
 
 def tie_screen(size: float, slowest: float, between: float) -> float:

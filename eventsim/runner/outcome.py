@@ -25,9 +25,9 @@ class Outcome:
 
     begun_by: the engine that handed over to `engine`, where `auto` began with another one.
     log_path: where the log was streamed to.  recorded: the log that was kept in memory.  stopped: `until`, `events`, `quiet` (no
-    event ahead), `collapse`, `digits`, `interrupted`.  reason: a sentence about that where there is more to say.  elapsed_s:
-    simulating only; compile_s and write_s (waiting for rows to be written and measured) apart, seconds.  trajectory: samples,
-    of a stepped engine, whose motion does not follow from its log.
+    event ahead), `collapse`, `digits`, `law` (none tells what a contact does), `interrupted`.  reason: a sentence about that
+    where there is more to say.  elapsed_s: simulating only; compile_s and write_s (waiting for rows to be written and measured)
+    apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its log.
     """
 
     scene: Scene

@@ -68,6 +68,7 @@ class Stage:
         corner: what to add to a position to have it on the scene's axes.
         start_time: what the scene's clock shows at remainder 0 of epoch 0.
         clock: how long its epochs and its windows are.
+        extent: the sum of the largest coordinates that gaps are differences of; length.
         tie_screen: the span of time within which contacts that share a disk are ordered exactly, in the first window.
     """
 
@@ -99,6 +100,7 @@ class Stage:
     corner: Point
     start_time: float
     clock: SceneClock
+    extent: float
     tie_screen: float
 
     @property
@@ -212,6 +214,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
     law = law_of_scene(scene)
     lightest, heaviest = _extreme_masses(disks.mass)
     clock = clock_of(scene)
+    extent = _extent(scene, x, y, corner, features)
     return Stage(
         n=len(disks),
         x=x,
@@ -247,7 +250,8 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
         corner=corner,
         start_time=scene.start_time,
         clock=clock,
-        tie_screen=tie_screen(_extent(scene, x, y, corner, features), _slowest(vx, vy), clock.epoch_length / len(disks)),
+        extent=extent,
+        tie_screen=tie_screen(extent, _slowest(vx, vy), clock.epoch_length / len(disks)),
     )
 
 

@@ -121,6 +121,18 @@ def test_the_restitution_of_the_species_that_meet_tells_whether_a_series_ends():
     assert "collapse" in reasons[0]
 
 
+@pytest.mark.parametrize(("restitution", "stopped"), [(0.5, "digits"), (0.9, "collapse")])
+def test_a_disk_that_is_squeezed_is_no_inelastic_collapse(restitution, stopped):
+    """An immovable one comes on at the speed 1, and the way from 2.5 to the wall is full at 2.5."""
+    disks = es.Disks([(1.0, 1.0), (4.0, 1.0)], [(0.1, 0.0), (-1.0, 0.0)], 0.5, [1.0, math.inf])
+    run = es.simulate(es.Scene(disks, es.Box((6.0, 6.0)), restitution=restitution), until=9.0, engine="reference")
+    assert run.stopped == stopped
+    assert run.time == pytest.approx(2.5, rel=1e-12)
+    assert "speeds do not fall: one is squeezed between" in run.reason
+    assert "inelastic" not in run.reason
+    assert "contact_duration" not in run.reason
+
+
 def test_step_by_step_the_same_is_said():
     sim = es.Simulation(bounce(), engine="reference")
     with pytest.raises(es.CollapseError, match=r"disks 0, 1 at time 3[.\d]*: \d+ rounds"):

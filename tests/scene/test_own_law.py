@@ -137,6 +137,22 @@ def test_what_happened_before_a_law_fails_is_in_its_log(laws, wrong, engine, tmp
     assert kept.tobytes() == rows[:2].tobytes()
 
 
+@pytest.mark.parametrize("engine", ["reference", "fast"])
+@pytest.mark.parametrize(("share", "events"), [("2.0", 26), ("1e12", 0), ("approach", 3)])
+def test_a_law_that_gives_energy_is_stopped_where_disks_outrun_the_clock(laws, share, events, engine):
+    """It was called an inelastic collapse, or speeds became infinite."""
+    if engine == "fast":
+        pytest.importorskip("numba")
+    box = {"domain": {"kind": "box", "size": [6, 6]}, "disk": [{"position": [1, 1], "velocity": [4, 0], "radius": 0.5}]}
+    (laws / "laws.py").write_text(f"def gains(approach):\n    return {share}\n")
+    run = es.simulate(named(laws, "gains", **box), until=9.0, engine=engine)
+    assert (run.stopped, run.counters.events) == ("digits", events)
+    assert math.isfinite(run.state.energy)
+    assert "the law laws.py:gains, at the contact of disk 0 and a wall with the approach" in run.reason
+    assert "speeds, at the start up to 4, come to" in run.reason
+    assert "see whether the law gives energy" in run.reason
+
+
 @pytest.mark.parametrize(
     ("law", "words"),
     [

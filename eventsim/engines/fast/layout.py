@@ -103,9 +103,10 @@ class Rules(NamedTuple):
     """What the scene says; None: it does not have that.
 
     wall_x, wall_y: place of the first of two hard walls across an axis.  series_restitution: see `Law.series`.  law: its
-    `numbers`; by_speed: it looks at the speed of approach; own: it is the user's; driven: walls heat, shake or slide; seed:
-    of chance.  classes: there are immovable disks or tracers.  features: number of wall shapes; shapes: of each of the kinds
-    of `shapes` whether there is one; first_feature: the place of the first.  instant, at_once_limit: see `instant_of`.
+    `numbers`; by_speed: it looks at the speed of approach; own: where it is the user's, the extent of places; driven: walls heat,
+    shake or slide; seed: of chance.  classes: there are immovable disks or tracers.  features: number of wall shapes; shapes: of
+    each of the kinds of `shapes` whether there is one; first_feature: the place of the first.  instant, at_once_limit: see
+    `instant_of`.
     still: see `stillness_of`, None where disks do not settle.  tie_screen: see `formulas.doubt`, in the present window.
     sinks: the part of places that sunk gaps are, None where none sink.  pair_roughness, wall_roughness: the tangential
     restitution, None where contacts turn no disk.

@@ -36,7 +36,7 @@ from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.formulas.careful_impulse import careful_flat_update, careful_pair_update, careful_wall_update
 from eventsim.formulas.chance import flux
 from eventsim.formulas.doubt import AT_ONCE as SERIES_AT_ONCE
-from eventsim.formulas.doubt import is_still
+from eventsim.formulas.doubt import is_still, outruns_clock
 from eventsim.formulas.impulse import (
     along,
     approach_speed,
@@ -137,12 +137,12 @@ def _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w, u0, w0):
 
 @inline
 def is_unlawful(m, rules, i, code, t, own):
-    """Whether a law of the user's own has no restitution for a contact: then the reference engine's rules tell why."""
-    return False if own is None else _is_unlawful(m, rules, i, code, t)
+    """Whether a law of the user's own has no restitution for a contact that can be: the reference engine's rules tell why."""
+    return False if own is None else _is_unlawful(m, rules, i, code, t, own)
 
 
 @part
-def _is_unlawful(m, rules, i, code, t):
+def _is_unlawful(m, rules, i, code, t, extent):
     if code <= WALL:
         wall_code = WALL - code
         x, y = place(m, rules, i, t)
@@ -150,6 +150,7 @@ def _is_unlawful(m, rules, i, code, t):
         place_, side = wall_code // 2, -1 if wall_code % 2 else 1
         u, w = _from_wall(m, rules, i, place_, side, x, y, u0, w0, -1.0, u0, w0, rules.driven)
         e = _restitution_at_wall(m, rules, i, t, place_, side, x, y, u, w, u0, w0)
+        approach = _approach_to_wall(m, rules, i, place_, side, x, y, u, w, u0, w0, rules.by_speed)
     else:
         a, b = _in_order(m, i, code, m.mass)
         xa, ya = place(m, rules, a, t)
@@ -158,7 +159,8 @@ def _is_unlawful(m, rules, i, code, t):
         kx, ky = _image_met(m, rules, a, b, t, dx, dy, m.slots)
         dx, dy = dx - shift(kx, rules.length_x), dy - shift(ky, rules.length_y)
         e = _restitution_of_pair(m, rules, a, b, t, dx, dy, m.mass)
-    return not 0.0 <= e < math.inf
+        approach = _approach_of_pair(m, rules, a, b, t, dx, dy, rules.by_speed)
+    return not 0.0 <= e < math.inf or outruns_clock(e * approach, t, extent)
 
 
 @inline

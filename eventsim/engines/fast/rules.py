@@ -45,7 +45,7 @@ def rules_of(stage: Stage) -> Rules:
         stage.law.series(stage.law.wall),
         law_in_kernels(stage.law),
         1 if stage.law.by_speed else None,
-        1 if isinstance(stage.law, Own) else None,
+        stage.extent if isinstance(stage.law, Own) else None,
         1 if stage.law.drives else None,
         stage.seed,
         1 if classes else None,

@@ -453,4 +453,4 @@ class Resolver:
         since_a, since_b = t - state.contact_time[event.a], t - state.contact_time[b]
         if not isinstance(law, Own):
             return law.restitution(usual, since_a, since_b, approach, mass)
-        return lawful(law, event, usual, since_a, since_b, approach, mass)
+        return lawful(self._stage, law, event, since_a, since_b, approach, mass)

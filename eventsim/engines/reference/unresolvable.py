@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from eventsim.engines.collapse import LIES_STILL, named
 from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
 from eventsim.engines.reference.rests import TwoSupportsError
+from eventsim.formulas.doubt import outruns_clock
 from eventsim.formulas.laws import Own, wrong_share
 from eventsim.formulas.real import Real
 from eventsim.formulas.simultaneous import SqueezedError
@@ -53,6 +56,10 @@ class GrazesError(UnlawfulError):
     """Contacts of one instant that rounding may have made."""
 
 
+class OutrunError(UnlawfulError):
+    """Disks have become too fast for the clock."""
+
+
 def grazed_at_once(disks: list[int]) -> GrazesError:
     """Contacts of one instant that share disks, all with round things and all along them."""
     graze = "grazes" if len(disks) == 1 else "graze"
@@ -80,27 +87,33 @@ def rough_joint(disks: list[int]) -> UnlawfulError:
     )
 
 
-def lawful(law: Own, event: Event, usual: float, since_a: Real, since_b: Real, approach: Real, mass: Real) -> Real:
+def lawful(stage: Stage, law: Own, event: Event, since_a: Real, since_b: Real, approach: Real, mass: Real) -> Real:
     """The restitution of a contact under a law of the user's own.
 
-    Raises UnlawfulError where that fails, or returns what no contact can have.
+    Raises UnlawfulError where that fails, or returns what no contact can have; OutrunError where it leaves disks too fast.
     """
     who = named(disks_of(event)) if event.b >= 0 else f"disk {event.a} and a wall"
     at = f"{law.name()}, at the contact of {who} with the approach {float(approach):.6g},"
     try:
-        share = law.restitution(usual, since_a, since_b, approach, mass)
+        share = law.restitution(stage.usual(event.a, event.b), since_a, since_b, approach, mass)
         wrong = wrong_share(share)
     except Exception as error:
         raise UnlawfulError(f"{at} fails: {told(error, law.own.file)}") from None
     if wrong is not None:
         raise UnlawfulError(f"{at} returns {share!r}: that {wrong}")
+    if outruns_clock(share * approach, event.time, stage.extent):
+        begun, come = np.hypot(stage.vx, stage.vy).max(), share * approach
+        raise OutrunError(
+            f"{at} returns {share!r}: speeds, at the start up to {begun:.3g}, come to {come:.3g}, for which the clock of this "
+            "scene is too coarse (see whether the law gives energy); a scene that begins from this state has a finer one"
+        )
     return share
 
 
 def refused(error: SqueezedError | TwoSupportsError | UnlawfulError, component: list[Event]) -> tuple[str, str]:
     """A cluster that no impulses part, a disk on two walls, or what no law tells: why a run stops, and a sentence on it."""
     if isinstance(error, UnlawfulError):
-        return "digits" if isinstance(error, GrazesError) else "law", str(error)
+        return "digits" if isinstance(error, GrazesError | OutrunError) else "law", str(error)
     if isinstance(error, TwoSupportsError):
         return "collapse", str(error)
     disks = sorted({i for event in component for i in (event.a, event.b) if i >= 0})
