@@ -337,7 +337,7 @@ class Own(Law):
 
 def wrong_share(share: Real) -> str | None:
     """Why a law of the user's own cannot have meant what it returns, a clause; None where it can."""
-    if not share < float("inf"):
+    if not isinstance(share, int | float) or not share < float("inf"):
         return "is no number that a contact can have"
     if share < -1.0:
         return "is an impulse that pulls"

@@ -25,6 +25,9 @@ restitution: the usual one of these two disks, or of this wall.  approach: the s
 last contact of either; inf before the first.  mass: the reduced mass, at a wall that of the disk.
 """
 
+FAILS = Exception, SystemExit
+"""What a function or a file of the user's own may raise, and the scene with it is refused, or its run stopped, in a sentence."""
+
 MEANT = f"it must be a function of some of {', '.join(KNOWN)}, and return the restitution"
 
 
@@ -158,7 +161,7 @@ def _run(text: str, source: str, path: Path, called: str) -> OwnLaw:
         exec(compile(source, str(path), "exec"), names)
     except SyntaxError as error:
         raise SceneError(f"{where}: line {error.lineno} is no Python: {error.msg}") from None
-    except Exception as error:
+    except FAILS as error:
         raise SceneError(f"{where}: running the file fails: {told(error, str(path))}") from None
     function = names.get(called)
     if not isinstance(function, FunctionType):
@@ -177,7 +180,7 @@ def _asks(function: FunctionType, where: str) -> tuple[str, ...]:
         found: Any = OwnLaw("", "", "", asks, function=function)(1.0, 1.0, math.inf, 1.0)
     except ArithmeticError:  # at other speeds it may well have a value
         return asks
-    except Exception as error:
+    except FAILS as error:
         raise SceneError(f"{where}: it fails at a trial: {told(error, function.__code__.co_filename)}") from None
     if isinstance(found, bool) or not isinstance(found, int | float):
         raise SceneError(f"{where}: it returns {found!r}: {MEANT}")
@@ -192,7 +195,8 @@ def told(error: BaseException, path: str) -> str:
             line = trace.tb_lineno
         trace = trace.tb_next
     where = "" if line is None else f" in line {line}"
-    return f"{type(error).__name__}{where}: {error}"
+    said = " ".join(str(error).split())
+    return f"{type(error).__name__}{where}" + (f": {said}" if said else "")
 
 
 def _words_of(code: CodeType) -> str:

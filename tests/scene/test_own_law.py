@@ -45,6 +45,9 @@ def any_of(*values):
 def without():
     return 1.0
 
+def leaves_python(approach):
+    raise SystemExit(7)
+
 def imports(approach):
     import json
     return json.loads("0.5")
@@ -120,6 +123,14 @@ def test_a_law_that_fails_at_a_contact_stops_the_run_before_it_in_a_sentence(law
     assert run.state.velocity.tolist() == [[4.0, 0.0], [0.0, 0.0]]
 
 
+@pytest.mark.parametrize("wrong", ["'0.5'", "(0.5, 0.5)", "None"])
+def test_what_is_no_number_is_told_where_a_law_first_returns_it(laws, wrong):
+    (laws / "laws.py").write_text(f"def law(approach):\n    return 1.0 if approach < 2.0 else {wrong}\n")
+    run = es.simulate(named(laws, "law"), until=2.0, engine="reference")
+    assert run.stopped == "law"
+    assert f"with the approach 4, returns {wrong}: that is no number that a contact can have" in run.reason
+
+
 @pytest.mark.parametrize("engine", ["reference", "fast"])
 @pytest.mark.parametrize("wrong", ["1.0 / (approach - approach)", "-2.0"])
 def test_what_happened_before_a_law_fails_is_in_its_log(laws, wrong, engine, tmp_path):
@@ -162,6 +173,7 @@ def test_a_law_that_gives_energy_is_stopped_where_disks_outrun_the_clock(laws, s
         ("any_of", "its parameters are values: it must be a function"),
         ("without", "its parameters are none: it must be a function"),
         ("late", "it fails at a trial: IndexError in line 21"),
+        ("leaves_python", "it fails at a trial: SystemExit in line 39: 7"),
         ("number", "has no function number"),
         ("missing", "has no function missing"),
     ],
@@ -177,7 +189,8 @@ def test_a_function_that_is_no_law_is_refused_with_the_scene(laws, law, words):
     [
         ("def law(approach)\n    return 1\n", "line 1 is no Python: expected ':'"),
         ("import math\n\nx = 1 / 0\n", "running the file fails: ZeroDivisionError in line 3: division by zero"),
-        ("raise SystemError('no')\n", "running the file fails: SystemError in line 1: no"),
+        ("raise SystemError('no,\\n no')\n", "running the file fails: SystemError in line 1: no, no"),
+        ("import sys\nsys.exit(5)\n", "running the file fails: SystemExit in line 2: 5"),
     ],
 )
 def test_a_file_that_cannot_be_run_is_refused_with_its_line(laws, text, words):
@@ -285,6 +298,6 @@ def test_rest_is_off_under_a_law_of_ones_own():
 def test_what_cannot_be_compiled_is_told_with_its_line_and_auto_goes_on_without(laws, capfd):
     pytest.importorskip("numba")
     scene = named(laws, "imports")
-    with pytest.raises(es.EventsimError, match=r"cannot be compiled: line 39: .*engine = reference runs it"):
+    with pytest.raises(es.EventsimError, match=r"cannot be compiled: line 42: .*engine = reference runs it"):
         es.simulate(scene, events=1, engine="fast")
     assert relative(es.simulate(scene, events=1, engine="reference")) == 2.0

@@ -41,7 +41,7 @@ def compiled_law(own: Any) -> Any:
     def law(*given: Any) -> float:
         try:
             return float(own(*map(float, given)))
-        except Exception:
+        except (Exception, SystemExit):
             return float("nan")
 
     return law

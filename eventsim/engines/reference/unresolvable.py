@@ -13,7 +13,7 @@ from eventsim.formulas.doubt import outruns_clock
 from eventsim.formulas.laws import Own, wrong_share
 from eventsim.formulas.real import Real
 from eventsim.formulas.simultaneous import SqueezedError
-from eventsim.scene.own_law import told
+from eventsim.scene.own_law import FAILS, told
 from eventsim.scene.stage import Stage
 
 
@@ -97,7 +97,7 @@ def lawful(stage: Stage, law: Own, event: Event, since_a: Real, since_b: Real, a
     try:
         share = law.restitution(stage.usual(event.a, event.b), since_a, since_b, approach, mass)
         wrong = wrong_share(share)
-    except Exception as error:
+    except FAILS as error:
         raise UnlawfulError(f"{at} fails: {told(error, law.own.file)}") from None
     if wrong is not None:
         raise UnlawfulError(f"{at} returns {share!r}: that {wrong}")
