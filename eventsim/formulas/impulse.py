@@ -139,10 +139,21 @@ def along(nx: Real, ny: Real, speed: Real) -> tuple[Real, Real]:
     return speed * (nx / length), speed * (ny / length)
 
 
-def heated(nx: Real, ny: Real, out: Real, sideways: Real) -> tuple[Real, Real]:
-    """The velocity that leaves a wall with the normal (nx, ny), of any length, and sideways to the right of that."""
-    u, w = along(nx, ny, out)
-    right, down = along(ny, -nx, sideways)
+def heated(
+    nx: Real, ny: Real, out: float, sideways: float, temperature: float, mass: float, slide: float
+) -> tuple[Real, Real]:
+    """The velocity that leaves a wall that heats; its normal (nx, ny) has any length.
+
+    Args:
+        nx, ny: the normal.
+        out, sideways: what chance gives along it, and to its right, over the thermal speed; see `chance.flux`.
+        temperature: kT of the wall.
+        mass: of the disk.
+        slide: the speed of the wall to the right.
+    """
+    thermal = sqrt(temperature / mass)
+    u, w = along(nx, ny, thermal * out)
+    right, down = along(ny, -nx, thermal * sideways + slide)
     return u + right, w + down
 
 

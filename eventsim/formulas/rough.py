@@ -68,6 +68,11 @@ def gripped(
     return ua + one * dy, wa - one * dx, ub - other * dy, wb + other * dx
 
 
+def heated_spin(other: float, temperature: float, mass: float, radius: float, moment: float) -> float:
+    """The spin behind a wall that heats: `other` times the root of kT / I."""
+    return other * sqrt(temperature / (moment * mass * (radius * radius)))
+
+
 def wall_grip(
     nx: Real, ny: Real, u: Real, w: Real, spin: Real, radius: Real, moment: Real, tangential: Real
 ) -> tuple[Real, Real]:

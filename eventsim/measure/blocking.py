@@ -70,6 +70,17 @@ def block_average(series: Floats) -> ErrorBar:
     return ErrorBar(mean, error, n, 1 << k, independent=chosen is not None and n >= TRUSTED_BLOCKS)
 
 
+def plain_average(series: Floats) -> ErrorBar:
+    """The same of entries (n,) that are known to be independent, two at least."""
+    return ErrorBar(float(series.mean()), math.sqrt(float(series.var(ddof=1)) / len(series)), len(series), 1, independent=True)
+
+
+def errors_apart(one: ErrorBar, other: ErrorBar) -> float:
+    """By how many standard errors two means differ; 0 where they have none."""
+    spread = math.hypot(one.error, other.error)
+    return abs(one.mean - other.mean) / spread if spread > 0.0 else 0.0
+
+
 def ratio_average(above: Floats, below: Floats) -> ErrorBar:
     """sum(above) / sum(below) and its standard error, by linearisation about the ratio; series (n,)."""
     scale = float(below.mean()) if len(below) else 0.0

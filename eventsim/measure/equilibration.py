@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from eventsim.measure.blocking import ErrorBar, block_average
+from eventsim.measure.blocking import ErrorBar, block_average, errors_apart
 from eventsim.measure.ensemble import Ensemble
 from eventsim.record.events import Floats
 
@@ -70,10 +70,8 @@ def doubts(ensemble: Ensemble, rates: Floats, bar: ErrorBar, late: bool, moved: 
     elif not bar.independent:
         found.append("no block length was found beyond which blocks are independent")
     half = len(rates) // 2
-    first, second = block_average(rates[:half]), block_average(rates[half:])
-    spread = math.hypot(first.error, second.error)
-    if abs(first.mean - second.mean) > DRIFT * spread > 0.0:
-        away = abs(first.mean - second.mean) / spread
+    away = errors_apart(block_average(rates[:half]), block_average(rates[half:]))
+    if away > DRIFT:
         found.append(f"the pressure drifts: its halves differ by {away:.1f} standard errors")
     return found + _caged(ensemble, moved) + _unmixed(ensemble, moved)
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from eventsim.measure import sums
-from eventsim.measure.blocking import block_average
+from eventsim.measure.blocking import block_average, errors_apart
 from eventsim.measure.equilibration import DRIFT, doubts, strangers, transient
 from eventsim.measure.measures import Measures
 from eventsim.measure.quantities import quantities_of
@@ -71,11 +69,8 @@ def _doubts(records: Records) -> list[str]:
 def _halves(records: Records, energy: Floats) -> float:
     """By how many standard errors the mean energies of the halves of the run differ."""
     half = len(records.time) // 2
-    first, second = (
-        records.ratio(energy[part], records.time[part], remembered=True) for part in (slice(half), slice(half, None))
-    )
-    spread = math.hypot(first.error, second.error)
-    return abs(first.mean - second.mean) / spread if spread > 0.0 else 0.0
+    parts = slice(half), slice(half, None)
+    return errors_apart(*(records.ratio(energy[part], records.time[part], remembered=True) for part in parts))
 
 
 def _heating(records: Records) -> list[str]:

@@ -51,7 +51,7 @@ from eventsim.formulas.impulse import (
 )
 from eventsim.formulas.real import sqrt
 from eventsim.formulas.rest import rebound
-from eventsim.formulas.rough import grip_strength, gripped, pair_grip, wall_grip
+from eventsim.formulas.rough import grip_strength, gripped, heated_spin, pair_grip, wall_grip
 from eventsim.formulas.walls.face import face_normal
 from eventsim.formulas.walls.point import is_still_rising
 
@@ -495,18 +495,16 @@ def _drawn(m, rules, i, place_, side, x, y, u, w, u0, w0, seed):
     out, sideways, other = flux((seed, word(m.disks, i * WORDS + LABEL), word(m.contacts, i)))
     mass = mass_of(i, m.mass, rules.common_mass)
     _draw_spin(m, i, other, temperature, mass, m.spin)
-    thermal = sqrt(temperature / mass)
-    slide = side * real(m.shares, OWN_OF_WALL * place_ + SLIDE)
     nx, ny = _towards(m, rules, i, place_, side, x, y, u0, w0)
-    return heated(nx, ny, thermal * out, thermal * sideways + slide)
+    return heated(nx, ny, out, sideways, temperature, mass, side * real(m.shares, OWN_OF_WALL * place_ + SLIDE))
 
 
 @inline
 def _draw_spin(m, i, other, temperature, mass, spin):
     """Give disk i, if it has a spin, one that a wall draws."""
     if spin is not None:
-        r = real(m.disks, i * REALS + RADIUS)
-        store(spin, 2 * i, other * sqrt(temperature / (real(spin, 2 * i + 1) * mass * (r * r))))
+        radius, moment = real(m.disks, i * REALS + RADIUS), real(spin, 2 * i + 1)
+        store(spin, 2 * i, heated_spin(other, temperature, mass, radius, moment))
 
 
 @inline

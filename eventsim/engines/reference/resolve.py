@@ -20,7 +20,7 @@ from eventsim.formulas.impulse import along, approach_speed, flat_update, heated
 from eventsim.formulas.laws import Own, Treatment
 from eventsim.formulas.real import NEVER, Real, sqrt
 from eventsim.formulas.rest import has_struck, launch, rebound
-from eventsim.formulas.rough import SMOOTH, Roughness, grip_strength, gripped, pair_grip, wall_grip
+from eventsim.formulas.rough import SMOOTH, Roughness, grip_strength, gripped, heated_spin, pair_grip, wall_grip
 from eventsim.formulas.simultaneous import JointContact, Outcome, are_apart, resolve_together
 from eventsim.formulas.walls.point import is_still_rising
 from eventsim.record.events import Kind
@@ -242,12 +242,9 @@ class Resolver:
         """The velocity of disk i behind a wall that heats, and slides: drawn; so is its spin, if it has one."""
         state, stage, mass = self._state, self._stage, self._masses.of(i)
         out, sideways, other = flux((stage.seed or 0, i, state.contacts[i]))
-        speed = sqrt(temperature / mass)
-        slide = (stage.turns[place] * side) * velocity
         if state.spin is not None:
-            r = self._radius[i]
-            state.spin[i] = other * sqrt(temperature / (self._moment[i] * mass * (r * r)))
-        return heated(nx, ny, speed * out, speed * sideways + slide)
+            state.spin[i] = heated_spin(other, temperature, mass, self._radius[i], self._moment[i])
+        return heated(nx, ny, out, sideways, temperature, mass, (stage.turns[place] * side) * velocity)
 
     def _launched(self, i: int, place: int, side: int) -> Real:
         """The speed, in terms of the normal, at which disk i left the straight wall that it now falls back to; else 0."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from eventsim.measure import sums, theory
-from eventsim.measure.blocking import block_average
+from eventsim.measure.blocking import block_average, errors_apart, plain_average
 from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.entries import Expected, beside, dash
 from eventsim.measure.measures import Measure
@@ -59,14 +59,13 @@ def measures(records: Records) -> Iterator[Measure]:
     step = whole // PARTS
     slopes = -np.diff(np.log(warm[begun : begun + whole + 1 : step])) / (2.0 * step * stride / ensemble.n)
     bar = block_average(slopes)
-    first, second = slopes[: PARTS // 2], slopes[PARTS // 2 :]
-    spread = math.sqrt((first.var(ddof=1) + second.var(ddof=1)) / (PARTS // 2))
+    first, second = map(plain_average, np.split(slopes, 2))
     note = None
     restitution, rough = ensemble.scene.restitution, rough_gas(ensemble)
     expected = None
-    if abs(first.mean() - second.mean()) > CHANGED * spread:
+    if errors_apart(first, second) > CHANGED:
         where = "what is averaged" if grips else "the run"
-        note = f"it is {first.mean():.3g} in the first half of {where} and {second.mean():.3g} in the second: see the series"
+        note = f"it is {first.mean:.3g} in the first half of {where} and {second.mean:.3g} in the second: see the series"
     elif restitution is not None and _is_told(ensemble):
         loss = 0.5 * theory.cooling_exponent(restitution.pair)
         share = flowing(ensemble, 2.0 * whole * stride / ensemble.n, loss)

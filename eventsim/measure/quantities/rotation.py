@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from eventsim.measure import sums
-from eventsim.measure.blocking import block_average
+from eventsim.measure.blocking import block_average, errors_apart, plain_average
 from eventsim.measure.ensemble import Ensemble
 from eventsim.measure.entries import Expected, average, beside, dash
 from eventsim.measure.measures import Measure
@@ -56,15 +56,13 @@ def _ratio(records: Records) -> Measure:
     bar = block_average(parts)
     contacts = 2.0 * (count - whole) * int(records.sums.counts[sums.STRIDE]) / ensemble.n
     expected, decays = _expected(ensemble, contacts)
-    first, second = parts[: PARTS // 2], parts[PARTS // 2 :]
-    spread = math.sqrt((first.var(ddof=1) + second.var(ddof=1)) / (PARTS // 2))
     note = None
     if decays < SETTLED:
         needed = SETTLED * contacts / decays if decays > 0.0 else math.inf
         note = f"it has not settled: {contacts:.2g} contacts of a disk before it is averaged, where it takes {needed:.2g}"
     elif math.isinf(decays) and contacts < FEWEST_CONTACTS:
         note = f"it may not have settled: {contacts:.2g} contacts of a disk before (at least {FEWEST_CONTACTS:g})"
-    elif expected is None and abs(first.mean() - second.mean()) > CHANGED * spread:
+    elif expected is None and errors_apart(*map(plain_average, np.split(parts, 2))) > CHANGED:
         note = "it still changes in the second half of the run"
     error = bar.error if bar.error > 0.0 and note is None else math.nan
     entry = Measure(bar.mean, error, unit="1", doubt=note, name="rotation_ratio", blocks=bar.blocks)
