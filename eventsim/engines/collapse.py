@@ -38,9 +38,8 @@ LAST_ROUNDS = 4
 """The ratio is that of so many rounds, the last ones that are known well, where it has settled."""
 
 
-LEAST_FALL = 2.0**-20
-"""Where speeds fall by less than this part from round to round, gaps do not close by what contacts take, but by what nothing
-stops."""
+KEPT = 2.0**-10
+"""Where the last rounds change velocities alike, but for this part, gaps close because nothing stops what closes them."""
 
 STEADY = 1.005
 """Ratios of rounds that differ by no more than this factor are one; near the critical restitution they drift by more."""
@@ -64,7 +63,7 @@ class Rounds(NamedTuple):
     disks: those that meet at the last instant.  number: how many rounds followed each other ever faster.  ratio: how long the
     last ones took, each in terms of the one before; nan where there were none.  first, last: the longest and the shortest.
     ends_now: whether a series with this ratio is over within what the clock can tell.  steady: whether the ratio has settled.
-    slackens: whether speeds fall from round to round; elsewhere something closes in.
+    kept_up: whether the last ones change velocities alike.
     """
 
     disks: list[int]
@@ -74,7 +73,7 @@ class Rounds(NamedTuple):
     last: float
     ends_now: bool
     steady: bool
-    slackens: bool
+    kept_up: bool
 
 
 def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -> tuple[str, str] | None:
@@ -107,20 +106,19 @@ def _of_an_instant(rows: Rows, disks: list[int], stage: Stage, time: float) -> t
     last, before = mine[-1], mine[:-1]
     same = (before["a"] == last["a"]) & (before["b"] == last["b"]) & (before["wall"] == last["wall"])
     ratio = float(last["impulse"] / before["impulse"][same][-1])
-    what, remedy = _called(disks, stage, slackens=ratio <= 1.0 - LEAST_FALL)
+    what, remedy = _called(disks, stage, abs(ratio - 1.0) < KEPT)
     return "collapse", (
         f"{what} of {named(disks)} at time {time:.9g}: contacts at that instant, in rounds of which each has "
         f"{ratio:.3g} of the impulses of the one before, and there is no end of them; {remedy}"
     )
 
 
-def _called(disks: list[int], stage: Stage, slackens: bool) -> tuple[str, str]:
-    """What a series is called, and what is left to do; slackens: whether speeds fall from round to round.
+def _called(disks: list[int], stage: Stage, kept_up: bool) -> tuple[str, str]:
+    """What a series is called, and what is left to do; kept_up: whether speeds stay what they are from round to round.
 
-    Where they do not, and one of the disks deflects no other, or is deflected by none, contacts take nothing that could end it.
+    So they do between disks that are not deflected: there the contacts take no motion, it is the room that goes.
     """
-    uneven = stage.mass is not None and np.any(np.isinf(stage.mass[disks]) | (stage.mass[disks] == 0.0))
-    if uneven and not slackens:
+    if kept_up and stage.mass is not None and np.any(np.isinf(stage.mass[disks]) | (stage.mass[disks] == 0.0)):
         return "contacts without end", "speeds do not fall: one is squeezed between others, or walls, that it cannot deflect"
     return "inelastic collapse", stage.law.remedy()
 
@@ -148,7 +146,7 @@ def _of_rounds(rounds: Rounds, stage: Stage, time: float, collapses: bool) -> tu
     series = (
         f"{rounds.number} rounds of contacts, the last ones each {rounds.ratio:.3g} times as long as the one before"
     )
-    what, remedy = _called(rounds.disks, stage, rounds.slackens)
+    what, remedy = _called(rounds.disks, stage, rounds.kept_up)
     if collapses:
         if rounds.last * rounds.ratio <= (1.0 - rounds.ratio) * SEEN * abs(time):
             return "collapse", f"{what} of {names} at time {time:.9g}: {series}; {remedy}"
@@ -209,18 +207,17 @@ def _rounds(disks: list[int], rows: Rows, lengths: Floats, period: int, end: flo
             if counts[k] > best:
                 best, last = counts[k], k
     if best < 2 * period:
-        return Rounds(disks, best // period, math.nan, math.nan, math.nan, False, False, True)
+        return Rounds(disks, best // period, math.nan, math.nan, math.nan, False, False, False)
     series = lengths[last + 1 - best : last + 1]
     ratio = _ratio(series, period, clean * float(lengths[last:].min()))
     ends_now = float(series[-1]) * ratio <= (1.0 - ratio) * 2.0 * end
-    slackens = _slackens(rows[: last + period + 1], period, best // period)
+    kept_up = _is_kept_up(rows[: last + period + 1], period, min(best // period, LAST_ROUNDS))
     first, final = float(series[0]), float(series[-1])
-    return Rounds(disks, best // period, ratio, first, final, ends_now, _is_steady(series, period), slackens)
+    return Rounds(disks, best // period, ratio, first, final, ends_now, _is_steady(series, period), kept_up)
 
 
-def _slackens(rows: Rows, period: int, rounds: int) -> bool:
-    """Whether what the last rounds do to velocities becomes less."""
-    rounds = min(rounds, LAST_ROUNDS)
+def _is_kept_up(rows: Rows, period: int, rounds: int) -> bool:
+    """Whether the last round changes velocities as much as one some rounds before."""
     before: dict[int, tuple[float, float]] = {}
     changes = np.zeros(len(rows))
     for k, row in enumerate(rows):
@@ -230,7 +227,7 @@ def _slackens(rows: Rows, period: int, rounds: int) -> bool:
                 changes[k] = max(changes[k], math.dist(after, before.get(int(i), after)))
                 before[int(i)] = after
     now, then = (float(changes[end - period : end].sum()) for end in (len(rows), len(rows) - rounds * period))
-    return now <= then * (1.0 - LEAST_FALL) ** rounds
+    return abs(now - then) < KEPT * then
 
 
 def _is_steady(series: Floats, period: int) -> bool:
