@@ -131,6 +131,13 @@ def test_what_is_no_number_is_told_where_a_law_first_returns_it(laws, wrong):
     assert f"with the approach 4, returns {wrong}: that is no number that a contact can have" in run.reason
 
 
+def test_a_whole_number_that_is_too_large_is_told(laws):
+    (laws / "laws.py").write_text("def law(approach):\n    return 10 ** (100 * int(approach))\n")
+    run = es.simulate(named(laws, "law"), until=2.0, engine="reference")
+    assert run.stopped == "law"
+    assert "with the approach 4, fails: OverflowError: int too large" in run.reason
+
+
 @pytest.mark.parametrize("engine", ["reference", "fast"])
 @pytest.mark.parametrize("wrong", ["1.0 / (approach - approach)", "-2.0"])
 def test_what_happened_before_a_law_fails_is_in_its_log(laws, wrong, engine, tmp_path):

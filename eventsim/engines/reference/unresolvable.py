@@ -97,12 +97,13 @@ def lawful(stage: Stage, law: Own, event: Event, since_a: Real, since_b: Real, a
     try:
         share = law.restitution(stage.usual(event.a, event.b), since_a, since_b, approach, mass)
         wrong = wrong_share(share)
+        come = 0.0 if wrong else share * approach
     except FAILS as error:
         raise UnlawfulError(f"{at} fails: {told(error, law.own.file)}") from None
     if wrong is not None:
         raise UnlawfulError(f"{at} returns {share!r}: that {wrong}")
-    if outruns_clock(share * approach, event.time, stage.extent):
-        begun, come = np.hypot(stage.vx, stage.vy).max(), share * approach
+    if outruns_clock(come, event.time, stage.extent):
+        begun = np.hypot(stage.vx, stage.vy).max()
         raise OutrunError(
             f"{at} returns {share!r}: speeds, at the start up to {begun:.3g}, come to {come:.3g}, for which the clock of this "
             "scene is too coarse (see whether the law gives energy); a scene that begins from this state has a finer one"
