@@ -68,7 +68,7 @@ def gripped(
     return ua + one * dy, wa - one * dx, ub - other * dy, wb + other * dx
 
 
-def heated_spin(other: float, temperature: float, mass: float, radius: float, moment: float) -> float:
+def heated_spin(other: float, temperature: float, mass: float, radius: float, moment: float) -> Real:
     """The spin behind a wall that heats: `other` times the root of kT / I."""
     return other * sqrt(temperature / (moment * mass * (radius * radius)))
 
