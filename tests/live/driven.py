@@ -4,12 +4,16 @@ import time
 from urllib.request import urlopen
 
 import numpy as np
+import pytest
 
 CLOSE = 1e-9
 """Of the scene's size: the bound that positions keep; what is reached is nearer to 1e-13."""
 
 PATIENT = 90
 """Seconds for what takes one on a machine that does nothing else."""
+
+SIZES = [(1280, 800), *(pytest.param(size, marks=pytest.mark.slow) for size in ((844, 390), (390, 844)))]
+"""A screen, and a phone held both ways, which is left to the slow tests."""
 
 
 class Page:

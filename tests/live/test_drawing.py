@@ -4,13 +4,10 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from tests.live.driven import Page
+from tests.live.driven import SIZES, Page
 from tests.show.browser import said
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
-
-SIZES = [(1280, 800), *(pytest.param(size, marks=pytest.mark.slow) for size in ((844, 390), (390, 844)))]
-"""A screen, and a phone held both ways: these are left to the slow tests, but for drawing itself."""
 
 EVERY_SIZE = pytest.mark.parametrize("page", [(1280, 800), (844, 390), (390, 844)], indirect=True, ids="{0[0]}x{0[1]}".format)
 

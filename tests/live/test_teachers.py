@@ -2,16 +2,20 @@
 
 import pytest
 
-from tests.live.driven import Page
+from tests.live.driven import SIZES, Page
 from tests.show.browser import said
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed (the extra live brings it)")
 
 
+EVERY_SIZE = pytest.mark.parametrize("page", SIZES, indirect=True, ids="{0[0]}x{0[1]}".format)
+
+
 @pytest.fixture
-def page(chromium, address):
-    chromium.set_window_size(1280, 800)
+def page(request, chromium, address):
+    chromium.set_window_size(*getattr(request, "param", (1280, 800)))
     yield Page(chromium, address)
+    chromium.set_window_size(1280, 800)
     assert said(chromium) == []
 
 
@@ -19,6 +23,7 @@ def key_on_page(page, name):
     page.js("document.body.dispatchEvent(new KeyboardEvent('keydown', {key: arguments[0], bubbles: true}))", name)
 
 
+@EVERY_SIZE
 def test_times_one_is_real_time(page):
     page.open("gallery=galperin")
     key_on_page(page, "1")
@@ -34,6 +39,7 @@ def test_times_one_is_real_time(page):
     assert (end[1] - begin[1]) == pytest.approx((end[0] - begin[0]) / 1000, abs=0.3)
 
 
+@EVERY_SIZE
 def test_a_throw_is_undone_and_reset_forgets_it(page):
     page.open("count=5&speed=100&packing=0.05&seed=3")
     start = page.js("live.player.seek(0); return live.player.state()")
@@ -109,12 +115,34 @@ def test_a_question_mark_shows_the_keys(page):
     page.press("help")
 
 
+@pytest.mark.slow
+@EVERY_SIZE
+def test_the_page_fills_the_screen_and_leaves_it_again(page):
+    page.open("count=5")
+    page.js("live.root.addEventListener('fullscreenchange', () => { window.changed = (window.changed || 0) + 1; })")
+    full = page.driver.find_element("css selector", "[data-part=full]")
+    full.click()
+    page.wait("document.fullscreenElement === live.root && window.changed === 1")
+    edges = "const b = live.part('canvas').getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom]"
+    left, top, right, bottom = page.js(edges)
+    width, height = page.js("return [innerWidth, innerHeight]")
+    assert left >= 0
+    assert top >= 0
+    assert right <= width
+    assert bottom <= height
+    assert max((right - left) / width, (bottom - top) / height) > 0.5
+    full.click()
+    page.wait("document.fullscreenElement === null && window.changed === 2")
+
+
+@EVERY_SIZE
 def test_equal_disks_have_colours_of_their_own(page):
     page.driver.get("about:blank")
     page.open("count=6&masses=equal")
     assert page.js("return live.player.view.colour") == "index"
 
 
+@EVERY_SIZE
 def test_a_link_whose_world_is_gone_says_so(page):
     page.open("world=00000000")
     page.wait("!live.part('notice').hidden")
