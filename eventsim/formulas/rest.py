@@ -208,6 +208,15 @@ def rebound(nx: Real, ny: Real, u: Real, w: Real, speed: Real) -> tuple[Real, Re
     return u - share * nx, w - share * ny
 
 
+def border_size(x: Real, both: Real, target: Real, as_at_start: Any) -> Real:
+    """The coordinates that a gap to a wall of the domain, which keeps x at `target`, may have been rounded with.
+
+    both: the sum of the disk's coordinates.  as_at_start: whether it flies as the scene says, whose places are good to the last
+    bits of both.  Behind a contact the gap is known to the last bits of x, and a disk that falls from there bounces.
+    """
+    return (both if as_at_start else abs(x)) + abs(target)
+
+
 def border_contact(
     supports: Sequence[Support | None] | None,
     held: Held | None,
@@ -224,7 +233,7 @@ def border_contact(
 ) -> tuple[Real, int]:
     """(delay, STRUCK or SUPPORTED) of the next event at a wall of the domain that keeps a coordinate at `target`.
 
-    size: the coordinates that matter for rounding.  supports: None in a scene without rest.  since: see `rest_delay`.
+    size: `border_size`.  supports: None in a scene without rest.  since: see `rest_delay`.
     """
     if supports is not None:
         if held is not None and held.place == place and held.how == SUPPORTED:

@@ -340,10 +340,11 @@ class _Judge:
         return at_once and rest.kind == REST and wall not in rest.walls and time <= rest.time
 
     def _early_rest(self, i: int, wall: str, number: int) -> Row | None:
-        """The rest at the end of the series of bounces that this disk is in, if the series may be ended here."""
+        """The rest that ends the series that this disk is in, or begins by a bounce in doubt, if it may end here."""
         rows = self.mine[i]
         last = rows[self.place[i] - 1] if self.place[i] else None
-        if last is None or last.flight == 0.0 or last.flight > CUT * last.floor:
+        first = rows[self.place[i]]
+        if not (last is not None and _is_cut(last)) and not (_is_cut(first) and self._is_in_doubt(first)):
             return None
         for place in range(self.place[i], len(rows)):
             row = rows[place]
@@ -488,6 +489,11 @@ class _Judge:
                     f"disk {i}: velocity {tuple(seen.velocity[i])} at the end, true {_floats(part.velocity)}, off by {wrong:.3g}",
                     total,
                 )
+
+
+def _is_cut(row: Row) -> bool:
+    """Whether a series of bounces may be ended behind this one."""
+    return 0.0 < row.flight <= CUT * row.floor
 
 
 def _place_of(row: Row, rows: Sequence[Row]) -> int:

@@ -5,6 +5,8 @@ Kernels predict it; what then happens is rare, and left to the reference engine'
 
 from __future__ import annotations
 
+import math
+
 from eventsim.engines.fast.advance import place, pulls, speed
 from eventsim.engines.fast.compiled import inline, part, real, word
 from eventsim.engines.fast.last_contact import side_met
@@ -54,6 +56,7 @@ from eventsim.formulas.rest import (
     NOT_LAST,
     STRUCK,
     SUPPORTED,
+    border_size,
     free_border_contact,
     hop_on_face_delay,
     launch,
@@ -190,7 +193,8 @@ def border_contact(m, rules, i, place, side, target, x, v, g):
     t = real(m.disks, f + T)
     if rests(m, i) and word(m.disks, i * WORDS + MET) == -1 - place:
         return NEVER, STRUCK
-    size = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y)) + abs(target)
+    both = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y))
+    size = border_size(x, both, target, real(m.disks, f + CONTACT_TIME) == -math.inf)
     restitution, since = _share_of_series(m, rules, place, m.shares), _since_met(m, i, place)
     delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, since)
     if how == SUPPORTED and is_cornered(

@@ -14,7 +14,7 @@ from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
 from eventsim.formulas.real import NEVER, Real
-from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, border_contact, held_by, shape_contact
+from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, border_contact, border_size, held_by, shape_contact
 from eventsim.formulas.walls.shape import Shape
 from eventsim.scene.corners import is_cornered
 from eventsim.scene.stage import Stage
@@ -185,7 +185,7 @@ class Predictor:
         if state.supports is None or rank == WRAP:
             delay, how = crossing_delay(x[i], v[i], g[i], target, -step), STRUCK
         else:
-            size = abs(state.x[i]) + abs(state.y[i]) + abs(target)
+            size = border_size(x[i], abs(state.x[i]) + abs(state.y[i]), target, state.is_as_at_start(i))
             held, e = held_by(state.met[i]), self._series[place]
             since = state.since_met(i, -1 - place)
             delay, how = border_contact(
