@@ -47,12 +47,14 @@ def _ahead(scene: str, those: list[Advantage]) -> str:
     if reached:
         nearest = min(reached, key=lambda a: a.time_ratio)
         if nearest.time_ratio < 1.0:
-            return f"On the {scene} {nearest.label}: event-driven takes {amount(1.0 / nearest.time_ratio)} x its time."
-        return f"Event-driven: on the {scene} the next, {nearest.label}, takes {amount(nearest.time_ratio)} x the time."
+            return f"On {scene} {nearest.label}: event-driven takes {amount(1.0 / nearest.time_ratio)} x its time."
+        return f"Event-driven: on {scene} the next, {nearest.label}, takes {amount(nearest.time_ratio)} x the time."
     most = max((a.time_ratio for a in those if a.bound == ">"), default=math.nan)
     if math.isnan(most):
-        return f"None of them reaches it on the {scene}."
-    return f"Event-driven: on the {scene} no other reached it in up to {amount(most)} x the time."
+        return f"None of them reaches it on {scene}."
+    if most < 1.0:
+        return f"Event-driven: on {scene} no other reached it in the time that it was given."
+    return f"Event-driven: on {scene} no other reached it in up to {amount(most)} x the time."
 
 
 def _steps(chart: Chart) -> Answer | None:
@@ -93,7 +95,7 @@ def _stepped_wins(chart: Chart) -> Answer | None:
         none = "Not on this scene." if len(chart.tasks) == 1 else "On none of these scenes."
         return Answer(question, none) if advantages(chart) else None
     win = max(wins, key=lambda one: one.ratio)
-    return Answer(question, f"Where contacts last: on the {win.scene} {win.label} comes to rest {amount(win.ratio)} x sooner.")
+    return Answer(question, f"Where contacts last: on {win.scene} {win.label} comes to rest {amount(win.ratio)} x sooner.")
 
 
 class Win(NamedTuple):

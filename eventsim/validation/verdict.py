@@ -65,16 +65,15 @@ def whole_from(comparison: Comparison) -> tuple[list[Line], list[Line]]:
 
 def _complete(comparison: Comparison) -> list[str]:
     good, bad = whole_from(comparison)
-    whole = [f"{line.label} at {line.step:.2g} ({line.elapsed / comparison.exact.elapsed:.2g} x the time)" for line in good]
-    never = [f"{line.label} ({line.census.share(line.census.found):.1%} at {line.step:.2g})" for line in bad]
-    sentences = []
-    if whole:
-        sentences.append(
-            f"{ALL:.0%} of the contacts, in radii a step and against the time of the event-driven run: {', '.join(whole)}."
-        )
-    if never:
-        sentences.append(f"Not with any of these steps: {', '.join(never)}.")
-    return sentences
+    whole = [
+        f"{line.label} finds {ALL:.0%} of the contacts from {line.step:.2g} radii a step on, "
+        f"in {line.elapsed / comparison.exact.elapsed:.2g} x the time of the event-driven run."
+        for line in sorted(good, key=lambda line: line.elapsed)
+    ]
+    never = [
+        f"{line.label} finds {line.census.share(line.census.found):.1%} at most, at {line.step:.2g} radii a step." for line in bad
+    ]
+    return whole + never
 
 
 def _stuck(comparison: Comparison) -> list[str]:

@@ -322,11 +322,11 @@ def test_each_question_is_answered_with_numbers_of_the_chart(gas):
     chart = a_chart()
     chart.losses = gas
     engine, steps, energy, float64, wins = (answer.answer for answer in conclusions(chart))
-    assert engine == "Event-driven: on the gas the next, stepped, takes 10 x the time."
+    assert engine == "Event-driven: on gas the next, stepped, takes 10 x the time."
     assert "radii a step every engine loses more than 1 in 100" in steps
     assert energy.startswith("Lost contacts: ")
     assert "After 30 contacts of each disk" in float64
-    assert "on the pile penalty comes to rest 5 x sooner" in wins
+    assert "on pile penalty comes to rest 5 x sooner" in wins
 
 
 def test_a_chart_without_stepped_engines_answers_nothing():

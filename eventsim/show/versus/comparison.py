@@ -29,6 +29,8 @@ AROUND = 3.0
 FAR = 10.0
 """Per cent: where a pressure is off by more, a scale that is logarithmic beyond 1 per cent shows the others as well."""
 
+AGAINST = "against event-driven [%]"
+
 EXACT_ANGLE = 1e-3
 """Degrees: angles that are wrong by less are drawn here."""
 
@@ -40,7 +42,12 @@ def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> None:
     figure.suptitle(as_written(title), fontsize=13, x=0.01, ha="left", color=LIGHT.ink)
     grid = figure.subplots(2, 3)
     draw_missed(grid[0, 0], comparison)
-    draw_energy(grid[0, 1], comparison)
+    if any(line.energy is not None for line in comparison.lines):
+        draw_energy(grid[0, 1], comparison)
+    else:
+        bias = "Bias of the rate of contacts"
+        _panel(grid[0, 1], comparison, lambda line: 100.0 * line.rate, AGAINST, bias)
+        grid[0, 1].axhline(0.0, color=LIGHT.ink, lw=0.9)
     check = min(FITTED, len(comparison.checks) - 1)
     title = "Positions after two contacts a disk"
     _panel(grid[0, 2], comparison, lambda line: line.errors[check], "position error [diameters]", title, log=True)
@@ -48,7 +55,7 @@ def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> None:
     _panel(angles, comparison, _angle, "mean error [degrees]", "Deflection angles of found contacts", log=True)
     if any(_angle(line) == EXACT_ANGLE for line in comparison.lines):
         note(angles, f"{EXACT_ANGLE:g} or less", (0.0, EXACT_ANGLE), ACROSS, (4, 6))
-    _panel(pressure, comparison, lambda line: 100.0 * line.pressure, "against event-driven [%]", "Bias of the pressure (virial)")
+    _panel(pressure, comparison, lambda line: 100.0 * line.pressure, AGAINST, "Bias of the pressure (virial)")
     pressure.axhline(0.0, color=LIGHT.ink, lw=0.9)
     if any(100.0 * abs(line.pressure) > FAR for line in comparison.lines):
         pressure.set_yscale("symlog", linthresh=1.0)

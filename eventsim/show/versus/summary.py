@@ -37,7 +37,7 @@ TEXT_SHARE, LETTERS, QUESTION_LETTERS, LINE = 0.25, 42, 34, 0.0235
 """The column of answers: its share of the width, letters in a line of an answer and of a question, the height of a line as a
 share of the page."""
 
-UNKNOWN = ">: not reached in so much; <: event-driven did not; -: no run so short"
+UNKNOWN = ">: not reached in so much; -: no run so short\n<: the event-driven engine did not come to this error"
 """What the signs in the table mean."""
 
 TABLE_AT = (0.05, 0.47, 0.73)
