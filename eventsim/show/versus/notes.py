@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from eventsim.show.palette import LIGHT
 
-ABOVE = 6
+ABOVE = 7
 """Where notes lie: above all curves, which end at their backs."""
 
 TITLE_LETTERS = 38

@@ -42,7 +42,7 @@ TABLE_TITLE = (
     "as multiples (>: never came to that error; <: event-driven did not; -: even its coarsest run takes longer)"
 )
 
-TABLE_LETTERS = {1: 76, 2: 105}
+TABLE_LETTERS = {1: 76, 2: 112}
 """In a line of its title, by the panels in whose place it stands."""
 
 Draw = Callable[[Axes], None]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +15,7 @@ from eventsim.show.palette import LIGHT
 from eventsim.show.versus.colours import look
 from eventsim.show.versus.notes import ACROSS, note, panel_title
 from eventsim.validation.advantages import (
+    OWN,
     WANTED,
     Advantage,
     advantages_on,
@@ -29,6 +31,9 @@ ERRORS = {
     "pressure": "relative error of the pressure (virial)",
     "unrest": r"unrest: overlap [d] or speed [$\sqrt{gd}$]",
 }
+BESIDE = 9
+"""Points from an arrow to its words: half a star, and some more."""
+
 ARROW = "#333333"
 SHADE, WON = "#e3e6ea", "#fbe9d7"
 """Backgrounds: what is chance, and where a stepped engine is ahead."""
@@ -39,7 +44,8 @@ def draw_work(axes: Axes, curves: Curves) -> None:
     for name in curves.labels:
         points, alone = curves.of(name), len(curves.of(name)) == 1
         style = look(name).drawn(13 if alone else 5)
-        axes.plot([p.elapsed for p in points], [p.error for p in points], lw=1.3, zorder=5 if alone else 3, **style)
+        above = 3 if not alone else 5 + (name == OWN[0])  # on small scenes engines share a place
+        axes.plot([p.elapsed for p in points], [p.error for p in points], lw=1.3, zorder=above, **style)
         bars = [p for p in points if math.isfinite(p.least)]
         across, up = (
             [[middle - low for low, middle, _ in spread], [high - middle for _, middle, high in spread]]
@@ -94,8 +100,7 @@ def _draw_advantages(axes: Axes, curves: Curves) -> None:
         _arrow(axes, (best.elapsed, best.error), (best.elapsed, best.error * nearest.error_ratio))
         middle = math.sqrt(best.error * best.error * nearest.error_ratio)
         text = f"equal time: the next\nerrs {amount(nearest.error_ratio)} x as much"
-        right = _is_right(axes, best.elapsed)
-        note(axes, text, (best.elapsed, middle), offset=(-6 if right else 6, 0), va="center", ha="right" if right else "left")
+        note(axes, text, (best.elapsed, middle), va="center", **_beside(axes, best.elapsed, 0))
     axes.axhline(wanted, color=ARROW, lw=0.8, ls=(0, (4, 3)), zorder=1)
     note(axes, f"{wanted:g}", (0.0, wanted), ACROSS, (3, 3))
     _draw_time(axes, found, time_at(own, wanted), wanted)
@@ -109,14 +114,14 @@ def _draw_time(axes: Axes, found: list[Advantage], mine: float, wanted: float) -
         nearest = min(reached, key=lambda a: a.time_ratio)
         _arrow(axes, (mine, wanted), (mine * nearest.time_ratio, wanted))
         text = f"equal error:\n{amount(nearest.time_ratio)} x the time"
-    right = _is_right(axes, mine)
-    note(axes, text, (mine, wanted), offset=(-6 if right else 6, -4), ha="right" if right else "left", va="top")
+    note(axes, text, (mine, wanted), va="top", **_beside(axes, mine, -4))
 
 
-def _is_right(axes: Axes, elapsed: float) -> bool:
-    """Whether a place is so far to the right that words beside it would leave the panel."""
+def _beside(axes: Axes, elapsed: float, up: float) -> dict[str, Any]:
+    """Where words stand beside an arrow: to its right, or to its left where they would leave the panel; so many points up."""
     low, high = (math.log(value) for value in axes.get_xlim())
-    return math.log(elapsed) > low + 0.65 * (high - low)
+    right = math.log(elapsed) > low + 0.65 * (high - low)
+    return {"offset": (-BESIDE if right else BESIDE, up), "ha": "right" if right else "left"}
 
 
 def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
