@@ -217,6 +217,7 @@ class SavedSimulation:
     counters: Counters
     rows: int
     time: float | None
+    ended: tuple[str, str] | None
 
 
 class Simulation:
@@ -258,6 +259,7 @@ class Simulation:
         self._blocks: list[Rows] = []
         self._time: float | None = None
         self._broken_off = False
+        self._ended: tuple[str, str] | None = None  # why it cannot go on: a word, a sentence
         self._in_memory = isinstance(log, bool)
         if log is False:
             raise EventsimError("a simulation that is stepped through keeps its log: log=True, or a path")
@@ -279,7 +281,7 @@ class Simulation:
         """Complete the files of the log and of the checkpoint; there is no going on after it.  Without files it does nothing."""
         if self._keeping is not None and not self._closed:
             self._closed = True
-            self._keeping.close(self._session)
+            self._keeping.close(self._session, self._ending.reason)
 
     def __copy__(self) -> Simulation:
         """A simulation that stands where this one does and goes on by itself.  Raises EventsimError where files are written."""
@@ -318,7 +320,7 @@ class Simulation:
         sink = MemorySink(self._provenance)
         for block in self._blocks:
             sink.write(block)
-        sink.close(Ending(*self._session.clock, "until"))
+        sink.close(self._ending)
         return EventLog(*sink.recorded())
 
     @property
@@ -328,7 +330,7 @@ class Simulation:
 
         log = self.log
         if log.provenance.ending is None:  # a file that grows
-            ended = replace(log.provenance, ending=Ending(*self._session.clock, "until"))
+            ended = replace(log.provenance, ending=self._ending)
             log = EventLog(ended, log.rows)
         return measure(log, self._discard)
 
@@ -340,7 +342,8 @@ class Simulation:
     def step(self) -> Rows:
         """Go to the next event; its row, or the rows of all contacts at that instant.  Empty where no event is ahead.
 
-        Raises CollapseError where contacts follow one another without end; EventsimError after MOST_WRAPS wraps without an event,
+        Raises CollapseError where the simulation cannot go on (contacts follow one another without end, digits have run out, no
+        law tells what a contact does), and again whenever it is asked to; EventsimError after MOST_WRAPS wraps without an event,
         where nobody knows whether one is ahead.
         """
         return self._advance(Stop(events=self._session.counters.events + 1))
@@ -360,9 +363,10 @@ class Simulation:
     def set_velocity(self, disk: int, velocity: tuple[float, float]) -> None:
         """Give a disk another velocity, now: a kick, logged, so that the log still replays.
 
-        Raises EventsimError for a disk that does not exist or a velocity that no disk of a scene may have.
+        Raises EventsimError for a disk that does not exist or a velocity that no disk of a scene may have; CollapseError where
+        the simulation cannot go on.
         """
-        self._demand_whole()
+        self._demand_going()
         vx, vy = point(velocity, f"velocity of disk {disk}")
         if not 0 <= disk < len(self.scene.disks):
             raise EventsimError(f"disk {disk} does not exist; there are {len(self.scene.disks)}, counted from 0")
@@ -377,7 +381,7 @@ class Simulation:
         """A point to come back to."""
         self._demand_whole()
         return SavedSimulation(
-            self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count(), self._time
+            self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count(), self._time, self._ended
         )
 
     def restore(self, saved: SavedSimulation) -> None:
@@ -398,7 +402,7 @@ class Simulation:
         for block in blocks:
             self._blocks.append(block[: max(keep, 0)])
             keep -= len(block)
-        self._time = saved.time
+        self._time, self._ended = saved.time, saved.ended
 
     def _advance(self, stop: Stop) -> Rows:
         before, begun = len(self._blocks), self.time
@@ -416,10 +420,11 @@ class Simulation:
                     f"no event in {MOST_WRAPS} wraps around the domain, up to t = {self.time:g}, and none may be ahead; "
                     "advance_to(time) lets time pass"
                 )
+        self._time = None
         if stopped in ("collapse", "digits", "law"):
             stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
-            raise CollapseError(f"stopped by {stopped}: {reason}")
-        self._time = None
+            self._ended = stopped, f"stopped by {stopped}: {reason}"
+            self._demand_going()
         if stop.until is not None and stopped in ("until", "quiet"):
             self._time = float(stop.until)
         if self.time < begun:  # a quiet end is that of the last flight, which has been passed already
@@ -432,7 +437,7 @@ class Simulation:
 
     def _advanced(self, stop: Stop, budget: int) -> str | None:
         """A stint of the engine, which Ctrl-C may break off."""
-        self._demand_whole()
+        self._demand_going()
         self._broken_off = True
         stopped = self._session.advance(stop, budget)
         self._broken_off = False
@@ -444,6 +449,17 @@ class Simulation:
             raise EventsimError("the simulation is closed: its files are complete; resume() goes on from a checkpoint")
         if self._broken_off:
             raise EventsimError("the simulation was broken off in the middle of an event: restore() a snapshot, or begin anew")
+
+    def _demand_going(self) -> None:
+        """Raise EventsimError also where the run cannot go on: what it stopped at would be passed over."""
+        self._demand_whole()
+        if self._ended is not None:
+            raise CollapseError(self._ended[1])
+
+    @property
+    def _ending(self) -> Ending:
+        """Where it stands, as the end of a log."""
+        return Ending(*self._session.clock, "until" if self._ended is None else self._ended[0])
 
     def _keep(self) -> None:
         rows = unchangeable(self._session.take_rows())

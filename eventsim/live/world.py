@@ -119,10 +119,10 @@ class World:
         """Give a disk a velocity at the time that is shown, and simulate on from there."""
         async with self._changing():
             state = await self._state_at(message.time, message.disk)
-            if len(self.tracks) == 1:
+            if len(self.tracks) == 1 and self.tracks[0].ended is None:
                 self.tracks[0].kick(message.disk, message.velocity)
                 return
-            # Engines that go step by step cannot go back: both begin anew, with the same start.
+            # What has ended does not go on, and engines that go step by step cannot go back: all begin anew, with the same start.
             state.velocity[message.disk] = message.velocity
             await self._begin(self._scene_from(state), self._rate, "throw", self.speed)
 

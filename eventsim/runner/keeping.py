@@ -42,13 +42,13 @@ class Keeping:
             self.log.write(rows)
         self._save(session, None)
 
-    def close(self, session: Session) -> None:
-        """End where the session stands: the log gets its name, and a last checkpoint is written."""
+    def close(self, session: Session, stopped: str) -> None:
+        """End where the session stands, for that reason: the log gets its name, a last checkpoint is written if one may be."""
         if self._checkpoints is not None:
-            self._save(session, "until")
+            self._save(session, stopped)
             self._checkpoints.close()
         if self.log is not None:
-            self.log.close(Ending(*session.clock, "until"))
+            self.log.close(Ending(*session.clock, stopped))
 
     def _save(self, session: Session, stopped: str | None) -> None:
         if self._checkpoints is not None and self._checkpoints.is_due(session.counters.events, stopped):

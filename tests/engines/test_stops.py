@@ -1,6 +1,7 @@
 """What an engine is asked for: when to stop, and from where to go on."""
 
 import math
+from copy import copy
 
 import pytest
 
@@ -107,3 +108,41 @@ def test_kicks_alone_let_no_speeds_sink(engine):
         sim.set_velocity(0, (0.5 * k, 0.25))
     sim.advance_to(1e5)
     assert sim.time == 1e5
+
+
+def giving(restitution, approach, mass):
+    """A law that says nothing of disks of equal mass."""
+    return -1.0 if 0.45 < mass < 0.55 else 1.0
+
+
+def refusing():
+    return es.Scene(es.Disks([(0.5, 0.5), (1.5, 0.5)], [(2.0, 0.0), (0.0, 0.0)], 0.1), es.Box((2.0, 1.0)), law=giving)
+
+
+@pytest.mark.parametrize(
+    ("engine", "scene", "end"),
+    [("auto", refusing(), 0.4), ("reference", refusing(), 0.4), ("reference", "collapse", None), ("fast", "collapse", None)],
+)
+def test_what_has_stopped_a_simulation_stops_it_for_good(engine, scene, end):
+    if engine == "fast":
+        pytest.importorskip("numba")
+    scene = es.gallery(scene, restitution=0.05) if isinstance(scene, str) else scene
+    sim = es.Simulation(scene, engine)
+    sim.advance_to(0.1)
+    begun = sim.snapshot()
+    with pytest.raises(es.CollapseError, match="stopped by") as first:
+        sim.advance_to(9.0)
+    rows, state = len(sim.log), sim.state
+    assert end is None or sim.time == pytest.approx(end)
+    assert sim.log.provenance.ending.reason in ("collapse", "law")
+    asked = (sim.step, lambda: sim.advance_to(9.5), lambda: sim.set_velocity(0, (0.0, 1.0)), copy(sim).step)
+    for ask in asked:
+        with pytest.raises(es.CollapseError) as again:
+            ask()
+        assert str(again.value) == str(first.value)
+    assert (len(sim.log), sim.time, sim.state.position.tolist()) == (rows, state.time, state.position.tolist())
+    sim.restore(begun)
+    sim.set_velocity(0, (0.0, 0.0))
+    sim.set_velocity(1, (0.0, 0.0))
+    sim.advance_to(0.2)
+    assert sim.time == 0.2
