@@ -7,7 +7,7 @@ import click
 from eventsim.cli.options import drawable, json_option, quiet_option, scene_options
 from eventsim.cli.output import say, say_data
 from eventsim.cli.source import stop_options
-from eventsim.show.figures import TITLES
+from eventsim.kinds import TITLES
 
 HELP = """Draw a figure of the run that LOG tells, or of SCENE, simulated now.
 

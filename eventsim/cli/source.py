@@ -131,6 +131,8 @@ def seeded_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene
         return built_in_scene(scene, settings, seed)
     if Path(scene).exists():
         raise SceneError(f"{scene}: a scene file ends in {' or '.join(suffixes.SCENES)}")
+    if files := [scene + suffix for suffix in suffixes.SCENES if Path(scene + suffix).exists()]:
+        raise SceneError(f"{scene!r} is no built-in scene, but {files[0]} is here: write the name of the file with its end")
     raise SceneError(
         f"{scene!r} is neither a scene file ({', '.join(suffixes.SCENES)}) nor a built-in scene"
         f"{did_you_mean(scene, names())}; eventsim gallery lists the built-in ones"

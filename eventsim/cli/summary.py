@@ -119,6 +119,8 @@ def trust_words(trust: Trust) -> str:
         )
     if trust.reason is not None:
         return f"no estimate of how long positions hold: {trust.reason}"
+    if trust.error == 0.0:
+        return "positions hold to their last digits until the end: nothing was met"
     grown = ", and errors grow as a power of time" if trust.gentle else ""
     return f"positions hold to {trust.error:.0e} of the smallest reach until the end{grown}"
 

@@ -244,8 +244,8 @@ class Inelastic(Law):
 
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts."""
-        then = "contacts may pile up at an instant, then the run stops and says so (contact_duration avoids it)"
-        return f"{super().words(number)}; {then}"
+        then = "contacts may pile up at an instant: who lies on a wall rests then, else the run stops and says so"
+        return f"{super().words(number)}; {then} (contact_duration avoids it)"
 
 
 class TimeOfContact(Law):

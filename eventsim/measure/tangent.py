@@ -43,6 +43,7 @@ class Passed(NamedTuple):
         lags: time since the row before of each; inf where there was none.
         shift: how much later a neighbour meets; 0.0 where nothing approached.
         joint: whether it is one of several contacts at one instant.
+        met: what each of the disks met: another disk, or -1 - wall.
     """
 
     event: int
@@ -51,6 +52,7 @@ class Passed(NamedTuple):
     lags: tuple[float, ...]
     shift: Any
     joint: bool
+    met: tuple[int, ...]
 
 
 class Tangent:
@@ -107,10 +109,10 @@ class Tangent:
                 shift = self._pass_pair(a, b, between, (before, (vxa, vya)), (other, (vxb, vyb)), slips)
                 self._velocity[b] = vxb, vyb
                 self._pull[b] = self._fall[b]
-                passed = Passed(event, time, (a, b), (lag, lag_b), shift, joint >= 0)
+                passed = Passed(event, time, (a, b), (lag, lag_b), shift, joint >= 0, (b, a))
             else:
                 shift = self._pass_wall(a, wall, kind, (xa, ya), before, (vxa, vya), slips[0])
-                passed = Passed(event, time, (a,), (lag,), shift, joint >= 0)
+                passed = Passed(event, time, (a,), (lag,), shift, joint >= 0, (-1 - wall,))
             self._velocity[a] = vxa, vya
             self._pull[a] = self._slopes[wall] if kind == Kind.REST else self._fall[a]
             yield passed

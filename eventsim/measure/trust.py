@@ -74,6 +74,7 @@ class TrustLine:
         self._tangent = Tangent(scene, [(0.0, 0.0, 0.0, 0.0)] * n, self._round)
         self._length = smallest_reach(scene)
         self._shift = [0.0] * n
+        self._met: list[int | None] = [None] * n
         draws = np.random.default_rng(SEED).uniform(-LAST_BIT, LAST_BIT, DRAWS).tolist()
         self._draws = [*draws, *draws[:3]]  # four are taken from any place on
         self._drawn = 0
@@ -81,7 +82,7 @@ class TrustLine:
         self._halves = 0.0, 0.0
         self._event: int | None = None
         self._time: float | None = None
-        self._reason = None if self._length < math.inf else "nothing in this scene has a size"
+        self._reason = None if self._length < math.inf else "there is nothing to be met"
         self._reason = law_of_scene(scene).no_tangent or self._reason
 
     def write(self, rows: Rows) -> None:
@@ -144,9 +145,11 @@ class TrustLine:
         if event & (event + 1) == 0:
             self._halves = self._halves[1], self._error
         late = abs(passed.shift)
-        unsure = any(abs(lag) < late + self._shift[i] for i, lag in zip(disks, lags, strict=True))
-        for i in disks:
-            self._shift[i] = late
+        unsure = False
+        for i, lag, met in zip(disks, lags, passed.met, strict=True):
+            # two contacts with the same thing, and nothing between them, have but one order
+            unsure = unsure or (met != self._met[i] and abs(lag) < late + self._shift[i])
+            self._shift[i], self._met[i] = late, met
         if unsure or error > HELD * self._length:
             self._event, self._time = event, passed.time
 

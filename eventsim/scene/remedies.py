@@ -120,6 +120,9 @@ POSTS = ("obstacle", "post", "pin", "peg", "pillar", "scatterer", "bumper")
 ROUND_POST = "a round post is a [[disk]] with mass = inf"
 """How it is said here."""
 
+LEAST_PER_CENT = 2.0
+"""A restitution from here on is meant in per cent."""
+
 NO_WALLS = {
     **dict.fromkeys(("pocket", "hole", "sink", "goal", "exit"), "disks do not vanish: there are no pockets"),
     **dict.fromkeys((*POSTS, "disk", "disc"), ROUND_POST),
@@ -330,7 +333,9 @@ def _of_value(table: str, key: str, value: Any) -> Remedy | None:
         mended = str(value)
     elif key in PAIRS:
         mended = _pair(key, value)
-    elif key == "restitution" and _is_number(value) and 1.0 < value <= 100.0:
+    elif key == "restitution" and _is_number(value) and 1.0 < value < LEAST_PER_CENT:
+        return Remedy("more than 1 would make energy", f"{key} = 1.0")
+    elif key == "restitution" and _is_number(value) and LEAST_PER_CENT <= value <= 100.0:
         return Remedy("it is a part of 1, not per cent", f"{key} = {written(value / 100)}")
     elif isinstance(value, str):
         mended = number_in(value)

@@ -274,10 +274,23 @@ def read_kind(schemas: Mapping[str, Schema], table: object, where: str, problems
     return read_table(schemas[kind], table, where, problems)
 
 
+ABSENT = {
+    "friction": "disks slide without friction; tangential_restitution makes them rough",
+    "drag": "disks fly free: there is nothing to hold them back",
+    "dt": "there is no time step: contacts are computed",
+    "timestep": "there is no time step: contacts are computed",
+    "time_step": "there is no time step: contacts are computed",
+}
+"""Keys that people look for in vain, and what there is instead."""
+
+
 def report_unknown(table: Mapping[Any, object], known: list[str], prefix: str, problems: list[str]) -> None:
     """One problem for each key that is not among the known ones."""
     for key in table:
         if key not in known:
+            if (absent := ABSENT.get(str(key).lower())) is not None:
+                problems.append(f"{prefix}{key}: unknown key ({absent})")
+                continue
             near = get_close_matches(str(key), known, n=1)
             hint = f'did you mean "{near[0]}"?' if near else "known here: " + ", ".join(known)
             problems.append(f"{prefix}{key}: unknown key ({hint})")

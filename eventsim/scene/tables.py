@@ -114,7 +114,7 @@ def _read_parts(data: Mapping[str, Any], base_dir: Path, problems: list[str], ru
         except SceneError as error:
             problems += error.problems
     if "domain" not in data:
-        problems.append("domain is missing: a table with kind and size, as in the scene file's description")
+        problems.append('domain is missing; write: a line [domain], and below it kind = "box" and size = [2.0, 1.0]')
     else:
         values, broken = schema.read_kind(schema.DOMAIN, data["domain"], "domain", problems)
         if not broken:

@@ -3,9 +3,9 @@
 #
 # **Question.** Grains lose energy at every contact. How does a gas of them cool, and can they stop in finite time?
 #
-# **Prediction.** A contact takes a share $(1-e^2)/2$ of what the pair brings along its normal. After s contacts per
-# disk the temperature is $T_0 \exp(-(1-e^2)s/2)$ (Haff). For three disks on a line: can there be infinitely many
-# contacts?
+# **Prediction.** A contact takes the share $1-e^2$ of the energy with which two disks approach each other along their
+# normal, which is $T$ on average. After s contacts per disk, each shared by two, the temperature is
+# $T_0 \exp(-(1-e^2)s/2)$ (Haff). For three disks on a line: can there be infinitely many contacts?
 
 # %%
 import sys

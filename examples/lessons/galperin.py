@@ -54,10 +54,10 @@ print(f"on one circle to 1e-12: {spread < 1e-12}")
 assert spread < 1e-12
 
 # %% [markdown]
-# **Exercise.** Which mass ratio gives five contacts, and why is floor(pi/theta) wrong there?
+# **Exercise.** What is the largest mass ratio with five contacts, and why is floor(pi/theta) wrong there?
 #
 # **Answer.** Ratio 3: $\theta = \arctan(1/\sqrt 3) = \pi/6$, so $\pi/\theta = 6$ exactly. The sixth contact would be
-# one at which the disks move with the same velocity: they do not approach, so it is none.
+# one at which the disks move with the same velocity: they do not approach, so it is none. Beyond 3 it is one.
 
 # %%
 five = es.simulate(es.gallery("galperin", mass_ratio=3)).counters.events

@@ -62,3 +62,13 @@ def test_a_log_of_a_scene_without_a_name_is_called_after_its_file(place):
     path = place / "mine.npz"
     es.simulate(scene, log=True).log.save(path)
     assert title_of(es.load_log(path)) == "mine"
+
+
+def test_a_file_named_without_its_end_and_a_scene_in_place_of_a_log_are_told(place, monkeypatch):
+    monkeypatch.chdir(place)
+    refused = CliRunner().invoke(main, ["check", "two-balls"])
+    assert refused.exit_code == 2
+    assert "two-balls.toml is here" in refused.output
+    refused = CliRunner().invoke(main, ["state", "two-balls.toml", "--at", "1"])
+    assert refused.exit_code == 2
+    assert "eventsim run two-balls.toml --log two-balls.csv" in refused.output

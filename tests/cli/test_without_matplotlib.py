@@ -25,7 +25,7 @@ def log(tmp_path_factory):
     return folder / "a.csv"
 
 
-@pytest.mark.parametrize("words", ["check a.csv", "check gas", "measure a.csv", "state a.csv --at 1", "gallery tie"])
+@pytest.mark.parametrize("words", ["figure --help", "check gas", "measure a.csv", "state a.csv --at 1", "gallery tie"])
 def test_what_draws_nothing_works(log, words):
     done = called(log.parent, *words.split())
     assert done.returncode == 0, done.stderr

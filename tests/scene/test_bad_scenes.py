@@ -15,6 +15,10 @@ BAD = {
         "untill = 3\n" + BOX + DISK,
         [["untill", "unknown key", 'did you mean "until"']],
     ),
+    "a key for what there is not": (
+        "friction = 0.2\n" + BOX + DISK,
+        [["friction", "unknown key", "tangential_restitution"]],
+    ),
     "unknown key of a disk": (
         BOX + DISK + "colour = 3\n",
         [["disk[0].colour", "unknown key", "position, velocity, radius, mass"]],

@@ -10,12 +10,13 @@ from matplotlib.figure import Figure
 
 import eventsim as es
 from eventsim.errors import EventsimError
+from eventsim.kinds import TITLES
 from eventsim.measure import measure
 from eventsim.measure.free_paths import free_paths, path_density
 from eventsim.replay.flight_table import flight_table, flights
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
-from eventsim.show.figures import TITLES, equation_of_state, msd, trajectories
+from eventsim.show.figures import equation_of_state, msd, trajectories
 from eventsim.show.figures.residuals import gaps_at_contact
 from eventsim.show.figures.style import new_figure
 from eventsim.show.figures.write import write_figure

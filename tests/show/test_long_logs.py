@@ -9,8 +9,8 @@ import pytest
 
 import eventsim as es
 from eventsim.errors import EventsimError
+from eventsim.kinds import TITLES
 from eventsim.replay.filed import FiledLog, open_filed
-from eventsim.show.figures import TITLES
 from eventsim.show.figures.marks import Marks
 from eventsim.show.figures.write import write_figure
 from eventsim.show.player import pack

@@ -4,8 +4,8 @@ import pytest
 from matplotlib.text import Text
 
 import eventsim as es
+from eventsim.kinds import TITLES
 from eventsim.show.animate import animate
-from eventsim.show.figures import TITLES
 from eventsim.show.figures.write import write_figure
 from eventsim.show.output import as_written
 

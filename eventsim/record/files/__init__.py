@@ -142,6 +142,8 @@ def _format_of(path: Path) -> Format:
             return parquet.FORMAT
         case "":
             raise LogError(f"{path}: this name has no suffix, and that of a log ends in one of {', '.join(suffixes.LOGS)}")
+        case suffix if suffix in suffixes.SCENES:
+            raise LogError(f"{path} is a scene; eventsim run {path} --log {path.with_suffix('.csv')} writes its log")
         case _:
             known = ", ".join(suffixes.LOGS)
             raise LogError(f"{path}: the suffix {path.suffix!r} names no log format; use one of {known}")

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 
 from eventsim import suffixes
 from eventsim.errors import EventsimError
+from eventsim.kinds import TITLES
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import AnyLog
-from eventsim.show.figures import TITLES
 from eventsim.show.figures.style import SIZE, new_figure
 from eventsim.show.output import suffix_of
 
