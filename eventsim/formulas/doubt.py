@@ -153,6 +153,11 @@ def outruns_clock(speed: Real, time: Real, size: Real) -> Real:
     return not speed * time <= OUTRUN * size
 
 
+def is_too_small(reach: Real, place: Real) -> Real:
+    """Whether places of that size cannot tell on which side two disks of that reach meet: it is below their last bits."""
+    return reach <= BELOW * place
+
+
 def tie_screen(size: float, slowest: float, between: float) -> float:
     """The span of time within which contacts that share a disk are ordered exactly.
 

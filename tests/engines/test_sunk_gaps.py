@@ -190,3 +190,15 @@ def test_what_begins_to_slide_down_a_round_wall_does_not_stand_still(wall, resti
     run = es.simulate(scene, events=1000, engine=engine)
     assert run.stopped == "digits"
     assert run.counters.events < 5
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("restitution", [1.0, 0.8])
+def test_disks_that_meet_below_the_last_bits_of_their_places_end_a_run(restitution, engine):
+    """Where they meet both are at one float place: no normal, so they flew on through each other, or it divided by zero."""
+    places, velocities = [(0.5657428043105057, 4.6), (0.5657428043105057, 3.4)], [(0.0, -1.7), (0.0, 0.2)]
+    for radius, stopped, contacts in ((1e-18, "digits", 0), (1e-14, "until", 1)):
+        scene = es.Scene(es.Disks(places, velocities, radius), es.Box((4.0, 8.0)), restitution=restitution)
+        run = es.simulate(scene, until=1.5, engine=engine)
+        assert (run.stopped, run.counters.events) == (stopped, contacts)
+        assert run.reason is None or "reach of 2e-18 is below the last bits" in run.reason

@@ -12,7 +12,7 @@ from eventsim.engines.fast.layout import OWN_OF_WALL, SUPPORT, SUPPORT_FACE, Rul
 from eventsim.engines.fast.plan import Grids
 from eventsim.engines.fast.shapes import CORNERS, KINDS, WIDTH
 from eventsim.engines.reference.instants import instant_of, stillness_of
-from eventsim.engines.reference.sunk import can_creep, can_sink
+from eventsim.engines.reference.sunk import can_be_too_small, can_creep, can_sink
 from eventsim.formulas.doubt import piled_up
 from eventsim.formulas.laws import Law, Numbers, Own
 from eventsim.formulas.rough import SMOOTH
@@ -56,7 +56,7 @@ def rules_of(stage: Stage) -> Rules:
         *instant_of(stage),
         stillness_of(stage),
         stage.tie_screen,
-        piled_up(stage.law.loss()) if can_sink(stage) or can_creep(stage) else None,
+        piled_up(stage.law.loss()) if can_sink(stage) or can_creep(stage) or can_be_too_small(stage) else None,
         *(None if beta == SMOOTH else beta for beta in stage.law.rough or (SMOOTH, SMOOTH)),
     )
 

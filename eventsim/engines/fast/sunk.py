@@ -10,7 +10,7 @@ from eventsim.engines.fast.compiled import inline, part, real, word
 from eventsim.engines.fast.layout import CONTACT_TIME, RADIUS, REALS, WALL, WORDS, WRAPS_X, WRAPS_Y, T
 from eventsim.engines.fast.pairs import images, shifts
 from eventsim.engines.fast.shapes import is_hollow, wall_normal
-from eventsim.formulas.doubt import is_sunk
+from eventsim.formulas.doubt import is_sunk, is_too_small
 
 WIDER = 2.0
 """How much wider the screen is than the rule, whose numbers it has but for their last bits."""
@@ -51,7 +51,10 @@ def _pair_may_be_sunk(m, rules, i, j, now, sinks):
     shift_x, shift_y = shifts(rules, *images(m, rules, i, j, now, xi, yi))
     dx, dy = (xi - xj) - shift_x, (yi - yj) - shift_y
     reach = real(m.disks, i * REALS + RADIUS) + real(m.disks, j * REALS + RADIUS)
-    size = abs(dx) * max(abs(xi), abs(xj)) + abs(dy) * max(abs(yi), abs(yj)) + reach * reach
+    far_x, far_y = max(abs(xi), abs(xj)), max(abs(yi), abs(yj))
+    if is_too_small(reach, WIDER * max(far_x, far_y)):
+        return True
+    size = abs(dx) * far_x + abs(dy) * far_y + reach * reach
     return is_sunk(-(dx * (ui - uj) + dy * (wi - wj)), now - max(t, other), WIDER * size, sinks, 0.0)
 
 

@@ -2,7 +2,7 @@
 
 A contact that takes energy leaves disks slow and close.  The gap to what comes next is a difference of places.  Once it has sunk
 to their last bits, nobody knows when that contact comes, or whether another one comes first.  Then a run stops.  So it does where
-a disk hops along a round wall lower than that.
+a disk hops along a round wall lower than that, and where two disks meet whose reach is below them.
 """
 
 from __future__ import annotations
@@ -13,13 +13,16 @@ from eventsim.engines.collapse import named
 from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
-from eventsim.formulas.doubt import AT_ONCE, BELOW, SLOWLY, is_sunk, piled_up
+from eventsim.formulas.doubt import AT_ONCE, BELOW, SLOWLY, is_sunk, is_too_small, piled_up
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.post import Post
 from eventsim.scene.stage import Stage
 
 ALONG = 2.0**-20
 """Who approaches a wall at less than this part of its speed moves along it."""
+
+TINY = 2.0**-30
+"""Where all reaches are above this part of the coordinates at the start, no place is so far out that they are below its bits."""
 
 
 class Sunk:
@@ -28,13 +31,15 @@ class Sunk:
     def __init__(self, stage: Stage, state: ExactState) -> None:
         self._stage = stage
         self._state = state
-        self._looks, self._creeps = can_sink(stage), can_creep(stage)
+        self._looks, self._creeps, self._shrinks = can_sink(stage), can_creep(stage), can_be_too_small(stage)
         self._pile, self._slowly = piled_up(stage.law.loss()), SLOWLY * stage.epoch_length
         self._start = list(zip(stage.x.tolist(), stage.y.tolist(), strict=True))
 
     def reason(self, generation: list[Event]) -> str | None:
         """Why contacts of an instant cannot be resolved: a sentence on the first gap below the digits; None where they can."""
         for event in generation:
+            if self._shrinks and event.b >= 0 and (place := self._place_too_small_for(event)) is not None:
+                return self._word_on_reach(event, place)
             if self._looks and (gap := self._gap(event)) is not None:
                 return self._sentence(event, gap)
             if self._creeps and (gap := self._hop(event)) is not None:
@@ -79,6 +84,13 @@ class Sunk:
         if not (is_sunk(approach, lag, size, BELOW, self._slowly) and approach < ALONG * speed):
             return None
         return approach * lag
+
+    def _place_too_small_for(self, event: Event) -> tuple[float, float] | None:
+        """Where two disks meet whose reach is below the last bits of their places; None where it is above them."""
+        state, radius = self._state, self._stage.radius
+        (xa, ya), (xb, yb) = state.place(event.a, event.time), state.place(event.b, event.time)
+        largest = max(abs(xa), abs(ya), abs(xb), abs(yb))
+        return (float(xa), float(ya)) if is_too_small(float(radius[event.a] + radius[event.b]), largest) else None
 
     def _have_just_met(self, event: Event) -> bool:
         """Whether one of two disks remembers their contact, at which its flight began."""
@@ -129,6 +141,14 @@ class Sunk:
             f"contact comes next, and when, float64 cannot tell any more; {self._stage.law.remedy()}"
         )
 
+    def _word_on_reach(self, event: Event, place: tuple[float, float]) -> str:
+        (x, y), (left, low) = place, self._stage.corner
+        reach = float(self._stage.radius[event.a] + self._stage.radius[event.b])
+        return (
+            f"disks {event.a} and {event.b} meet at ({x + left:.6g}, {y + low:.6g}), and their reach of {reach:.2g} is below the "
+            "last bits of places there: on which side, float64 cannot tell; larger disks can be told, points do not meet"
+        )
+
     def _word_on_hops(self, event: Event, gap: float) -> str:
         wall = self._stage.wall_names[self._stage.surfaces[-1 - event.b].wall]
         return (
@@ -146,6 +166,15 @@ def is_hollow(stage: Stage, surface: int) -> bool:
 def can_creep(stage: Stage) -> bool:
     """Whether there are round walls, along which hops may sink below the digits."""
     return any(is_hollow(stage, k) for k in range(len(stage.surfaces)))
+
+
+def can_be_too_small(stage: Stage) -> bool:
+    """Whether there may be two disks whose reach is below the last bits of their places."""
+    if len(stage.radius) < 2:
+        return False
+    one, other = sorted(stage.radius.tolist())[:2]
+    least = one + other or float(min((r for r in stage.radius if r > 0.0), default=math.inf))
+    return bool(least <= TINY * stage.extent)
 
 
 def can_sink(stage: Stage) -> bool:
