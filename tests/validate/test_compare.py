@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 
 import eventsim as es
 from eventsim.cli.program import main
+from eventsim.engines import ENGINES
 from eventsim.engines.stepped.stepped import FixedStepSession
 from eventsim.scene.stage import stage_of
 from eventsim.scene.writing import scene_to_toml
@@ -26,7 +27,7 @@ from eventsim.validation.compare import compare
 from eventsim.validation.competitors import COMPETITORS, able, chosen_competitors
 from eventsim.validation.conclusions import conclusions
 from eventsim.validation.pile import pile, unrest
-from eventsim.validation.precision import Curves, Point, Task, curves
+from eventsim.validation.precision import Curves, Point, Task, _event_driven, curves
 from eventsim.validation.table import chart_rows, comparison_rows, write_csv
 from eventsim.validation.verdict import verdict
 from tests.benchmarks.stopwatches import own_loop
@@ -172,6 +173,17 @@ def test_an_interrupt_leaves_what_was_reached():
     for after, keeps in ((0, True), (1, False)):
         with pytest.raises(KeyboardInterrupt):
             compare(scene, chosen_competitors(["stepped"]), (0.1, 0.05), tell=interrupt(after), keeps=keeps)
+
+
+@pytest.mark.parametrize("compiles", [True, False])
+def test_both_event_driven_engines_are_charted_however_small_the_scene(compiles, monkeypatch):
+    """One that is left out is told."""
+    monkeypatch.setattr("eventsim.validation.precision.has_compiler", lambda: compiles)
+    monkeypatch.setitem(ENGINES, "fast", ENGINES["reference"])  # which needs no time to be loaded
+    found = Curves(Task("two", es.gallery("two-disks"), "trajectory", 6.0))
+    labels = [runner.label for (runner,) in _event_driven(stage_of(found.task.scene), lambda run, session: 0.0, found)]
+    assert labels == ["reference", "fast"][: 1 + compiles]
+    assert [text.partition(":")[0] for text in found.left_out] == ([] if compiles else ["fast is left out"])
 
 
 def interrupt_at(beginning):
