@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from eventsim.validation.advantages import amount
 from eventsim.validation.compare import Comparison, Line
 
 PERFECT_ENERGY = 1e-9
@@ -67,7 +68,7 @@ def _complete(comparison: Comparison) -> list[str]:
     good, bad = whole_from(comparison)
     whole = [
         f"{line.label} finds {ALL:.0%} of the contacts from {line.step:.2g} radii a step on, "
-        f"in {line.elapsed / comparison.exact.elapsed:.2g} x the time of the event-driven run."
+        f"in {amount(line.elapsed / comparison.exact.elapsed)} x the time of the event-driven run."
         for line in sorted(good, key=lambda line: line.elapsed)
     ]
     never = [
