@@ -175,10 +175,13 @@ class Ensemble:
     @cached_property
     def no_temperature(self) -> str | None:
         """Why no run of the scene has a temperature, a clause; None where one may."""
+        return (self.no_equilibrium if self.n else None) or self.no_sharing
+
+    @cached_property
+    def no_sharing(self) -> str | None:
+        """Why in no run of the scene disks share out their energy, a clause; None where they may."""
         if not self.n:
             return "tracers carry no energy"
-        if self.no_equilibrium is not None:
-            return self.no_equilibrium
         if self.n == 1:
             return "one disk shares its energy with nobody"
         if self.drowned:
@@ -190,8 +193,11 @@ class Ensemble:
     @cached_property
     def no_pressure(self) -> str | None:
         """Why no run of the scene has a pressure of its gas, a clause; None where one may."""
-        if self.no_temperature is not None:
-            return self.no_temperature
+        return self.no_temperature or self.no_common_pressure
+
+    @cached_property
+    def no_common_pressure(self) -> str | None:
+        """Why a gas that has a temperature has no pressure that is its own, a clause; None where it has one."""
         if self.scene.gravity is not None:
             return "under gravity it falls with the height"
         if not self.alone:

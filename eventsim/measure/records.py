@@ -258,11 +258,17 @@ class Records:
     @cached_property
     def no_temperature(self) -> str | None:
         """Why there is no temperature, a clause; None where there is one."""
+        lasting = self.ensemble.no_equilibrium if self.ensemble.n and self.moves else None
+        return lasting or self.no_sharing
+
+    @cached_property
+    def no_sharing(self) -> str | None:
+        """Why the disks did not share out their energy, a clause; None where they did, though it may change along the run."""
         ensemble = self.ensemble
         if ensemble.n and not self.moves:
             return "nothing moves"
-        if ensemble.no_temperature is not None:
-            return ensemble.no_temperature
+        if ensemble.no_sharing is not None:
+            return ensemble.no_sharing
         if self.on_a_line is not None:
             return self.on_a_line
         if ensemble.n < FEW and self.shared < FEWEST_CONTACTS:

@@ -15,7 +15,7 @@ from eventsim.measure import sums
 from eventsim.measure.records import Records
 from eventsim.record.events import Floats
 
-PARTS = 32
+PARTS = 64
 """Lines of a series, or fewer where less is known."""
 
 
@@ -27,9 +27,12 @@ class TimeSeries:
         time: at the end of the part, since the start of the run.
         contacts: of a disk with others, since what is discarded, by then.
         energy: kinetic; at `time` where contacts alone change it, else the mean over the part.
-        temperature: kT of that energy; NaN where there is nobody to share it, and below the digits.
-        pressure: over the part, on average over directions; NaN where nothing bounds the gas, and under gravity.
+        temperature: kT of that energy; NaN where disks did not share it out, and below the digits.
+        pressure: over the part, on average over directions: N kT / area, and what contacts carry; NaN where nothing bounds the
+            gas, and under gravity.
         collision_rate: contacts of a disk with others per time, over the part.
+        begin: time where the first part begins.
+        start_energy: kinetic, at `begin`, where contacts alone change it; None: energies are means over parts.
     """
 
     time: Floats
@@ -38,10 +41,18 @@ class TimeSeries:
     temperature: Floats
     pressure: Floats
     collision_rate: Floats
+    begin: float = 0.0
+    start_energy: float | None = None
+
+    @property
+    def ends(self) -> Floats:
+        """The times (K + 1,) between which the parts are."""
+        return np.concatenate([[self.begin], self.time])
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data."""
-        return {field.name: getattr(self, field.name).tolist() for field in fields(self)}
+        """The columns as plain data."""
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: column.tolist() for name, column in columns.items() if isinstance(column, np.ndarray)}
 
 
 def series_of(records: Records) -> TimeSeries:
@@ -73,6 +84,7 @@ def _along_contacts(records: Records) -> TimeSeries:
         np.diff(line[:, sums.POINT_ACTION]) / span,
         span,
         virial,
+        ensemble.start_energy,
     )
 
 
@@ -96,7 +108,14 @@ def _along_time(records: Records) -> TimeSeries:
 
 
 def _series(
-    records: Records, time: Floats, contacts: Floats, energy: Floats, mean_energy: Floats, span: Floats, virial: Floats
+    records: Records,
+    time: Floats,
+    contacts: Floats,
+    energy: Floats,
+    mean_energy: Floats,
+    span: Floats,
+    virial: Floats,
+    start_energy: float | None = None,
 ) -> TimeSeries:
     """Return the series; contacts (K + 1,) at the ends of the parts, the other arrays (K,)."""
     ensemble = records.ensemble
@@ -104,10 +123,13 @@ def _series(
     pressure = kt.copy()
     # after a kick nobody knows what is conserved
     common = ensemble.kept_momenta > 0 or ensemble.angular_momentum is not None
-    if ensemble.n > 1 and records.on_a_line is None and not (ensemble.kicked and common) and not ensemble.falls:
+    if records.no_sharing is None and ensemble.held and not (ensemble.kicked and common) and not ensemble.falls:
         turning = records.turning_at(time)
         kt = np.array([ensemble.temperature(float(e)) for e in energy - turning])
-        if ensemble.area is not None and ensemble.alone and ensemble.scene.gravity is None and not ensemble.turns:
+        if ensemble.no_common_pressure is None and records.pairs > 0.0:
+            assert ensemble.area is not None
             mean = np.array([ensemble.temperature(float(e)) for e in mean_energy - turning])
             pressure = (ensemble.n * mean + 0.5 * virial / span) / ensemble.area
-    return TimeSeries(time, contacts[1:], energy, kt, pressure, np.diff(contacts) / span)
+    rate = np.diff(contacts) / span
+    begin = records.origin if start_energy is None else 0.0  # contacts are counted from the start
+    return TimeSeries(time, contacts[1:], energy, kt, pressure, rate, begin, start_energy)

@@ -50,19 +50,29 @@ def _masses(stage: Stage) -> Floats:
 
 def _energy_change(session: Session, start: Motion, end: Motion) -> float | None:
     """The relative change of the energy; None where contacts, kicks or moving obstacles change it."""
-    stage = session.stage
-    moves = (stage.vx != 0.0) | (stage.vy != 0.0) | (_spin(start) != 0.0)
-    moved = stage.mass is not None and np.any(np.isinf(stage.mass) & moves)
-    if not stage.law.keeps_energy() or session.counters.kicks or moved:
+    if not keeps_energy(session.stage) or session.counters.kicks:
         return None
-    mass = _masses(stage)
-    before, scale = _energy(stage, mass, start)
-    after, _ = _energy(stage, mass, end)
+    return energy_change(session.stage, start, end)
+
+
+def keeps_energy(stage: Stage) -> bool:
+    """Whether neither contacts nor moving obstacles change the energy."""
+    moves = (stage.vx != 0.0) | (stage.vy != 0.0)
+    if stage.spin is not None:
+        moves |= stage.spin != 0.0
+    return stage.law.keeps_energy() and not (stage.mass is not None and bool(np.any(np.isinf(stage.mass) & moves)))
+
+
+def energy_change(stage: Stage, start: Motion, end: Motion) -> float:
+    """By how much the energy of disks of finite mass changed, over the sum of the magnitudes of its terms at the start."""
+    before, scale = _energy(stage, start)
+    after, _ = _energy(stage, end)
     return (after - before) / scale if scale > 0.0 else after - before
 
 
-def _energy(stage: Stage, mass: Floats, motion: Motion) -> tuple[float, float]:
+def _energy(stage: Stage, motion: Motion) -> tuple[float, float]:
     """(energy, sum of the magnitudes of its terms); the potential energy counts from the corner."""
+    mass = _masses(stage)
     terms = [0.5 * mass * speed**2 for speed in (motion.vx, motion.vy)]
     if stage.gravity is not None:
         (gx, gy), (length_x, length_y) = stage.gravity, stage.period

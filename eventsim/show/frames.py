@@ -14,6 +14,7 @@ from eventsim.record.contacts import contacts_of
 from eventsim.record.events import Floats, Rows, State, blank_rows, joined
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Moment, Passage
+from eventsim.scene import Scene
 from eventsim.show.turns import Turns
 
 GLOW = 0.2
@@ -158,12 +159,29 @@ class News:
 
 
 def energy_of(log: AnyLog, state: State) -> float:
-    """Return the energy of the disks of finite mass: m v^2 / 2 - m g x, the origin at (0, 0) of the scene's axes.
-"""
+    """Return the energy of the disks of finite mass, kinetic and potential."""
+    return sum(energies_of(log, state))
+
+
+def energies_of(log: AnyLog, state: State) -> tuple[float, float]:
+    """Return (kinetic energy, that of spins too; potential energy - m g x, 0 at (0, 0)) of the disks of finite mass."""
+    disks, gravity = log.scene.disks, log.scene.gravity
+    mass = np.where(np.isfinite(disks.mass), disks.mass, 0.0)
+    kinetic = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
     if state.spin is not None:
-        return state.energy
-    mass = np.where(np.isfinite(log.scene.disks.mass), log.scene.disks.mass, 0.0)
-    energy = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
-    if log.scene.gravity is not None:
-        energy -= float(mass @ (state.position @ np.array(log.scene.gravity)))
-    return energy
+        kinetic += 0.5 * float((mass * disks.moments()) @ (disks.radius * state.spin) ** 2)
+    potential = 0.0 if gravity is None else -float(mass @ (state.position @ np.array(gravity)))
+    return kinetic, potential
+
+
+def energy_name(scene: Scene) -> str:
+    """Return what `energy_of` is called."""
+    return "kinetic energy" if scene.gravity is None else "kinetic + potential energy"
+
+
+def energy_zero(scene: Scene) -> str | None:
+    """Return where the potential energy is 0, in words; None where there is none."""
+    if scene.gravity is None:
+        return None
+    along = [axis for axis, pull in zip("xy", scene.gravity, strict=True) if pull]
+    return f"0 at {along[0]} = 0" if len(along) == 1 else "0 at (0, 0)"

@@ -63,7 +63,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
         verdict += f", kinetic theory {theory:.4g} ({mean / theory - 1:+.1%})"
     label(
         axes,
-        f"free path [{LENGTH}]",
+        f"way between contacts with other disks, walls passed over [{LENGTH}]",
         f"probability density [per {LENGTH}]",
         f"{name_of(log)}: {verdict}",
     )

@@ -61,16 +61,18 @@ def _draw_displacement(axes: Axes, measures: Measures) -> None:
 def _draw_diffusion(axes: Axes, measures: Measures, log: AnyLog) -> None:
     found = measures.correlations
     slope, error = found.diffusion, found.diffusion_error
+    told = measures.by_name.get("diffusion")
     with np.errstate(invalid="ignore"):
         sure = np.isfinite(slope) & (slope > SURE * error)
+    if told is None or math.isnan(told.value):  # where `measure` has no D there is none at any lag
+        sure[:] = False
     axes.errorbar(found.lag[sure], slope[sure], error[sure], fmt="o", ms=3.5, lw=1, color=BLUE)
     rate = measures.by_name.get("collision_rate")
     if rate is not None and rate.theory is not None:  # a fluid of equal disks
         enskog = enskog_diffusion(measures["temperature"].value, float(log.scene.disks.mass[0]), rate.value)
         axes.axhline(enskog, color=GREEN, lw=1.3, label="Enskog, kT / (m rate)")
         axes.legend(frameon=False)
-    told = measures.by_name.get("diffusion")
     if not sure.any():
-        why = told.doubt if told is not None and math.isnan(told.value) else "it is not known"
+        why = "it has no meaning here" if told is None else told.doubt if math.isnan(told.value) else "it is not known"
         axes.text(0.5, 0.5, f"no D: {why}", transform=axes.transAxes, ha="center", va="center", color="#5b6570")
     axes.set_ylim(0.0, None)

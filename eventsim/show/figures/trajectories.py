@@ -80,7 +80,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
         axes,
         f"x [{LENGTH}]",
         f"y [{LENGTH}]",
-        f"{name_of(log)}: the ways of {which}, {told} (a dot for each disk)",
+        f"{name_of(log)}: the ways of {which}, {told} (dots: the disks at their events)",
     )
     axes.grid(visible=False)
     width, height = sides_of(shown)
