@@ -267,7 +267,8 @@ class World:
 def _scouted(scene: Scene, pace: float | None) -> tuple[Track, float, dict[str, Any], list[PackedColumn]]:
     """Return the track of a scene, its usual speed, and header and columns of the description that a page draws it from."""
     track = Track(scene, "fast" if len(scene.disks) >= MANY and has_compiler() else "reference")
-    track.advance(LEAD_SECONDS * (pace or _usual_speed(scene)), SCOUT_EVENTS)
+    seconds = LEAD_SECONDS if scene.domain.size is not None else SECONDS  # on the open plane the window holds all flights
+    track.advance(seconds * (pace or _usual_speed(scene)), SCOUT_EVENTS)
     replay = Replay(track.log())
     stage = stage_description(replay, replay.span[1])
     x0, y0, x1, y1 = stage["shown"]

@@ -82,6 +82,7 @@ def flights(motion: Motion, until: float | None = None) -> Iterator[FlightTable]
     """
     end = motion.span[1] if until is None else until
     flown = starting(motion)
+    flown = replace(flown, duration=np.maximum(end - flown.time, 0.0))  # a log without rows ends them all
     with closing(motion.log.blocks()) as blocks:
         for rows in blocks:
             told = rows if until is None else rows[rows["time"] <= until]

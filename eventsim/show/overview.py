@@ -1,4 +1,4 @@
-"""What a picture needs to know of a whole log before it is drawn: how fast, how far, how often."""
+"""What a picture needs to know of a whole log before it is drawn: how fast, how often."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.record.contacts import contacts_of
-from eventsim.record.events import Floats
 from eventsim.replay.log import AnyLog
 
 FASTEST_SHARE = 0.98
@@ -23,24 +22,21 @@ class Overview:
     """A log at a glance.
 
     usual: a speed above 0 that `FASTEST_SHARE` of the flights do not pass. fastest: of any. contacts: (N,) of each disk.
-    corners: (2, 2) the least and the largest coordinates of contacts on the scene's axes, (0, 2) without any. falls: whether
-    disks may be faster between their rows than these tell.
+    falls: whether disks may be faster between their rows than these tell.
     """
 
     usual: float
     fastest: float
     contacts: NDArray[np.int64]
-    corners: Floats
     falls: bool
 
 
-def overview_of(log: AnyLog, corner: tuple[float, float]) -> Overview:
-    """Go through a log; corner: what the places of its rows are relative to."""
+def overview_of(log: AnyLog) -> Overview:
+    """Go through a log."""
     disks = log.scene.disks
     speeds = [np.hypot(*disks.velocity.T)]
     fastest, stride, passed = float(speeds[0].max(initial=0.0)), 1, 0
     contacts = np.zeros(len(disks), np.int64)
-    corners = []
     for rows in log.blocks():
         pairs = rows["b"] >= 0
         found = np.concatenate([np.hypot(rows["vxa"], rows["vya"]), np.hypot(rows["vxb"][pairs], rows["vyb"][pairs])])
@@ -51,8 +47,5 @@ def overview_of(log: AnyLog, corner: tuple[float, float]) -> Overview:
             speeds, stride = [np.concatenate(speeds)[::2]], 2 * stride
         met = contacts_of(rows)
         contacts += np.bincount(np.concatenate([met["a"], met["b"][met["b"] >= 0]]), minlength=len(disks))
-        places = np.column_stack([rows["xa"], rows["ya"]])
-        corners += [places.min(axis=0), places.max(axis=0)] if len(rows) else []
     usual = float(np.quantile(np.concatenate(speeds), FASTEST_SHARE)) or fastest or 1.0
-    ends = np.array([np.min(corners, axis=0), np.max(corners, axis=0)]) + corner if corners else np.empty((0, 2))
-    return Overview(usual, fastest, contacts, ends, log.scene.gravity is not None)
+    return Overview(usual, fastest, contacts, log.scene.gravity is not None)

@@ -28,6 +28,7 @@ from eventsim.show.output import name_of
 from eventsim.show.overview import overview_of
 from eventsim.show.palette import DARK, LIGHT
 from eventsim.show.strokes import Trails, arrows, spokes
+from eventsim.show.window import window_of
 
 SMALLEST = 1.5
 """Pixels: the radius at which points, and disks too small to be seen, are drawn."""
@@ -74,9 +75,9 @@ class Picture:
         self._scene = log.scene
         self._palette = DARK if look.dark else LIGHT
         self._radius = log.scene.disks.radius
-        self._overview = overview_of(log, passage.stage.corner)
+        self._overview = overview_of(log)
         self._colouring = colouring_of(look.color, log.scene.disks, self._overview)
-        shown = outlines.shown_rectangle(log.scene, self._overview.corners, _visited(passage, times))
+        shown = window_of(passage, float(times[-1]))
         self.layout = layout(shown, look.size, room)
         width, height = self.layout.size
         self._figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=self._palette.paper)
@@ -178,13 +179,6 @@ class Picture:
         )
         artist.set_capstyle("round")
         self._axes.add_collection(artist, autolim=False)
-
-
-def _visited(passage: Passage, times: Floats) -> Floats:
-    """Where disks are at the first and the last of the times (K, 2), in a domain without an end; else nothing."""
-    if passage.log.scene.domain.size is not None:
-        return np.empty((0, 2))
-    return np.concatenate([state.position for state in passage.states([times[0], times[-1]])])
 
 
 MISPLACED = 0.02

@@ -247,9 +247,9 @@ def test_the_scale_of_speeds_reaches_the_fastest_disk_or_says_that_there_are_fas
     disk = es.Disks([[0.5, 2.1]], radius=0.1)
     scene = es.Scene(disk, es.Box((1.0, 3.0)), gravity=(0.0, -1.0), restitution=0.0)
     fallen = es.simulate(scene, until=3.0, log=True).log
-    assert colouring_of("speed", scene.disks, overview_of(fallen, (0.0, 0.0))).key.beyond
+    assert colouring_of("speed", scene.disks, overview_of(fallen)).key.beyond
     gas = es.simulate(es.gallery("gas", n=50), events=200, log=True).log
-    key = colouring_of("speed", gas.scene.disks, overview_of(gas, (0.0, 0.0))).key
+    key = colouring_of("speed", gas.scene.disks, overview_of(gas)).key
     assert key.beyond == (float(np.hypot(gas.vxa, gas.vya).max()) > key.high)
 
 
@@ -268,6 +268,6 @@ def test_one_event_is_counted_as_one_event():
 def test_a_bar_of_masses_tells_disks_that_have_no_place_on_it():
     disks = es.Disks([(1, 1), (2, 1), (3, 1)], radius=0.2, mass=[1, 3, np.inf])
     run = es.simulate(es.Scene(disks, es.Box((4, 2)), until=1.0), log=True)
-    key = colouring_of("mass", disks, overview_of(run.log, (0.0, 0.0))).key
+    key = colouring_of("mass", disks, overview_of(run.log)).key
     assert (key.low, key.high) == (1.0, 3.0)
     assert [label for label, _ in key.apart] == ["mass inf"]

@@ -29,7 +29,7 @@ MOST_VECTORS = 20_000
 
 
 def draw(figure: Figure, log: AnyLog) -> None:
-    """Draw the energy, or its relative change where contacts keep it, above, the gap of each pair at its contact, in reaches, below."""
+    """Draw the energy, or its change where contacts keep it, above; the gap of each pair at its contact, in reaches, below."""
     passage = passage_with_time(log)
     times = np.linspace(*passage.span, SAMPLES)
     above, below = figure.subplots(2, 1, sharex=True)

@@ -10,11 +10,11 @@ from eventsim.record.events import Kind
 from eventsim.replay.flight_table import flights, together
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
-from eventsim.show import outlines
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label, shades_of
 from eventsim.show.images import wrapped_pieces
 from eventsim.show.output import name_of
+from eventsim.show.window import window_of
 
 MOST_VECTORS = 20_000
 MOST_CONTACTS = 800
@@ -49,7 +49,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
         autolim=False,
     )
     axes.plot(table.time[table.pair], table.place[table.pair, axis], ".", ms=2.5, color="#1b1f24")
-    shown = outlines.shown_rectangle(scene, np.empty((0, 2)), ends.reshape(-1, 2))
+    shown = window_of(passage, until)
     axes.set(xlim=(begin, end), ylim=(shown[axis], shown[axis + 2]))
     if scene.domain.size is not None:
         for edge in (scene.domain.origin[axis], scene.domain.origin[axis] + scene.domain.size[axis]):

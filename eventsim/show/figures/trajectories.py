@@ -19,8 +19,8 @@ from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, SIZE, label, shades_of
 from eventsim.show.images import lines_with_images, wrapped_pieces
 from eventsim.show.output import name_of
-from eventsim.show.overview import overview_of
 from eventsim.show.palette import LIGHT
+from eventsim.show.window import window_of
 
 MOST_DISKS = 16
 """More ways than these cannot be told apart: of larger scenes some disks are drawn, evenly spread over the list."""
@@ -45,7 +45,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
     shades = shades_of(n)
     _, ends, disk = table.pieces()
     ends, disk = wrapped_pieces(ends, disk, scene.domain.period, scene.domain.origin)
-    shown = outlines.shown_rectangle(scene, overview_of(log, passage.stage.corner).corners, ends.reshape(-1, 2))
+    shown = window_of(passage, until)
     figure.set_size_inches(*inches_for(shown))
     axes = figure.add_subplot(aspect="equal")
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]))

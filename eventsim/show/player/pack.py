@@ -36,6 +36,7 @@ from eventsim.show.frames import shown_span
 from eventsim.show.images import lines_with_images
 from eventsim.show.overview import overview_of
 from eventsim.show.palette import DARK, KINDS, LIGHT
+from eventsim.show.window import window_of
 
 SECONDS = 10.0
 """How long a log plays at the speed that the player begins with."""
@@ -137,13 +138,13 @@ def scene_description(stage: Stage) -> dict[str, Any]:
 def stage_description(replay: Replay, last: float) -> dict[str, Any]:
     """Return what the player's drawing needs to know besides the disks; last: a time that the log covers."""
     scene, stage = replay.log.scene, replay.stage
-    overview = overview_of(replay.log, stage.corner)
+    overview = overview_of(replay.log)
     masses = scene.disks.mass[np.isfinite(scene.disks.mass)]
     hard, open_ = outlines.boundary_lines(scene)
     lines = {"walls": lines_with_images(outlines.wall_lines(scene), scene), "hard": hard, "open": open_}
     shades = amounts()(np.linspace(0.0, 1.0, SHADES))
     return {
-        "shown": outlines.shown_rectangle(scene, overview.corners, replay.state_at(last).position),
+        "shown": window_of(replay, last),
         "corner": stage.corner,
         "size": scene.domain.size,
         "period": stage.period,
