@@ -300,6 +300,8 @@ class Ensemble:
     def _places(self) -> Floats:
         """(K, 2) of movers, from where the table is explored."""
         places = self.scene.disks.position[self.movers]
+        if not len(places):
+            return places
         return places[np.unique(np.linspace(0, len(places) - 1, LOOKED_FROM).astype(np.int64))]
 
     def _table(self, radius: float) -> Table | None:

@@ -136,7 +136,8 @@ class Meter:
         if not duration > 0.0:
             raise EventsimError("there is nothing to measure: no time passes in this run")
         if self.discard is not None and self.discard >= duration:
-            raise EventsimError(f"discard = {self.discard!r}: the run lasts {duration!r} only")
+            left_out = f"the first {self.discard!r} are to be left out (discard, or equilibration of the scene)"
+            raise EventsimError(f"the run lasts {duration!r} only, and {left_out}")
         self._waits = waits
         if self._filled:
             self._take(self._block[: self._filled])

@@ -21,6 +21,10 @@ ENDLESS = ("quiet",)
 """Reasons to stop after which the disks fly on: there is no event ahead."""
 
 
+ROUNDING = 2.0**-50
+"""How far beyond its end, as a share of the time, a log may be asked for a time that rounding has moved."""
+
+
 class Motion:
     """The motion that the rows of a full log tell: where its clock stands, and how flights are looked at."""
 
@@ -52,8 +56,10 @@ class Motion:
         ending = self.log.provenance.ending
         if ending is None or ending.reason not in ENDLESS:
             last = self._end()
-            if time > self._clock(*last) and self.windows.place(time) > last:
-                raise LogError(f"there is no state at time {time!r}: the log ends at {self._clock(*last)!r}")
+            end = self._clock(*last)
+            by_rounding = time - end <= ROUNDING * max(abs(time), abs(end))
+            if time > end and not (by_rounding and self.windows.place(time) <= last):
+                raise LogError(f"there is no state at time {time!r}: the log ends at {end!r}")
 
     def _clock(self, window: int, remainder: float) -> float:
         return clock_time(self.windows.start[window], remainder, self.stage.epoch_length, self.stage.start_time)

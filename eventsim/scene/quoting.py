@@ -133,7 +133,8 @@ def _quotes(
         return
     if missing or "needs" in problem.split(":")[1][:8]:
         lacks = f"this table lacks {key}" if key else ""
-        yield quoted(lines[place.line - 1], place.key, lacks, EXAMPLES.get(key or "", ""), f"line {place.line}", True)
+        example = 'kind = "segment"' if table.startswith("wall") and key == "kind" else EXAMPLES.get(key or "", "")
+        yield quoted(lines[place.line - 1], place.key, lacks, example, f"line {place.line}", True)
         return
     told = _remedy(table, key, _table(data, table) if key else data)
     unknown = "unknown key" in problem
@@ -143,7 +144,14 @@ def _quotes(
         first = min(place.line for place in places.values() if HEADER.match(lines[place.line - 1]))
         write = f"{write}\n{lines[first - 1].strip()}"
     column = place.key if unknown else place.value
+    if _bare(write) == _bare(lines[place.line - 1]):  # what was written is of the right form
+        write = ""
     yield quoted(lines[place.line - 1], column, told.why, write, f"line {place.line}", told.example)
+
+
+def _bare(line: str) -> str:
+    """A line without spaces and comment."""
+    return re.sub(r"\s", "", line.partition("#")[0])
 
 
 def _read(written: str) -> Any:

@@ -193,7 +193,7 @@ def _remedy(
     if right is not None:
         return _line(f"the key is {right}", table, right, value)
     if table and word in scene_keys:
-        return _line(f"{word} is a key of the scene: it stands above the first table", "", word, value)
+        return _line(f"{word} is a key of the scene: move it above the first table", "", word, value)
     right = _alias("", word) if table else None
     if right is not None:
         return _line(f"the key is {right}, above the first table", "", right, value)

@@ -62,6 +62,8 @@ def _semicolon(line: str, key: str) -> str:
 
 def _pair(line: str, key: str) -> str:
     number = r"[-+]?[\d.][\d.eE+-]*"
+    if key == "gravity" and (match := re.search(r"=\s*-?(\d+),(\d+)\s*(?=#|$)", line)):  # one number, with a decimal comma
+        return line[: match.start()] + f"= [0.0, -{match[1]}.{match[2]}]" + line[match.end() :]
     return re.sub(rf"(=\s*)({number})\s*[,;x]\s*({number})(?=\s*(#|$))", r"\1[\2, \3]", line) if key in PAIRS else line
 
 
@@ -70,6 +72,8 @@ def _closed(line: str, key: str) -> str:
     code = code.rstrip()
     if code.count("[") > code.count("]"):
         return code + "]" * (code.count("[") - code.count("]")) + (f"  {mark}{comment}" if mark else "")
+    if code.count("]") == code.count("[") + 1 and "=" in code and "[" in code and key in PAIRS:
+        return code.removesuffix("]") + (f"  {mark}{comment}" if mark else "")
     if code.count("]") == code.count("[") + 1 and "=" in code:
         return re.sub(r"=\s*", "= [", line, count=1)
     if code.count("{") > code.count("}"):
@@ -87,7 +91,10 @@ SLIPS = (
     Slip("quotation marks are straight", _sub("[“”„‟«»]", '"')),
     Slip("a comment begins with #", _sub(r"\s*(//|%%|--).*$", "")),
     Slip("a line ends without a mark", _sub(r"[;,]\s*$", "")),
-    Slip("tables of a list stand in double brackets", _sub(r"^\s*\[{1,2}\s*(" + "|".join(LISTS) + r")\s*\]{0,2}\s*$", r"[[\1]]")),
+    Slip(
+        "tables of a list stand in double brackets",
+        _sub(r"^\s*[\[({]{1,2}\s*(" + "|".join(LISTS) + r")\s*[\])}]{0,2}\s*$", r"[[\1]]"),
+    ),
     Slip("the name of a table stands in brackets", _sub(r"^\s*\[\s*(\w+)\s*$", r"[\1]")),
     Slip("a key is followed by =", _sub(r"^(\s*\w+)\s*(?::=|==|=>|:)\s*", r"\1 = ")),
     Slip("a key is followed by =", _sub(r"^(\s*\w+)\s+(?=[-+.\d\[\"(])", r"\1 = ")),
@@ -127,7 +134,11 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
         for here in _lines_before(lines, line):
             for why, right in _mended(lines, here):
                 if _reads_on(lines, here, right, line):
-                    return f"{why} (at line {here})" + _shown(lines, here, right)
+                    return f"{why} (at line {_alike(lines, here, right)})" + _shown(lines, here, right)
+        for here in _lines_before(lines, line):
+            if HEADER.match(lines[here - 1]) is not None and _reads_on(lines, here, "", line):
+                why = "this table was begun before: put its keys there, and leave this line out"
+                return f"{why} (at line {here})" + _shown(lines, here, "")
     key = _key_of(lines[line - 1])
     example = "" if not key or key not in EXAMPLES else EXAMPLES[key]
     return f"{match[1]} (at line {line}, column {column + 1})" + quoted(
@@ -162,14 +173,22 @@ def _mended(lines: list[str], number: int) -> Iterator[tuple[str, str]]:
     header = next((HEADER.match(before) for before in reversed(lines[: number - 1]) if HEADER.match(before)), None)
     if header is not None and header[2] in LISTS and "=" in line:
         yield f"this table has {key} already; another one begins with its name", f"[[{header[2]}]]\n{line}"
-    if HEADER.match(line) is not None:
-        yield "this table was begun before: put its keys there, and leave this line out", ""
+
+
+def _alike(lines: list[str], number: int, right: str) -> str:
+    """The number of a line, and of those before it that are as wrong, where all tables of a name are."""
+    same = [k for k, line in enumerate(lines, 1) if line.strip() == lines[number - 1].strip()] if _is_list(right) else []
+    return ", ".join(map(str, same)) if len(same) > 1 else str(number)
+
+
+def _is_list(right: str) -> bool:
+    return right in (f"[[{name}]]" for name in LISTS)
 
 
 def _reads_on(lines: list[str], number: int, right: str, last: int) -> bool:
     """Whether a text can be read, or at least beyond line `last`, once line `number` is right."""
     text = "\n".join([*lines[: number - 1], right, *lines[number:]])
-    if right in (f"[[{name}]]" for name in LISTS):  # all of that name
+    if _is_list(right):  # all of that name
         text = re.sub(rf"(?m)^\s*\[{right.strip('[]')}\]\s*$", right, text)
     try:
         tomllib.loads(text)

@@ -68,7 +68,7 @@ def _text(path: Path) -> str:
         wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         return data.decode("utf-16" if wide else "utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError:
-        raise SceneError(f"{path}: is not a text file (UTF-8)") from None
+        raise SceneError(f"{path}: is not a text file in UTF-8: save it anew with this encoding") from None
 
 
 def _whole_tables_of(path: Path, text: str) -> dict[str, Any]:

@@ -6,8 +6,10 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import eventsim as es
 from eventsim.cli.explain import page
 from eventsim.cli.folding import folded
 from eventsim.cli.needs import needs_of
@@ -135,3 +137,9 @@ def test_all_pairs_that_overlap_are_told_on_request(eventsim, scene_file):
     assert eventsim("check", scene_file).stderr.count("overlap by") == 3
     assert eventsim("check", scene_file, "--all").stderr.count("overlap by") == 15
     assert eventsim("check", scene_file).stderr.count("overlap by") == 3
+
+
+def test_disks_that_nothing_deflects_are_explained():
+    disks = es.Disks([[0.5, 0.5], [1.5, 0.5]], [[1.0, 0.0], [0.0, 1.0]], 0.1, np.inf)
+    scene = es.Scene(disks, es.Box((2.0, 1.0)))
+    assert "nothing deflects it" in page("still", "still", needs_of(scene))

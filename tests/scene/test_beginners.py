@@ -150,6 +150,11 @@ def told_of(tmp_path, tables):
     return "\n".join(told(path)).replace(f"{path}: ", "")
 
 
+OPEN = '[domain]\nkind = "open"\n'
+ONE = "[[disk]]\nposition = [0.3, 0.8]\nradius = 0.05\n"
+SINGLE = "[gas]\ncount = 3\nradius = 0.1\nseed = 1\n"
+
+
 def test_what_only_shows_the_form_is_called_an_example(tmp_path):
     text = told_of(tmp_path, '[[disk]]\nposition = [0.5, 0.2]\nradius = 0.01\nmass = "heavy"\n')
     assert "    as in:   mass = 2.0" in text
@@ -217,6 +222,29 @@ def test_two_disks_in_single_brackets_are_told_like_one(tmp_path):
     assert "write:  [[disk]]" in problem
 
 
+@pytest.mark.parametrize(
+    ("text", "line", "right"),
+    [
+        ("gravity = 9,81\n" + OPEN + ONE, 1, "gravity = [0.0, -9.81]"),
+        (OPEN + ONE.replace("0.8]", "0.8]]"), 4, "position = [0.3, 0.8]"),
+        (OPEN + ONE.replace("[[disk]]", "{disk}"), 3, "[[disk]]"),
+        (OPEN.replace("open", "box") + "size = [2.0, 1.0\n" + ONE, 3, "size = [2.0, 1.0]"),
+        (OPEN + SINGLE + SINGLE, "3, 7", "[[gas]]"),
+    ],
+)
+def test_what_is_proposed_is_right(tmp_path, text, line, right):
+    (tmp_path / "scene.toml").write_text(text)
+    (problem,) = told(tmp_path / "scene.toml")
+    assert f"(at line {line})" in problem
+    assert problem.endswith(f"write:  {right}")
+
+
+def test_a_value_of_the_right_form_is_not_proposed_again(tmp_path):
+    text = told_of(tmp_path, "[[disk]]\nposition = [0.5, inf]\nradius = 0.01\n")
+    assert "position = [0.5, inf]" in text
+    assert "write:" not in text
+
+
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
 def test_a_mark_of_byte_order_is_no_part_of_a_scene(tmp_path, encoding):
     for name, text in (
@@ -254,7 +282,7 @@ def test_a_proposal_stands_alone_without_a_guess_that_says_otherwise(tmp_path):
     path.write_text(SCENE.replace("restitution = 0.9\n", "").replace("radius = 0.05", "radius = 0.05\nrestitution = 0.5"))
     with pytest.raises(SceneError) as error:
         load_scene(path)
-    assert "it stands above the first table" in str(error.value)
+    assert "move it above the first table" in str(error.value)
     assert "did you mean" not in str(error.value)
     assert "known here" not in str(error.value)
 
