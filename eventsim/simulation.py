@@ -8,16 +8,16 @@ from inspect import signature
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
 from eventsim import patience
 from eventsim.engines import engine_named
 from eventsim.engines.base import Counters, Snapshot, Stop
+from eventsim.engines.collapse import TAIL
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
 from eventsim.formulas.clock import clock_time
-from eventsim.record.events import Rows, State, unchangeable
+from eventsim.record.events import Rows, State, joined, unchangeable
+from eventsim.record.files import read_log
 from eventsim.record.provenance import Ending
-from eventsim.replay.log import EventLog, load_log
+from eventsim.replay.log import EventLog
 from eventsim.run import Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
 from eventsim.runner.keeping import Keeping
@@ -256,14 +256,15 @@ class Simulation:
         self._closed = False
         self._session = chosen.open(stage_of(a_scene(scene)), options=chosen.options_from(options))
         self._provenance = provenance_of(self._session, self.engine, scene)
-        self._blocks: list[Rows] = []
+        self._memory = MemorySink(self._provenance)  # stays empty beside a file
+        self._read: EventLog | None = None  # the log as it was read last
+        self._measured: tuple[EventLog, Measures] | None = None
         self._time: float | None = None
         self._broken_off = False
         self._ended: tuple[str, str] | None = None  # why it cannot go on: a word, a sentence
-        self._in_memory = isinstance(log, bool)
         if log is False:
             raise EventsimError("a simulation that is stepped through keeps its log: log=True, or a path")
-        if checkpoint is not None and self._in_memory:
+        if checkpoint is not None and isinstance(log, bool):
             raise EventsimError("a log in memory does not outlive its run: with a checkpoint the log needs a file")
         if not isinstance(log, bool):
             self._keeping = Keeping(self._provenance, log, checkpoint, interval(every))
@@ -288,7 +289,7 @@ class Simulation:
         if self._keeping is not None:
             raise EventsimError("a simulation that writes files has no copy: two would write the same")
         other = Simulation(self.scene, self.engine, **self._options)
-        other._blocks = list(self._blocks)
+        other._memory.write(self._memory.recorded().rows)
         other.restore(self.snapshot())
         return other
 
@@ -311,28 +312,44 @@ class Simulation:
 
     @property
     def log(self) -> EventLog:
-        """All that happened so far; of a log file, what is in it."""
+        """All that happened so far, at the cost of what came since the last look; a file is read as a whole where it has grown.
+
+        Who only wants the new rows has them from `step` and `advance_to`.
+        """
+        ending = self._ending if self._keeping is None or self._closed else None  # a file that grows has none
+        if self._read is None or self._read.provenance.ending != ending:
+            self._read = self._log_so_far()
+        return self._read
+
+    def _log_so_far(self) -> EventLog:
         if self._keeping is not None and self._keeping.log is not None:
             file = self._keeping.log
             if not self._closed:
                 file.sync()
-            return load_log(file.path if self._closed else file.part)
-        sink = MemorySink(self._provenance)
-        for block in self._blocks:
-            sink.write(block)
-        sink.close(self._ending)
-        return EventLog(*sink.recorded())
+            path = file.path if self._closed else file.part
+            log = EventLog(*read_log(path, verify=self._closed))
+            log.path = path
+            return log
+        self._memory.close(self._ending)
+        return EventLog(*self._memory.recorded())
 
     @property
     def measures(self) -> Measures:
-        """What is measured in all that happened so far, from the log.  Raises EventsimError where there is nothing to measure."""
+        """What is measured in all that happened so far, from the whole log, whose length it costs where rows or time have passed.
+
+        Raises EventsimError where there is nothing to measure.
+        """
         from eventsim.measure import measure  # only who measures pays for it
 
         log = self.log
+        if self._measured is not None and self._measured[0] is log and log.provenance.ending is not None:
+            return self._measured[1]
         if log.provenance.ending is None:  # a file that grows
             ended = replace(log.provenance, ending=self._ending)
             log = EventLog(ended, log.rows)
-        return measure(log, self._discard)
+        measures = measure(log, self._discard)
+        self._measured = log, measures
+        return measures
 
     @property
     def counters(self) -> Counters:
@@ -374,14 +391,13 @@ class Simulation:
             raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: {SPEEDS}")
         self._session.kick(disk, vx, vy)
         self._keep()
-        if not self._in_memory:
-            self._blocks.clear()
 
     def snapshot(self) -> SavedSimulation:
         """A point to come back to."""
         self._demand_whole()
+        rows = len(self._memory.recorded().rows)
         return SavedSimulation(
-            self.scene, self._session.snapshot(), self._session.counters.copy(), self._row_count(), self._time, self._ended
+            self.scene, self._session.snapshot(), self._session.counters.copy(), rows, self._time, self._ended
         )
 
     def restore(self, saved: SavedSimulation) -> None:
@@ -397,21 +413,19 @@ class Simulation:
         self._session.restore(saved.snapshot)
         self._session.counters.copy_from(saved.counters)
         self._session.take_rows()
-        keep = saved.rows
-        blocks, self._blocks = self._blocks, []
-        for block in blocks:
-            self._blocks.append(block[: max(keep, 0)])
-            keep -= len(block)
+        if self._keeping is None:
+            self._memory.forget(saved.rows)
+            self._read = None
         self._time, self._ended = saved.time, saved.ended
 
     def _advance(self, stop: Stop) -> Rows:
-        before, begun = len(self._blocks), self.time
+        begun, came = self.time, []
         stopped, wraps = None, self.counters.wraps
         budget = FIRST_BUDGET if patience.is_bounded() else STEP_BUDGET
         while stopped is None:
             stopped = self._advanced(stop, budget)
             budget = min(2 * budget, STEP_BUDGET)
-            self._keep()
+            came.append(self._keep())
             if stopped is None and patience.is_over():
                 stopped = "patience"
             if stopped is None and stop.until is None and self.counters.wraps - wraps > MOST_WRAPS:
@@ -422,7 +436,7 @@ class Simulation:
                 )
         self._time = None
         if stopped in ("collapse", "digits", "law"):
-            stopped, reason = diagnosed(self._session, stopped, np.concatenate(self._blocks))
+            stopped, reason = diagnosed(self._session, stopped, self._last_rows())
             self._ended = stopped, f"stopped by {stopped}: {reason}"
             self._demand_going()
         if stop.until is not None and stopped in ("until", "quiet"):
@@ -431,9 +445,7 @@ class Simulation:
             while self._session.advance(Stop(until=begun), STEP_BUDGET) is None:
                 pass
             self._time = begun
-        rows = unchangeable(np.concatenate(self._blocks[before:]))
-        self._blocks[before:] = [rows] if self._in_memory else []
-        return rows
+        return unchangeable(joined(came))
 
     def _advanced(self, stop: Stop, budget: int) -> str | None:
         """A stint of the engine, which Ctrl-C may break off."""
@@ -461,11 +473,17 @@ class Simulation:
         """Where it stands, as the end of a log."""
         return Ending(*self._session.clock, "until" if self._ended is None else self._ended[0])
 
-    def _keep(self) -> None:
+    def _keep(self) -> Rows:
+        """Have the new rows kept; they are returned."""
         rows = unchangeable(self._session.take_rows())
-        self._blocks.append(rows)
+        if len(rows):
+            self._read = None
         if self._keeping is not None:
             self._keeping.write(rows, self._session)
+        elif len(rows):
+            self._memory.write(rows)
+        return rows
 
-    def _row_count(self) -> int:
-        return sum(len(block) for block in self._blocks)
+    def _last_rows(self) -> Rows:
+        """Those that a diagnosis looks at."""
+        return self._memory.recorded().rows[-TAIL:] if self._keeping is None else self._keeping.last_rows

@@ -6,6 +6,8 @@ import json
 import os
 import subprocess
 import sys
+import warnings
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -232,6 +234,41 @@ def test_a_simulation_streams_its_log_and_goes_on_from_its_checkpoint(tmp_path, 
     plain.advance_to(1.0)
     assert scene.until == 1.0
     assert es.resume(checkpoint, scene=scene).log.digest() == plain.log.digest()
+
+
+def test_looking_at_the_log_costs_what_came_since_the_last_look():
+    sim = es.Simulation(es.gallery("gas", n=20), engine="reference")
+    logs = []
+    for _ in range(100):
+        sim.step()
+        logs.append(sim.log)
+        assert sim.log is logs[-1]
+    kept = [log.digest() for log in logs]
+    moved = sum(not np.shares_memory(one.rows, other.rows) for one, other in pairwise(logs))
+    assert moved < 12  # the room doubles, so that most logs are written behind the one before
+    saved = sim.snapshot()
+    sim.set_velocity(3, (0.0, 1.0))
+    assert (sim.log[-1].kind, sim.log.provenance.kicks) == ("kick", ((len(sim.log) - 1, 0.0, 1.0),))
+    sim.restore(saved)
+    sim.step()
+    assert sim.log.provenance.kicks == ()
+    assert sim.log.rows[: len(logs[-1])].tobytes() == logs[-1].rows.tobytes()
+    assert kept == [log.digest() for log in logs]
+    assert sim.measures is sim.measures
+
+
+def test_nobody_is_warned_of_a_log_of_his_own_that_grows(tmp_path):
+    scene, log, saved = es.gallery("gas", n=20), tmp_path / "log.csv", tmp_path / "run.ck"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with es.Simulation(scene, engine="reference", log=tmp_path / "grows.csv") as sim:
+            sim.step()
+            assert len(sim.log) == 1
+            sim.step()
+            assert len(sim.log) == 2
+        assert sim.log.provenance.ending is not None
+        es.simulate(scene, events=20, engine="reference", log=log, checkpoint=saved)
+        assert len(es.resume(saved, events=30).log) == 30
 
 
 def test_what_a_simulation_wrote_is_not_taken_back(tmp_path):

@@ -148,7 +148,8 @@ def joined(blocks: Sequence[Rows], spin: bool | None = None) -> Rows:
     """Return blocks of rows as one; empty ones may be of either type.  spin: which there would be, if nobody tells."""
     told = [rows for rows in blocks if len(rows)]
     if told:
-        return np.concatenate(told)
+        row = told[0].dtype  # numpy compares the names of columns block by block, and copies row by row: not so what has none
+        return np.concatenate([rows.view(f"V{row.itemsize}") for rows in told]).view(row)
     return blocks[0] if blocks and spin is None else blank_rows(0, bool(spin))
 
 

@@ -17,7 +17,7 @@ from eventsim.runner.checkpoint_writer import CheckpointWriter
 class Keeping:
     """Writes rows and checkpoints as they come, until it is closed.
 
-    log: the log file, which grows as NAME.part; None: none.
+    log: the log file, which grows as NAME.part; None: none.  last_rows: for a diagnosis.
 
     Raises:
         LogError, CheckpointError: where files cannot be written.
@@ -27,7 +27,7 @@ class Keeping:
         self, provenance: Provenance, log: str | PathLike[str] | None, checkpoint: str | PathLike[str] | None, every: Every
     ) -> None:
         self.log = None if log is None else open_sink(Path(log), provenance)
-        self._last_rows, self._checkpoints = blank_rows(0), None
+        self.last_rows, self._checkpoints = blank_rows(0), None
         if checkpoint is not None:
             try:
                 self._checkpoints = CheckpointWriter(place_for(checkpoint), every, provenance, Stop(), self.log)
@@ -37,7 +37,7 @@ class Keeping:
 
     def write(self, rows: Rows, session: Session) -> None:
         """Take the rows that a session has come through, and write a checkpoint where one is due."""
-        self._last_rows = joined([self._last_rows, rows])[-TAIL:]
+        self.last_rows = joined([self.last_rows, rows])[-TAIL:]
         if self.log is not None and len(rows):
             self.log.write(rows)
         self._save(session, None)
@@ -52,7 +52,7 @@ class Keeping:
 
     def _save(self, session: Session, stopped: str | None) -> None:
         if self._checkpoints is not None and self._checkpoints.is_due(session.counters.events, stopped):
-            self._checkpoints.save(session, self._last_rows, 0.0, 0.0)
+            self._checkpoints.save(session, self.last_rows, 0.0, 0.0)
 
     def _abandon(self) -> None:
         if self.log is not None:

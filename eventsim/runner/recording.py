@@ -9,9 +9,9 @@ from threading import Thread
 from time import perf_counter
 
 from eventsim.record.digest import Digester, Progress
-from eventsim.record.events import Rows, joined
+from eventsim.record.events import Rows, blank_rows, joined
 from eventsim.record.files import FileSink, continued_sink, open_log, open_sink
-from eventsim.record.provenance import Ending, Provenance, Recorded, has_spin, kicks_of
+from eventsim.record.provenance import Ending, Kick, Provenance, Recorded, has_spin, kicks_of
 from eventsim.runner.options import RunOptions
 
 
@@ -41,7 +41,7 @@ class Recording:
         if wanted.resumed.digest is not None:
             self._digester.go_on(wanted.resumed.digest)
             return
-        for rows in open_log(self.file.part).blocks:
+        for rows in open_log(self.file.part, verify=False).blocks:
             self._digester.update(rows)
 
     @property
@@ -82,11 +82,16 @@ def _file_sink(wanted: RunOptions, provenance: Provenance) -> FileSink | None:
 
 
 class MemorySink:
-    """Keeps the rows of a run in memory; `recorded()` is what has been written so far."""
+    """Keeps the rows of a run in memory; `recorded()` is what has been written so far, at the cost of what came since.
+
+    The rows that it gave never change: later ones are written behind them, where there is room.
+    """
 
     def __init__(self, provenance: Provenance) -> None:
         self._provenance = provenance
         self._blocks: list[Rows] = []
+        self._room, self._count = blank_rows(0, has_spin(provenance.scene)), 0
+        self._kicks: list[Kick] = []
         self._ending: Ending | None = None
 
     def write(self, rows: Rows) -> None:
@@ -94,7 +99,7 @@ class MemorySink:
         self._blocks.append(rows.copy())
 
     def close(self, ending: Ending | None = None) -> None:
-        """Say where the run ended."""
+        """Say where the run ended, or stands."""
         self._ending = ending
 
     def leave(self) -> None:
@@ -102,14 +107,32 @@ class MemorySink:
 
     def abandon(self) -> None:
         """Forget all rows."""
-        self._blocks.clear()
+        self.forget(0)
+
+    def forget(self, count: int) -> None:
+        """Forget the rows behind the first `count`."""
+        rows = self._gathered()[:count]
+        self._room, self._count, self._kicks = rows.copy(), len(rows), kicks_of(rows)
 
     def recorded(self) -> Recorded:
         """Return the rows so far as a log."""
-        rows = joined(self._blocks, has_spin(self._provenance.scene))
-        self._blocks = [rows]
-        finished = self._provenance.finished(self._ending, tuple(kicks_of(rows)), len(rows))
-        return Recorded(finished, rows)
+        rows = self._gathered()
+        return Recorded(self._provenance.finished(self._ending, tuple(self._kicks), len(rows)), rows)
+
+    def _gathered(self) -> Rows:
+        """The rows so far as one array: behind those that were asked for before come the others."""
+        if self._blocks:
+            added, self._blocks = joined(self._blocks), []
+            before, count = self._room[: self._count], self._count + len(added)
+            if self._count == 0:
+                self._room = added
+            elif count > len(self._room):
+                self._room = joined([before, added, before])  # as much again
+            else:
+                self._room[self._count : count] = added
+            self._count = count
+            self._kicks += kicks_of(added)
+        return self._room[: self._count]
 
 
 MANY_ROWS = 1 << 12

@@ -77,7 +77,7 @@ def continued_sink(path: Path, provenance: Provenance, compact: bool, mark: Mark
     if part.exists():
         try:
             sink = _format_of(path).sink(path, kept, None, mark)
-            for rows in open_log(part).blocks:
+            for rows in open_log(part, verify=False).blocks:
                 sink.remember(rows)
             return sink
         except LogError as error:
@@ -121,9 +121,9 @@ def open_log(path: Path, verify: bool = True) -> Opened:
     return Opened(provenance, verified(provenance, sound, path) if verify else sound)
 
 
-def read_log(path: Path) -> tuple[Provenance, Rows]:
-    """Return the provenance and all rows of a log file; raises LogError as `open_log` does."""
-    provenance, blocks = open_log(path)
+def read_log(path: Path, verify: bool = True) -> tuple[Provenance, Rows]:
+    """Return the provenance and all rows of a log file; raises LogError and warns as `open_log` does."""
+    provenance, blocks = open_log(path, verify)
     return provenance, joined(list(blocks), has_spin(provenance.scene))
 
 
