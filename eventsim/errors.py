@@ -31,7 +31,10 @@ class LogWarning(UserWarning):
 
 
 class CollapseError(EventsimError):
-    """The contacts of a scene accumulate at an instant, so that time cannot go on."""
+    """A simulation cannot go on: contacts accumulate at an instant or lie below the digits, or no law tells what they do.
+
+    Its text begins with "stopped by collapse", "stopped by digits" or "stopped by law".
+    """
 
 
 class CheckpointError(EventsimError):

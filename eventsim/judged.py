@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, overload
 import numpy as np
 
 from eventsim.errors import EventsimError
-from eventsim.readers import read_samples
+from eventsim.readers import read_samples, samples_in
 from eventsim.readers.contacts import ToldContacts, read_contacts, told_from
 from eventsim.readers.samples import Samples, checked
 from eventsim.scene import Scene
@@ -22,12 +22,14 @@ from eventsim.validation.judge.judgement import Judgement, judge
 from eventsim.validation.judge.stepping import Step, stepped
 from eventsim.validation.judge.table import judgement_data
 from eventsim.validation.judge.words import contacts_in_short, judged_in_words
+from eventsim.validation.verdict import verdict
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Source: TypeAlias = "str | PathLike[str] | Sequence[Any]"
-"""A file; or arrays: (times, positions) or (times, positions, velocities); of contacts rows (time, a, b[, wall])."""
+"""A file; or arrays: (times, positions) or (times, positions, velocities), or a DataFrame with the columns of such a file; of
+contacts rows (time, a, b[, wall])."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,14 +114,14 @@ def validate(
     Args:
         scene: what is simulated.
         trajectory: a file of positions at times (.csv, .npz, .parquet, .xyz, .gsd), or arrays: times (T,), positions (T, n, 2)
-            and, if you like, velocities (T, n, 2).
+            and, if you like, velocities (T, n, 2); or a DataFrame with the columns time, disk, x, y.
         contacts: those that the engine tells: a file with the columns time, a, b (-1: a wall), or rows (time, a, b[, wall]).
             None: they are read from the paths.
         step: a function step(position, velocity, dt) that returns both after dt, or changes them in place and returns None.
         dt: the step; of a trajectory the time between frames that tell none; without both, one or several steps to compare.
         until: when to stop; None: when the scene, or the trajectory, does.
         tolerance: how far apart the times of one contact may be; None: two steps and what a disk needs for a tenth of a diameter.
-        against: the engines to compare with; none: all.
+        against: the engines to compare with, or one; none: all.
 
     Raises:
         EventsimError: for what is no motion of this scene, or arguments that do not go together.
@@ -130,7 +132,8 @@ def validate(
         if contacts is not None or tolerance is not None:
             raise EventsimError("contacts and tolerance belong to a trajectory")
         steps = None if dt is None else np.atleast_1d(np.asarray(dt, dtype=np.float64)).tolist()
-        return compare(scene, chosen_competitors(against), steps, until)
+        compared = compare(scene, chosen_competitors(against), steps, until)
+        return replace(compared, verdict=tuple(verdict(compared)))
     if dt is not None and not isinstance(dt, float | int):
         raise EventsimError("dt: one engine has one step")
     if step is not None:
@@ -152,9 +155,17 @@ def _samples(trajectory: Source, dt: float | None) -> Samples:
     """A motion from a file or from arrays."""
     if isinstance(trajectory, str | PathLike):
         return read_samples(Path(trajectory), dt)
-    times, *arrays = (np.asarray(values, dtype=np.float64) for values in trajectory)
+    table: Any = trajectory
+    if hasattr(table, "items"):  # a DataFrame, or a dict of columns
+        return samples_in([(str(name), np.asarray(column)) for name, column in table.items()], "the table", dt)
+    try:
+        times, *arrays = (np.asarray(values, dtype=np.float64) for values in trajectory)
+    except (TypeError, ValueError):
+        times, arrays = np.empty(0), []
     if len(arrays) not in (1, 2) or any(array.ndim != 3 for array in arrays):
-        raise EventsimError("trajectory: must be a file, (times, positions) or (times, positions, velocities)")
+        raise EventsimError(
+            "trajectory: must be a file, (times, positions) or (times, positions, velocities), or a DataFrame of time, disk, x, y"
+        )
     velocity = arrays[1][..., :2] if len(arrays) == 2 else None
     return checked(Samples("the arrays", times, arrays[0][..., :2], velocity))
 

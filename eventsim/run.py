@@ -47,7 +47,8 @@ class Run(PastRun):
 
     def __repr__(self) -> str:
         name = self.scene.called
-        return f"Run({name}: {self.counters.events:,} events to t = {self.time!r}, stopped: {self.stopped})"
+        why = self.stopped if self.reason is None else f"{self.stopped}: {self.reason}"
+        return f"Run({name}: {self.counters.events:,} events to t = {self.time!r}, stopped: {why})"
 
     def animate(self, path: str | PathLike[str], **options: Any) -> None:
         """Write an animation to `path`: .mp4, .gif, .png (a strip of moments) or .html (a page that plays the run).

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -133,6 +134,51 @@ def test_states_know_energy_and_momentum():
     assert (state.energy, state.momentum) == (1.5, (3.0, 0.0))
     with pytest.raises(es.EventsimError, match="made without its scene"):
         _ = es.State(0.0, state.position, state.velocity).energy
+
+
+def test_states_cannot_be_written_to(run):
+    sim = es.Simulation(run.scene, engine="reference")
+    for state in (sim.state, run.state, run.state_at(0.0)):
+        with pytest.raises(ValueError, match="read-only"):
+            state.velocity[0] = (1.0, 1.0)
+        with pytest.raises(ValueError, match="read-only"):
+            state.position[0, 0] = 1.0
+
+
+def failing(approach):
+    return 1.0 if approach == 1.0 else approach / 0.0
+
+
+def test_a_law_of_the_users_own_that_fails_is_told_and_put_back(tmp_path):
+    scene = es.Scene(es.Disks([(0.5, 0.5)], [(2, 0)], 0.1), es.Box((2, 1)), law=failing, until=1)
+    assert "stopped: law: the law" in repr(es.simulate(scene))
+    assert "ZeroDivisionError" in repr(es.simulate(scene))
+    scene.save(tmp_path / "law.toml")
+    again = es.load_scene(tmp_path / "law.toml")
+    with pytest.raises(es.EventsimError, match=r"dataclasses.replace\(scene, law=function\)"):
+        es.simulate(again)
+    assert es.simulate(replace(again, law=failing)).stopped == "law"
+
+
+def test_a_trajectory_may_be_a_table(run, monkeypatch):
+    pd = pytest.importorskip("pandas")
+    monkeypatch.setattr("eventsim.judged.judge", lambda scene, samples, *options: samples)
+    states = [run.state_at(time) for time in (0.0, 0.01, 0.02)]
+    rows = [(state.time, k, *place) for state in states for k, place in enumerate(state.position)]
+    samples = es.validate(run.scene, trajectory=pd.DataFrame(rows, columns=["t", "disk", "x", "y"])).judgement
+    assert samples.times.tolist() == [0.0, 0.01, 0.02]
+    assert samples.position.tolist() == [state.position.tolist() for state in states]
+    with pytest.raises(es.EventsimError, match="must be a file"):
+        es.validate(run.scene, trajectory=[("a", "b")])
+
+
+def test_settings_of_a_scene_may_be_one(tmp_path):
+    scene = es.gallery("two-disks")
+    scene.save(tmp_path / "scene.toml")
+    assert es.load_scene(tmp_path / "scene.toml", "restitution=0.5").restitution.pair == 0.5
+    with pytest.raises(es.SceneError, match='must be settings "key=value"') as refused:
+        es.load_scene(tmp_path / "scene.toml", {"restitution": 0.5})
+    assert len(refused.value.problems) == 1
 
 
 @pytest.mark.parametrize("suffix", [".toml", ".json"])

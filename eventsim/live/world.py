@@ -123,15 +123,17 @@ class World:
                 self.tracks[0].kick(message.disk, message.velocity)
                 return
             # What has ended does not go on, and engines that go step by step cannot go back: all begin anew, with the same start.
-            state.velocity[message.disk] = message.velocity
-            await self._begin(self._scene_from(state), self._rate, "throw", self.speed)
+            velocity = state.velocity.copy()
+            velocity[message.disk] = message.velocity
+            await self._begin(self._scene_from(replace(state, velocity=velocity)), self._rate, "throw", self.speed)
 
     async def move(self, message: Move) -> None:
         """Begin anew from the state at the time that is shown, with one disk elsewhere."""
         async with self._changing():
             state = await self._state_at(message.time, message.disk)
-            state.position[message.disk] = message.position
-            await self._begin(self._scene_from(state), self._rate, "move", self.speed)
+            position = state.position.copy()
+            position[message.disk] = message.position
+            await self._begin(self._scene_from(replace(state, position=position)), self._rate, "move", self.speed)
 
     async def add_disk(self, message: AddDisk) -> None:
         """Begin anew from the state at the time that is shown, with one more disk, at rest and of mass 1."""

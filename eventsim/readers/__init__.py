@@ -16,7 +16,7 @@ from eventsim.errors import EventsimError
 from eventsim.readers.columns import samples_of
 from eventsim.readers.csv import csv_columns
 from eventsim.readers.npz import npz_columns
-from eventsim.readers.samples import Column, Columns, Samples
+from eventsim.readers.samples import Column, Columns, Named, Samples
 from eventsim.reading import told_as
 
 TABLES = {".csv": csv_columns, ".npz": npz_columns}
@@ -38,13 +38,22 @@ def read_columns(path: Path) -> Columns:
         found = TABLES[suffix](path)
     else:
         raise EventsimError(f"{path}: a table ends in {', '.join(suffixes.READ_TABLES)}")
+    return _by_name(found, str(path))
+
+
+def _by_name(found: Named, source: str) -> Columns:
     columns: dict[str, Column] = {}
     for name, column in found:
         known = SHORT.get(name.strip().lower(), name.strip().lower())
         if known in columns:
-            raise EventsimError(f"{path}: has more than one column {known}")
+            raise EventsimError(f"{source}: has more than one column {known}")
         columns[known] = column
     return columns
+
+
+def samples_in(table: Named, source: str, dt: float | None = None) -> Samples:
+    """Where all disks are at the times of a table in memory, as in a file; EventsimError where it does not tell that."""
+    return samples_of(_by_name(table, source), source, dt)
 
 
 def read_samples(path: Path, dt: float | None = None, least: int = 2) -> Samples:

@@ -153,8 +153,8 @@ def joined(blocks: Sequence[Rows], spin: bool | None = None) -> Rows:
     return blocks[0] if blocks and spin is None else blank_rows(0, bool(spin))
 
 
-def unchangeable(rows: Rows) -> Rows:
-    """Return the same rows as an array that cannot be written to, for whoever only looks."""
+def unchangeable(rows: NDArray[Any]) -> NDArray[Any]:
+    """Return the same rows, or numbers, as an array that cannot be written to, for whoever only looks."""
     view = rows.view()
     view.flags.writeable = False
     return view
@@ -165,7 +165,8 @@ class State:
     """Where all disks are at one time.
 
     time: on the scene's clock. position, velocity: float64 arrays (N, 2) on the scene's axes, as in a scene file;
-    along a period the position lies inside the domain.  scene: what the disks are; None where that is not known.
+    along a period the position lies inside the domain.  Arrays cannot be written to: a simulation takes velocities by
+    `set_velocity`, and a copy is anybody's own.  scene: what the disks are; None where that is not known.
     spin: angular velocities (N,); None where disks have none.
     """
 
@@ -174,6 +175,11 @@ class State:
     velocity: Floats
     scene: Scene | None = field(default=None, compare=False)
     spin: Floats | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("position", "velocity", "spin"):
+            if (values := getattr(self, name)) is not None:
+                object.__setattr__(self, name, unchangeable(values))
 
     def __repr__(self) -> str:
         return f"State(time = {self.time!r}, {len(self.position)} disks)"

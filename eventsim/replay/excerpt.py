@@ -69,7 +69,7 @@ class Excerpt(SpinColumns):
     Every column is an attribute holding a read-only array (`rows.time`, `rows.vxa`, ...), `spin_a` and `spin_b` only where disks
     have spin: `kind` holds codes
     (`kinds` the text), `wall` indices into `provenance.wall_names` (`wall_name` the text).  Places are relative to
-    `provenance.corner`; `rows[i]` and `to_pandas()` give those of the scene.
+    `corner`; `rows[i]` and `to_pandas()` give those on the scene's axes.
     """
 
     def __init__(self, provenance: Provenance, rows: Rows) -> None:
@@ -88,7 +88,7 @@ class Excerpt(SpinColumns):
     def __getitem__(self, place: slice) -> Excerpt: ...
 
     def __getitem__(self, place: int | slice) -> Event | Excerpt:
-        """One event, or some rows."""
+        """One event, its places on the scene's axes, or some rows, whose columns count places from `corner` as those here do."""
         if isinstance(place, slice):
             return Excerpt(self.provenance, self.rows[place])
         try:

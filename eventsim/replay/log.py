@@ -32,6 +32,8 @@ class EventLog(Excerpt):
     Every column is an attribute holding a read-only array (`log.time`, `log.vxa`, ...): `log.kind` holds codes
     (`log.kinds` the text), `log.wall` indices into `log.provenance.wall_names` (`log.wall_name` the text).
     `log[3]` is one event, `log[3:8]` are some, `log.to_pandas()` is a data frame.
+    Places in columns (`log.xa`, and in files) count from `log.corner`, the domain's lower-left corner; in `log[3]` and in data
+    frames they are on the scene's axes: `log[3].xa` is `log.xa[3] + log.corner[0]`, wrapped where the domain is periodic.
     path: the file that it was read from, None where it comes from a run.
 
     In a compact log the columns that an engine computes again are missing (NaN); `expand()` gives the full log.
@@ -74,7 +76,10 @@ class EventLog(Excerpt):
     def __getitem__(self, place: slice) -> Excerpt: ...
 
     def __getitem__(self, place: int | slice) -> Event | Excerpt:
-        """One event, or some rows; a compact log is made full for it."""
+        """One event, its places on the scene's axes, or some rows, whose columns count places from `corner` as those here do.
+
+        A compact log is made full for it.
+        """
         return super(EventLog, self._full).__getitem__(place)
 
     def to_pandas(self) -> pd.DataFrame:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
-from eventsim.scene.overrides import apply_overrides, is_shallow
+from eventsim.scene.overrides import apply_overrides, is_shallow, settings_of
 from eventsim.scene.scene import Scene
 from eventsim.scene.texts import tables_of_file, tables_of_toml, with_lines
 from eventsim.scene.writing import (
@@ -42,7 +42,7 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
 
     Args:
         path: the file; a disks_file in it is looked for beside it.
-        overrides: settings like "gas.0.count=500" that change keys before the scene is made.
+        overrides: settings like "gas.0.count=500", or one, that change keys before the scene is made.
         seed: seeds the i-th gas from (seed, i) instead of its own seed.
 
     Raises:
@@ -50,7 +50,7 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     """
     if not isinstance(path, str | PathLike):
         raise SceneError(f"a scene is loaded from the path of a file, not from the type {type(path).__name__}")
-    path, settings = Path(path), list(overrides or ())
+    path, settings = Path(path), settings_of(overrides)
     data, text = tables_of_file(path)
     changed = apply_overrides(data, settings)
     if path.stem.isprintable():

@@ -27,7 +27,7 @@ def apply_overrides(data: Mapping[str, Any], overrides: Iterable[str] | None) ->
         raise SceneError("the tables are nested too deeply for a scene")
     changed = deepcopy(dict(data))
     problems: list[str] = []
-    for override in overrides or ():
+    for override in settings_of(overrides):
         path, equals, value = override.partition("=")
         steps = re.sub(r"\[(\d+)\]", r".\1", path.strip()).split(".")
         if not equals or not all(steps):
@@ -40,6 +40,16 @@ def apply_overrides(data: Mapping[str, Any], overrides: Iterable[str] | None) ->
     if problems:
         raise SceneError(problems)
     return changed
+
+
+def settings_of(overrides: Iterable[str] | None) -> list[str]:
+    """The settings that were given, one or several; SceneError for what holds none."""
+    if overrides is None or isinstance(overrides, str):
+        return [] if overrides is None else [overrides]
+    settings = [] if isinstance(overrides, Mapping) or not isinstance(overrides, Iterable) else list(overrides)
+    if (overrides and not settings) or not all(isinstance(one, str) for one in settings):
+        raise SceneError(f'overrides = {overrides!r}: must be settings "key=value", like ["restitution=0.9", "gas.0.count=500"]')
+    return settings
 
 
 def is_shallow(data: object) -> bool:

@@ -72,8 +72,11 @@ class OwnLaw:
         """Why it cannot be run, a sentence; None where it can."""
         if self.function is not None:
             return None
-        where = "the scene that names it (run SCENE --resume FILE), or the function (load_log(path, law=function))"
-        return f"the law {self.name} is not run from a file of results: give {where}"
+        return (
+            f"the law {self.name} is not run from a file that only holds its text: give the function (a scene: "
+            "dataclasses.replace(scene, law=function), a log: load_log(path, law=function)), or the scene that names its file "
+            "(run SCENE --resume FILE)"
+        )
 
     def run_by(self, function: Callable[..., float]) -> OwnLaw:
         """The same law, which a function runs.

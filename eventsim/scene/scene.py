@@ -138,6 +138,8 @@ class Scene:
     def save(self, path: str | PathLike[str]) -> None:
         """Write the scene to `path`, .toml or .json, every disk listed; `load_scene` gives back every bit.
 
+        Of a law of your own the file holds the text, which is not run: `dataclasses.replace(scene, law=function)` puts it back.
+
         Raises:
             SceneError: for another suffix, or where it cannot be written.
         """

@@ -81,13 +81,14 @@ class Line:
         return self.timing.median
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Comparison:
     """A scene, its event-driven run, and the lines of all engines; left_out: a sentence on each that could not take part.
 
     checks: times after which each disk has had 1, 2, 4, 8 contacts, on average (of a shorter run less, in these proportions).
     settings: what each engine was told, in words.  orders: measured, of convergence.  agrees: whether the event-driven engines
-    write the same log.  interrupted: what was not reached by then is missing.
+    write the same log.  interrupted: what was not reached by then is missing.  verdict: what it comes to in sentences, as
+    `es.validate` adds.
     """
 
     name: str
@@ -101,6 +102,14 @@ class Comparison:
     orders: dict[str, float] = field(default_factory=dict)
     agrees: bool = True
     interrupted: bool = False
+    verdict: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return "\n".join(self.verdict) or repr(self)
+
+    def __repr__(self) -> str:
+        first = f": {self.verdict[0]}" if self.verdict else ""
+        return f"Comparison({self.name}: {len(self.lines)} runs of other engines against {self.engine}{first})"
 
 
 def compare(

@@ -53,7 +53,8 @@ COMPETITORS = {one.label: one for engine in STEPPED for one in _variants(engine)
 
 
 def chosen_competitors(labels: Sequence[str]) -> list[Competitor]:
-    """The competitors of these names, all of them for none; EventsimError for a name that there is not."""
+    """The competitors of these names, or of one, all of them for none; EventsimError for a name that there is not."""
+    labels = (labels,) if isinstance(labels, str) else labels
     for label in labels:
         if label not in COMPETITORS:
             raise EventsimError(f"there is no engine {label!r} to compare with; there are {', '.join(COMPETITORS)}")

@@ -239,7 +239,7 @@ def test_a_log_holds_the_text_of_a_law_and_never_runs_it(laws, tmp_path, suffix)
     assert log.scene == scene
     assert (log.scene.law.source, log.scene.law.function) == (TEXT, None)
     assert len(log) == 1
-    with pytest.raises(es.EventsimError, match=r"the law laws.py:soft is not run from a file of results"):
+    with pytest.raises(es.EventsimError, match=r"the law laws.py:soft is not run from a file that only holds its text"):
         es.simulate(log.scene, engine="reference")
 
 
@@ -252,7 +252,7 @@ def test_a_compact_log_is_made_full_by_the_function_that_made_it(tmp_path):
 
     run = es.simulate(two(law=law), events=1, engine="reference", log=True)
     run.log.save(tmp_path / "log.npz", compact=True)
-    with pytest.raises(es.EventsimError, match="not run from a file of results"):
+    with pytest.raises(es.EventsimError, match="not run from a file that only holds its text"):
         es.load_log(tmp_path / "log.npz").digest()
     with pytest.raises(es.SceneError, match="has another text"):
         es.load_log(tmp_path / "log.npz", law=other)
@@ -264,7 +264,7 @@ def test_a_run_goes_on_from_a_checkpoint_with_the_scene_that_names_its_law(laws,
     scene = named(laws, "soft", **box)
     whole = es.simulate(scene, events=8, engine="reference", log=True).log.digest()
     es.simulate(scene, events=4, engine="reference", log=tmp_path / "log.npz", checkpoint=tmp_path / "saved")
-    with pytest.raises(es.EventsimError, match="not run from a file of results"):
+    with pytest.raises(es.EventsimError, match="not run from a file that only holds its text"):
         es.resume(tmp_path / "saved", events=8)
     assert es.resume(tmp_path / "saved", events=8, scene=scene, digest=True).digest == whole
     (laws / "laws.py").write_text(TEXT.replace("0.5 * approach", "0.25 * approach"))

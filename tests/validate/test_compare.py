@@ -50,6 +50,15 @@ def gas(no_compiler):
     )
 
 
+def test_a_comparison_is_its_verdict_in_print(gas, monkeypatch):
+    assert len(repr(gas)) < 200
+    monkeypatch.setattr("eventsim.judged.compare", lambda *asked: gas)
+    found = es.validate(es.gallery("gas", n=60), against="frames")
+    assert str(found).splitlines() == verdict(gas)
+    assert verdict(gas)[0] in repr(found)
+    assert chosen_competitors("frames") == chosen_competitors(["frames"])
+
+
 def test_energy_looks_perfect_while_contacts_go_missing(gas):
     coarse = next(line for line in gas.lines if line.label == "frames")
     assert abs(coarse.energy) < 1e-13
