@@ -99,10 +99,17 @@ _HOMES = {
 __all__ = [*_HOMES, "__version__"]
 
 
+_PARTS = ("formulas", "scene", "record", "engines", "runner", "replay", "measure", "validation", "sweep", "show", "live", "cli")
+
+
 def __getattr__(name: str) -> object:
-    """Load a public name from its home on first use (PEP 562)."""
+    """Load a public name, or a part of the package, on first use (PEP 562)."""
+    if name in _PARTS:
+        return import_module(f"eventsim.{name}")
     if name not in _HOMES:
-        raise AttributeError(f"module 'eventsim' has no attribute {name!r}")
+        from eventsim.errors import did_you_mean  # only who errs pays for it
+
+        raise AttributeError(f"module 'eventsim' has no attribute {name!r}{did_you_mean(name, __all__)}")
     value: object = getattr(import_module(f"eventsim.{_HOMES[name]}"), name)
     globals()[name] = value
     return value

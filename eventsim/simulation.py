@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from inspect import signature
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eventsim import patience
-from eventsim.engines import engine_named
+from eventsim.engines import Engine, engine_named
 from eventsim.engines.base import Counters, Snapshot, Stop
 from eventsim.engines.collapse import TAIL
+from eventsim.engines.options import Options, names_of
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
 from eventsim.formulas.clock import clock_time
 from eventsim.record.events import Rows, State, joined, unchangeable
@@ -22,11 +27,11 @@ from eventsim.run import Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
 from eventsim.runner.keeping import Keeping
 from eventsim.runner.loop import run_scene
-from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions, stop_of
+from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions, demand_place_of_log, stop_of
 from eventsim.runner.outcome import diagnosed, provenance_of, state_of
 from eventsim.runner.recording import MemorySink
 from eventsim.scene import Scene
-from eventsim.scene.numbers import SPEEDS, is_velocity, number, point
+from eventsim.scene.numbers import SPEEDS, as_whole, is_velocity, number, point
 from eventsim.scene.scene import difference
 from eventsim.scene.stage import stage_of
 
@@ -95,7 +100,7 @@ def simulate(
         CheckpointError: for a checkpoint that cannot be written.
     """
     chosen = engine_named(engine)
-    given = chosen.options_from(options, PARAMETERS)
+    given = _options(chosen, options, PARAMETERS, ELSEWHERE)
     stop = stop_of(a_scene(scene), until, events)
     wanted = RunOptions(
         log=log,
@@ -132,8 +137,26 @@ def simulate(
     return run
 
 
-PARAMETERS = tuple(signature(simulate).parameters)
+PARAMETERS = tuple(name for name in signature(simulate).parameters if name not in ("scene", "command", "options"))
 """What can be given to `simulate` by name, for those who misspell it."""
+
+ELSEWHERE = {
+    "seed": "a seed belongs to who draws: load_scene(path, seed=1), gallery(name, seed=1)",
+    "discard": "measure=TIME leaves out the beginning",
+    **dict.fromkeys(("t", "time", "t_end", "t_max", "tmax", "duration"), "until=TIME says when to stop"),
+}
+"""What others call what `simulate` has by another name, or somebody else has."""
+
+IN_STEPS = dict.fromkeys(("until", "events"), "it has no stop: advance_to(time) and step() go on as far as you ask")
+"""The same of a `Simulation`."""
+
+
+def _options(engine: Engine, given: dict[str, Any], known: tuple[str, ...], elsewhere: dict[str, str]) -> Options:
+    """The engine's options among keywords; EventsimError for others, with what may have been meant."""
+    for name in given:
+        if name in elsewhere and name not in names_of(engine.options):
+            raise EventsimError(f"there is no option {name!r}: {elsewhere[name]}")
+    return engine.options_from(given, known)
 
 
 def resume(
@@ -248,13 +271,14 @@ class Simulation:
         **options: Any,
     ) -> None:
         chosen = engine_named(engine)
+        own = tuple(signature(Simulation).parameters)[1:-1]
         self.scene = scene
         self.engine = chosen.name
         self._options = options
         self._discard = None if isinstance(measure, bool) else measure
         self._keeping: Keeping | None = None
         self._closed = False
-        self._session = chosen.open(stage_of(a_scene(scene)), options=chosen.options_from(options))
+        self._session = chosen.open(stage_of(a_scene(scene)), options=_options(chosen, options, own, IN_STEPS))
         self._provenance = provenance_of(self._session, self.engine, scene)
         self._memory = MemorySink(self._provenance)  # stays empty beside a file
         self._read: EventLog | None = None  # the log as it was read last
@@ -262,6 +286,7 @@ class Simulation:
         self._time: float | None = None
         self._broken_off = False
         self._ended: tuple[str, str] | None = None  # why it cannot go on: a word, a sentence
+        demand_place_of_log(log)
         if log is False:
             raise EventsimError("a simulation that is stepped through keeps its log: log=True, or a path")
         if checkpoint is not None and isinstance(log, bool):
@@ -357,8 +382,10 @@ class Simulation:
         return self._session.counters
 
     def step(self) -> Rows:
-        """Go to the next event; its row, or the rows of all contacts at that instant.  Empty where no event is ahead.
+        """Go to the next event; its row, or the rows of all contacts at that instant.
 
+        Empty where no event is ahead: the clock stands at the last one then, or, where disks wrap around the domain, as far on as
+        it took to find that out.  Who wants to go on from here asks `advance_to(time)`.
         Raises CollapseError where the simulation cannot go on (contacts follow one another without end, digits have run out, no
         law tells what a contact does), and again whenever it is asked to; EventsimError after MOST_WRAPS wraps without an event,
         where nobody knows whether one is ahead.
@@ -377,7 +404,7 @@ class Simulation:
             raise EventsimError(f"cannot advance to {time!r}: it must be a finite time, not before {self.time!r}")
         return self._advance(Stop(time, None if events is None else self._session.counters.events + events))
 
-    def set_velocity(self, disk: int, velocity: tuple[float, float]) -> None:
+    def set_velocity(self, disk: int | np.integer[Any], velocity: Sequence[float] | NDArray[Any]) -> None:
         """Give a disk another velocity, now: a kick, logged, so that the log still replays.
 
         Raises EventsimError for a disk that does not exist or a velocity that no disk of a scene may have; CollapseError where
@@ -385,11 +412,12 @@ class Simulation:
         """
         self._demand_going()
         vx, vy = point(velocity, f"velocity of disk {disk}")
-        if not 0 <= disk < len(self.scene.disks):
+        place = as_whole(disk)
+        if place is None or not 0 <= place < len(self.scene.disks):
             raise EventsimError(f"disk {disk} does not exist; there are {len(self.scene.disks)}, counted from 0")
         if not is_velocity(vx, vy):
             raise EventsimError(f"velocity ({vx!r}, {vy!r}) of disk {disk}: {SPEEDS}")
-        self._session.kick(disk, vx, vy)
+        self._session.kick(place, vx, vy)
         self._keep()
 
     def snapshot(self) -> SavedSimulation:

@@ -172,6 +172,42 @@ def test_a_trajectory_may_be_a_table(run, monkeypatch):
         es.validate(run.scene, trajectory=[("a", "b")])
 
 
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda scene: es.simulate(scene, t_max=1.0), "until=TIME says when to stop"),
+        (lambda scene: es.simulate(scene, seed=2), "a seed belongs to who draws"),
+        (lambda scene: es.simulate(scene, discard=2.0), "measure=TIME leaves out the beginning"),
+        (lambda scene: es.simulate(scene, structure=True), "it has check; the call itself takes until, events, engine"),
+        (lambda scene: es.Simulation(scene, until=3.0), r"it has no stop: advance_to\(time\)"),
+        (lambda scene: es.simulate(scene, until=1.0, log=1), "log = 1: must be True"),
+        (lambda scene: es.Simulation(scene, log=1), "log = 1: must be True"),
+        (lambda scene: es.simulate(scene, until=1.0, progress=True), "progress = True: must be a function"),
+        (lambda scene: es.Simulation(scene).set_velocity(0.5, (0.0, 1.0)), "disk 0.5 does not exist"),
+        (lambda scene: es.Simulation(scene).set_velocity(0, (10**400, 1.0)), "too large for a number"),
+        (lambda scene: es.Disks([(0.5, 0.5)], [(10**400, 0)], 0.1), "too large for a number"),
+        (lambda scene: es.validate(scene, step=lambda x, v, dt: None, dt=0.01, until=0.1), "step moves nothing"),
+    ],
+)
+def test_what_is_given_by_mistake_is_told_in_a_sentence(run, call, sentence):
+    with pytest.raises(es.EventsimError, match=sentence):
+        call(run.scene)
+
+
+def test_what_python_users_write_is_understood(run, tmp_path):
+    sim = es.Simulation(run.scene, engine="reference", log=tmp_path / "log.csv", checkpoint=tmp_path / "run.ck", every=1e3)
+    sim.set_velocity(np.int64(2), np.array([1.0, 0.0]))
+    sim.close()
+    assert (sim.log[0].kind, sim.log[0].a) == ("kick", 2)
+    assert dict(run.measures.items())["Z"] == run.measures["Z"]
+    assert len(run.measures) == len(run.measures.keys())
+    assert es.Box([2, 1], np.array([0, 0])) == es.Box((2.0, 1.0))
+    assert es.measure.measure(run.log)["Z"].value == run.measures["Z"].value
+    assert "eventsim.sweep" in repr(es.sweep)
+    with pytest.raises(AttributeError, match=r"no attribute 'Disk' \(did you mean 'Disks'\?\)"):
+        getattr(es, "Disk")  # noqa: B009
+
+
 def test_settings_of_a_scene_may_be_one(tmp_path):
     scene = es.gallery("two-disks")
     scene.save(tmp_path / "scene.toml")

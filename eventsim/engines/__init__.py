@@ -80,6 +80,8 @@ class Engine:
         own = names_of(self.options)
         owners = [engine.name for engine in ENGINES.values() if name in names_of(engine.options)]
         belongs = f"{name} belongs to {', '.join(owners)}" if owners else f"it has {', '.join(own) or 'none'}"
+        if others and not owners:
+            belongs += f"; the call itself takes {', '.join(others)}"
         near = "" if owners else did_you_mean(name, [*own, *others])
         return f"the engine {self.name} has no option {name!r}{near}; {belongs}"
 

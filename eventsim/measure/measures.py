@@ -141,6 +141,13 @@ class Measures:
     def __iter__(self) -> Iterator[str]:
         return iter(self.by_name)
 
+    def __len__(self) -> int:
+        return len(self.by_name)
+
+    def items(self) -> tuple[tuple[str, Measure], ...]:
+        """The names and the measures of all quantities, in order."""
+        return tuple(self.by_name.items())
+
     def keys(self) -> tuple[str, ...]:
         """The names of all quantities, in order."""
         return tuple(self.by_name)

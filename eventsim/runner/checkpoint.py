@@ -27,6 +27,7 @@ from eventsim.record.files import Mark
 from eventsim.record.files.atomic import demand_place
 from eventsim.record.provenance import BITS, Provenance, has_spin, provenance_from_text
 from eventsim.runner.snapshots import Arrays, demand_fit, packed, unpacked
+from eventsim.scene.numbers import as_whole
 from eventsim.scene.stage import stage_of
 
 FORMAT = 2
@@ -54,11 +55,13 @@ class Every:
     seconds: float | None = None
 
 
-def interval(every: int | str) -> Every:
+def interval(every: float | str) -> Every:
     """How often a checkpoint is written, from a number of events (1000000, "1000000") or a time ("90s", "5min", "2h").
 
     Raises CheckpointError for anything else.
     """
+    if (whole := as_whole(every)) is not None and whole >= 1:
+        return Every(events=whole)
     text = str(every).strip()
     unit = next((unit for unit in SECONDS if text.endswith(unit)), "")
     number = text.removesuffix(unit).strip()

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from eventsim.engines.base import BrokenOffError, Session, Stop
-from eventsim.errors import SceneError
+from eventsim.errors import EventsimError, SceneError
 from eventsim.record.events import Rows
 from eventsim.runner.checkpoint import Checkpoint, Every
 from eventsim.runner.checkpoint_writer import USUALLY
@@ -53,10 +53,22 @@ class RunOptions:
     resumed: Checkpoint | None = None
     interrupt: Interrupt | None = None
 
+    def __post_init__(self) -> None:
+        demand_place_of_log(self.log)
+        for name in ("progress", "on_event"):
+            if (given := getattr(self, name)) is not None and not callable(given):
+                raise EventsimError(f"{name} = {given!r}: must be a function, which is called as the run goes on")
+
     @property
     def rows(self) -> bool:
         """Whether anything wants the rows."""
         return self.log is not False or self.digest or self.on_event is not None or bool(self.takers)
+
+
+def demand_place_of_log(log: object) -> None:
+    """Raise EventsimError for what says of no log where it is kept."""
+    if not isinstance(log, bool | str | PathLike):
+        raise EventsimError(f"log = {log!r}: must be True (in memory), False, or the path of a file")
 
 
 def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:

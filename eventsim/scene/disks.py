@@ -244,7 +244,9 @@ def _floats(value: ArrayLike, key: str, problems: list[str]) -> Floats:
         return np.array(found, dtype=np.float64)
     except (TypeError, ValueError):
         problems.append(f"disks.{key}: every entry must be a number, and the rows must have equal lengths")
-        return np.empty(0)
+    except OverflowError:
+        problems.append(f"disks.{key}: an entry is too large for a number")
+    return np.empty(0)
 
 
 def typical_speed(vx: Floats, vy: Floats) -> float:

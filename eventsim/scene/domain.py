@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+
+from numpy.typing import NDArray
 
 from eventsim.errors import SceneError
 from eventsim.scene.manner import KEYS, Side
@@ -26,6 +28,15 @@ class _Rectangle:
     walls: Sides = ()
     periodic: ClassVar[tuple[bool, bool]]
 
+    if TYPE_CHECKING:  # any two numbers will do
+
+        def __init__(
+            self,
+            size: Sequence[float] | NDArray[Any],
+            origin: Sequence[float] | NDArray[Any] = ...,
+            walls: Mapping[str, Any] | Sides = ...,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "walls", _sides(self.walls, hard_sides(self)))  # type: ignore[arg-type]  # a kind of rectangle
         object.__setattr__(self, "size", point(self.size, "domain.size"))
@@ -38,7 +49,7 @@ class _Rectangle:
         return (width if along_x else None), (height if along_y else None)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class Box(_Rectangle):
     """Four hard walls, named left, right, bottom and top."""
 
@@ -46,7 +57,7 @@ class Box(_Rectangle):
     periodic: ClassVar[tuple[bool, bool]] = (False, False)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class Periodic(_Rectangle):
     """A torus: what leaves on one side comes in on the other."""
 
@@ -54,7 +65,7 @@ class Periodic(_Rectangle):
     periodic: ClassVar[tuple[bool, bool]] = (True, True)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class Channel(_Rectangle):
     """Periodic in x; hard walls named bottom and top."""
 

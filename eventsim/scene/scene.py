@@ -8,6 +8,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from numpy.typing import NDArray
+
 from eventsim.errors import SceneError
 from eventsim.notebook import html_table
 from eventsim.scene.disks import Disks
@@ -70,7 +72,7 @@ class Scene:
         disks: Disks,
         domain: Domain,
         walls: Sequence[Wall] = (),
-        gravity: Sequence[float] | None = None,
+        gravity: Sequence[float] | NDArray[Any] | None = None,
         restitution: Restitution | Mapping[str, Any] | float | None = None,
         contact_duration: float | None = None,
         until: float | None = None,

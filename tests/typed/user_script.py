@@ -1,5 +1,7 @@
 """A user's script, as a strict type checker sees it."""
 
+import numpy as np
+
 import eventsim as es
 
 scene = es.Scene(
@@ -11,6 +13,8 @@ scene = es.Scene(
 scene.save("scene.toml")
 again = es.load_scene("scene.toml", ["restitution=0.8"])
 gas = es.gallery("gas", n=20)
+floor = {"bottom": {"restitution": 0.5}}
+fall = es.Scene(es.Disks([(0.5, 0.5)], radius=0.1), es.Box([2, 1], walls=floor), gravity=np.array([0, -1]))
 
 run = es.simulate(scene, until=4.0, log=True, measure=True)
 speed: float = float((run.state.velocity**2).sum())
@@ -33,6 +37,7 @@ with es.Simulation(gas, engine="reference", log="gas.csv", checkpoint="gas.ckpt"
     rows = sim.step()
     sim.advance_to(0.5)
     sim.set_velocity(0, (1.0, 0.0))
+    sim.set_velocity(np.int64(1), sim.state.velocity[0])
     print(len(rows), sim.time, sim.state.position.shape)
 resumed = es.resume("gas.ckpt", until=1.0)
 print(resumed.time, es.load_log("gas.csv").scene)

@@ -82,6 +82,7 @@ class Judgement:
         looks: (L,) times at which positions were compared.
         errors: (L,) root mean square distance from the truth, in diameters.
         energy: (T,) relative change of the energy, at `times`; NaN where a velocity is not known; None without energy.
+        differences: whether velocities were not told, so that those in the energy are differences of positions.
         lawful: the same change at the end of the event-driven run, where contacts take or give energy; None elsewhere.
         momentum: the largest change, over sum m |v|, where nothing outside gives any; None elsewhere.
         deepest: (depth in reaches, a, b, time) of the deepest overlap at the looks.
@@ -108,6 +109,7 @@ class Judgement:
     faults: list[Fault] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     elapsed: float | None = None
+    differences: bool = False
 
     @property
     def first_fault(self) -> Fault | None:
@@ -234,6 +236,7 @@ def judge(
         blind=_why_blind(samples, flights, truth) if blind and contacts is None else None,
         faults=sorted(faults, key=lambda fault: fault.time),
         remarks=remarks,
+        differences=not flights.told,
     )
 
 

@@ -51,6 +51,10 @@ def stepped(scene: Scene, step: Step, dt: float, until: float | None = None) -> 
         spent += thread_time() - begun
         first = first or spent
         position, velocity = (position, velocity) if given is None else _state(given, k, position.shape)
+        if k == 1 and velocity.any() and np.array_equal(position, places[0]) and np.array_equal(velocity, speeds[0]):
+            raise EventsimError(
+                "step moves nothing: it must change the arrays position and velocity in place, or return both after dt"
+            )
         if k % every == 0 or k == count:
             places.append(np.array(position, dtype=np.float64))
             speeds.append(np.array(velocity, dtype=np.float64))

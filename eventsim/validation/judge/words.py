@@ -144,7 +144,8 @@ def _conserved(judgement: Judgement) -> str:
         change = judgement.energy[np.isfinite(judgement.energy)]
         worst = int(np.argmax(np.abs(change)))
         of = "" if judgement.truth.stage.gravity is None else " of the kinetic one at the start"
-        sentences.append(f"The energy changes by {change[-1]:+.2e}{of} in all, and by {change[worst]:+.2e} at most.")
+        how = ", estimated from differences of positions (contacts between two of them blur it)," if judgement.differences else ""
+        sentences.append(f"The energy{how} changes by {change[-1]:+.2e}{of} in all, and by {change[worst]:+.2e} at most.")
         if judgement.lawful is not None:
             sentences.append(f"That of the event-driven run changes by {judgement.lawful:+.2e} in all.")
     if judgement.momentum is not None:

@@ -270,3 +270,12 @@ def test_disks_that_are_counted_from_one_are_told_as_we_count_them(missed, tmp_p
     assert judged.judgement.charge.false == 0
     with pytest.raises(es.EventsimError, match=r"row \d+: a = 0: names no disk; they are 1 to 7, as in the motion"):
         es.validate(SCENE, trajectory=tmp_path / "one.csv", contacts=[row[:3] for row in contacts])
+
+
+def test_an_energy_from_positions_alone_says_so():
+    scene = es.Scene(es.Disks([(1.0, 1.0)], [(1.0, 0.0)], 0.25), es.Box((4.0, 2.0)), until=1.0)
+    times = np.linspace(0.0, 1.0, 33)
+    places = np.stack([1.0 + times, np.ones(33)], axis=1)[:, None]
+    assert "The energy, estimated from differences" in str(es.validate(scene, trajectory=(times, places)))
+    told = es.validate(scene, trajectory=(times, places, np.broadcast_to([1.0, 0.0], places.shape)))
+    assert "The energy changes by" in str(told)
