@@ -11,13 +11,21 @@ from matplotlib.colors import Colormap, ListedColormap, to_rgba
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
+from eventsim.measure.ensemble import ensemble_of
 from eventsim.record.events import Floats
+from eventsim.scene import Scene
 from eventsim.scene.disks import Disks, species_among
 from eventsim.show.frames import Frame
 from eventsim.show.overview import Overview
 from eventsim.show.palette import AMOUNTS, AMOUNTS_FROM, AMOUNTS_TO, KINDS
 
 MODES = ("mass", "speed", "species", "contacts", "index")
+
+FEW = 7
+"""Disks up to which each has a colour of its own; the last of KINDS, yellow, is too light for a line."""
+
+DARK_ENOUGH = 0.92
+"""Of the scale of amounts: colours up to here are dark enough for lines."""
 
 Paint = Callable[[Frame], Floats]
 """The colours (N, 4) of all disks in a frame."""
@@ -66,8 +74,7 @@ def colouring_of(mode: str | None, disks: Disks, overview: Overview) -> Colourin
         return _by_mass(disks)
     if mode == "species":
         return _by_species(disks)
-    rank = np.arange(len(disks)) / max(len(disks) - 1, 1)
-    return _fixed(amounts()(rank), Scale("disk", 0.0, len(disks) - 1.0) if len(disks) > 1 else None)
+    return _fixed(shades_of(len(disks)), _key_of_numbers(len(disks)))
 
 
 def mode_named(mode: str | None) -> str | None:
@@ -80,6 +87,27 @@ def mode_named(mode: str | None) -> str | None:
 def default_mode(disks: Disks) -> str:
     """Return the mode that suits: species where there are a few of them, else speed."""
     return "species" if 1 < len(species_of(disks)[1]) <= len(KINDS) else "speed"
+
+
+def own_colours(disks: Disks) -> Floats:
+    """Return the colours (N, 4) that tell disks apart: of their species where there are a few of them, else of their numbers."""
+    if default_mode(disks) == "species":
+        return _of_kinds(species_of(disks)[0])
+    return shades_of(len(disks))
+
+
+def shades_of(n: int) -> Floats:
+    """Return a colour (n, 4) for each of n disks: unlike ones where they are few, else along a scale, dark enough for lines."""
+    if n <= FEW:
+        return _of_kinds(np.arange(n))
+    shades: Floats = amounts()(np.linspace(0.0, DARK_ENOUGH, n))
+    return shades
+
+
+def _key_of_numbers(n: int) -> Scale | Kinds | None:
+    if n > FEW:
+        return Scale("disk", 0.0, n - 1.0)
+    return Kinds(tuple((f"disk {k}", KINDS[k]) for k in range(n))) if n > 1 else None
 
 
 def amounts() -> Colormap:
@@ -137,11 +165,26 @@ def _by_species(disks: Disks) -> Colouring:
 
 
 def species_labels(disks: Disks) -> tuple[tuple[str, str], ...]:
-    """Return (label, colour) of the species, as many as there are colours."""
+    """Return (label, colour) of the species, as many as there are colours: their names, or radius and mass of those without."""
+    names = [str(name) for name in species_among(disks).name[::-1]]
+    if all(names) and len(set(names)) == len(names):
+        return tuple(zip(names, KINDS, strict=False))
     kinds = species_of(disks)[1][: len(KINDS)]
     by_mass = len(np.unique(kinds[:, 1])) > 1
     texts = [f"r {radius:.3g}, m {mass:.3g}" if by_mass else f"r {radius:.3g}" for radius, mass in kinds.tolist()]
     return tuple(zip(texts, KINDS, strict=False))
+
+
+def measured_labels(scene: Scene) -> list[tuple[str, str]]:
+    """Return (label, colour) of the species as `measure` counts them; those of pictures."""
+    ensemble, labels = ensemble_of(scene), species_labels(scene.disks)
+    places = species_of(scene.disks)[0]
+    found = []
+    for kind, one in enumerate(ensemble.species):
+        place = int(places[np.flatnonzero(ensemble.species_of == kind)[0]])
+        mixed = np.isnan(one.radius) or place >= len(labels)
+        found.append((f"species {kind}", KINDS[kind % len(KINDS)]) if mixed else labels[place])
+    return found
 
 
 def _of_kinds(species: NDArray[np.int64]) -> Floats:

@@ -191,8 +191,8 @@ class LiveView {
     const begin = () => new World({ ...header.scene, disks: { x, y, vx, vy, radius, mass, spin } });
     const stage = { ...header.stage, species }, playing = this.player && this.player.playing && header.why === "resize";
     if (this.current && this.current.scene === "menu") stage.shown = [-MARGIN, -MARGIN, stage.size[0] + MARGIN, stage.size[1] + MARGIN];
-    const alike = header.stage.masses[0] === header.stage.masses[1];
-    const description = { ...header, stage, begin, app: this, colour: alike ? "index" : "mass", dark: false, trails: false, flash: false, arrows: false, impulse: false };
+    const alike = header.stage.masses[0] === header.stage.masses[1], own = alike || header.stage.own === "species" ? header.stage.own : "mass";
+    const description = { ...header, stage, begin, app: this, colour: own, dark: false, trails: false, flash: false, arrows: false, impulse: false };
     clearTimeout(this.waiting);
     this.joining = false;
     this.done = false;

@@ -9,8 +9,9 @@ from eventsim.errors import LogError
 from eventsim.measure.boundary_map import boundary_map
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
+from eventsim.show.colouring import own_colours
 from eventsim.show.figures.demands import with_events
-from eventsim.show.figures.style import LENGTH, label, shades_of
+from eventsim.show.figures.style import LENGTH, label
 from eventsim.show.output import name_of
 from eventsim.show.palette import LIGHT
 
@@ -25,7 +26,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
     if isinstance(mapped, str):
         raise LogError(f"boundary: {mapped}")
     axes = figure.add_subplot()
-    shades, drawn, contacts = shades_of(len(mapped.movers)), 0, 0
+    shades, drawn, contacts = own_colours(log.scene.disks), 0, 0
     for block in mapped.all_contacts(log):
         shown = slice(0, max(MOST_DOTS - drawn, 0))
         axes.scatter(

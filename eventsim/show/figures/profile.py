@@ -7,10 +7,10 @@ from matplotlib.figure import Figure
 
 from eventsim.measure import measure
 from eventsim.replay.log import AnyLog
+from eventsim.show.colouring import measured_labels
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import LENGTH, ORANGE, label
+from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label
 from eventsim.show.output import name_of
-from eventsim.show.palette import KINDS
 
 
 def draw(figure: Figure, log: AnyLog) -> None:
@@ -22,9 +22,10 @@ def draw(figure: Figure, log: AnyLog) -> None:
     middle = 0.5 * (profile.edges[1:] + profile.edges[:-1])
     above, below = figure.subplots(2, 1, sharex=True)
     theory = False
-    for place, one in enumerate(profile.species):
-        look = {"fmt": "o", "ms": 3.0, "lw": 1.0, "color": KINDS[place % len(KINDS)]}
-        name = f"species {one.species}" if len(profile.species) > 1 else "measured"
+    looks = measured_labels(log.scene)
+    for one in profile.species:
+        name, colour = looks[one.species] if len(profile.species) > 1 else ("measured", BLUE)
+        look = {"fmt": "o", "ms": 3.0, "lw": 1.0, "color": colour}
         above.errorbar(middle, one.density, np.nan_to_num(one.density_error), label=name, **look)
         if one.theory is not None:
             above.plot(middle, one.theory, color=ORANGE, lw=1.4, label="hydrostatics of the fluid")

@@ -10,8 +10,9 @@ from eventsim.record.events import Kind
 from eventsim.replay.flight_table import flights, together
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
+from eventsim.show.colouring import own_colours
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import LENGTH, TIME, label, shades_of
+from eventsim.show.figures.style import LENGTH, TIME, label
 from eventsim.show.images import wrapped_pieces
 from eventsim.show.output import name_of
 from eventsim.show.window import window_of
@@ -44,7 +45,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
     axes = figure.add_subplot()
     axes.add_collection(
         LineCollection(
-            list(lines), colors=shades_of(passage.stage.n)[disk], linewidths=1.0, rasterized=len(lines) > MOST_VECTORS
+            list(lines), colors=own_colours(scene.disks)[disk], linewidths=1.0, rasterized=len(lines) > MOST_VECTORS
         ),
         autolim=False,
     )

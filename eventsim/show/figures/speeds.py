@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from eventsim.errors import LogError
 from eventsim.measure import measure
 from eventsim.replay.log import AnyLog
+from eventsim.show.colouring import measured_labels
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import SPEED, label
 from eventsim.show.output import name_of
@@ -29,9 +30,10 @@ def draw(figure: Figure, log: AnyLog) -> None:
         raise LogError("speeds: nothing moves in this run, or slower than its histogram shows")
     axes = figure.add_subplot()
     end, misfits = 0.0, []
+    looks = measured_labels(log.scene)
     for place, one in enumerate(histograms[: len(KINDS)]):
-        middle, colour = 0.5 * (one.edges[1:] + one.edges[:-1]), KINDS[place]
-        name = f"species {one.species}" if len(histograms) > 1 else "measured"
+        middle, (name, colour) = 0.5 * (one.edges[1:] + one.edges[:-1]), looks[one.species]
+        name = name if len(histograms) > 1 else "measured"
         name = "tracers" if measures.tracers and one is histograms[-1] else name
         axes.stairs(one.density, one.edges, fill=True, alpha=0.25, color=colour)
         axes.errorbar(middle, one.density, one.error, fmt="o", ms=3, lw=1, color=colour, label=name)

@@ -12,8 +12,9 @@ from eventsim.errors import LogError
 from eventsim.measure.measures import Measure
 from eventsim.measure.studies import study
 from eventsim.replay.log import AnyLog
+from eventsim.show.colouring import shades_of
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label, shades_of
+from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label
 from eventsim.show.output import name_of
 
 

@@ -6,11 +6,9 @@ from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from eventsim.record.events import Floats
-from eventsim.show.colouring import amounts
 from eventsim.show.palette import KINDS, LIGHT
 
 WIDE = 34
@@ -21,8 +19,6 @@ SIZE, DPI = (7.2, 4.4), 150
 
 BLUE, ORANGE, GREEN, PINK = KINDS[0], KINDS[1], KINDS[2], KINDS[3]
 RED = KINDS[5]
-MOST_KINDS = 7
-"""Disks up to which each has a colour of its own; the last of KINDS, yellow, is too light for a line."""
 
 TIME, LENGTH, SPEED = "time unit", "length unit", "length / time"
 """Units: whatever the scene takes for them."""
@@ -71,11 +67,3 @@ def say_none(axes: Axes, why: str) -> None:
     """Write into an empty panel why it is empty."""
     axes.text(0.5, 0.5, fill(why, WIDE), transform=axes.transAxes, ha="center", va="center", color=LIGHT.faint)
     axes.set(xticks=[], yticks=[])
-
-
-def shades_of(n: int) -> Floats:
-    """Return a colour (n, 4) for each disk: unlike ones where they are few, else along a scale, dark enough for lines."""
-    if n <= MOST_KINDS:
-        return np.array([to_rgba(colour) for colour in KINDS[:n]])
-    shades: Floats = amounts()(np.linspace(0.0, 0.92, n))
-    return shades

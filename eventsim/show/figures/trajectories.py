@@ -15,8 +15,9 @@ from eventsim.replay.flight_table import flights, together
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
 from eventsim.show import outlines
+from eventsim.show.colouring import own_colours
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import LENGTH, SIZE, label, shades_of
+from eventsim.show.figures.style import LENGTH, SIZE, label
 from eventsim.show.images import lines_with_images, wrapped_pieces
 from eventsim.show.output import name_of
 from eventsim.show.palette import LIGHT
@@ -42,7 +43,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
     disks = np.unique(np.linspace(0, n - 1, min(n, MOST_DISKS)).astype(np.int64))
     until, events = _drawn_until(log, disks)
     table = together([part.of(disks) for part in flights(passage, until)])
-    shades = shades_of(n)
+    shades = own_colours(scene.disks)
     _, ends, disk = table.pieces()
     ends, disk = wrapped_pieces(ends, disk, scene.domain.period, scene.domain.origin)
     shown = window_of(passage, until)

@@ -4,7 +4,7 @@
 const GLOW_SECONDS = 0.2, TRAIL_SECONDS = 1, TRAIL_BANDS = 6, SMALLEST = 1.5, EDGED = 3;
 
 class Drawing {
-  /* stage: {shown: [x0, y0, x1, y1], corner, size | null, period, walls, hard, open, species, fastest, kinds, amounts,
+  /* stage: {shown: [x0, y0, x1, y1], corner, size | null, period, walls, hard, open, species, fastest, kinds, amounts, few, darkEnough,
      palettes: {light, dark}}; lines are lists of [x, y] on the scene's axes. */
   constructor(canvas, world, stage) {
     this.canvas = canvas;
@@ -182,6 +182,10 @@ class Drawing {
       for (let i = 0; i < n; i++) shade[i] = stage.species[i] % stage.kinds.length;
       return stage.kinds;
     }
+    if (view.colour === "index" && n <= stage.few) {
+      for (let i = 0; i < n; i++) shade[i] = i;
+      return stage.kinds;
+    }
     const last = stage.amounts.length - 1, put = (i, share) => { shade[i] = Math.round(last * Math.min(Math.max(share, 0), 1)); };
     const [low, high] = stage.masses;
     let most = 1;
@@ -192,7 +196,7 @@ class Drawing {
       if (view.colour === "speed") put(i, Math.hypot(state.vx[i], state.vy[i]) / stage.fastest);
       else if (view.colour === "contacts") put(i, world.contactsUntil(i, view.time) / most);
       else if (view.colour === "mass") put(i, high > low ? (Math.min(world.disks.mass[i], high) - low) / (high - low) : 0.5);
-      else put(i, n > 1 ? i / (n - 1) : 0.5);
+      else put(i, (stage.darkEnough * i) / (n - 1));
     }
     return stage.amounts;
   }

@@ -26,6 +26,8 @@ from eventsim.replay.replay import Replay
 from eventsim.scene.stage import Stage
 from eventsim.show import outlines
 from eventsim.show.colouring import (
+    DARK_ENOUGH,
+    FEW,
     amounts,
     default_mode,
     mode_named,
@@ -154,6 +156,9 @@ def stage_description(replay: Replay, last: float) -> dict[str, Any]:
         "speciesNames": [name for name, _ in species_labels(scene.disks)],
         "masses": [float(masses.min()), float(masses.max())] if len(masses) else [1.0, 1.0],
         "kinds": KINDS,
+        "few": FEW,
+        "darkEnough": DARK_ENOUGH,
+        "own": "species" if default_mode(scene.disks) == "species" else "index",
         "amounts": [to_hex(shade) for shade in shades],
         "palettes": {"light": asdict(LIGHT), "dark": asdict(DARK)},
     }

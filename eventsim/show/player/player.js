@@ -156,13 +156,14 @@ class Player {
 
   /* Say what the colours mean: the ends of a scale, or a dot for each species. */
   _key_of_colours() {
-    const { amounts, kinds, speciesNames, fastest, masses } = this.stage, number = (value) => String(Number(value.toPrecision(3)));
+    const { amounts, kinds, speciesNames, fastest, masses, few } = this.stage, number = (value) => String(Number(value.toPrecision(3)));
     const scale = (low, high) => [low, dot(`linear-gradient(90deg, ${amounts.join(", ")})`, "scale"), high];
     const keys = {
       speed: () => scale("0", `≥ ${number(fastest)}`),
       mass: () => (masses[0] < masses[1] ? scale(number(masses[0]), `${this.world.disks.mass.some((mass) => mass === Infinity) ? "≥ " : ""}${number(masses[1])}`) : []),
       contacts: () => scale("few", "many"),
-      index: () => scale("0", String(this.world.count - 1)),
+      index: () => (this.world.count > few ? scale("0", String(this.world.count - 1))
+                    : kinds.slice(0, this.world.count).flatMap((colour, k) => [dot(colour, ""), k ? String(k) : "disk 0"])),
       species: () => speciesNames.slice(0, 4).flatMap((name, k) => [dot(kinds[k % kinds.length], ""), name]),
     };
     this.part("key").replaceChildren(...keys[this.view.colour]());
