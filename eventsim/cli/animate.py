@@ -40,7 +40,7 @@ def pixels(context: click.Context, option: click.Parameter, value: str | None) -
     type=click.Choice(COLORS),
     help="What the colour of a disk says; the scene decides if not given.",
 )
-@click.option("--trails", is_flag=True, help="Draw where disks have been in the last second.")
+@click.option("--trails", is_flag=True, help="Draw where disks have been in the last second of the film.")
 @click.option("--velocities", is_flag=True, help="Draw velocities as arrows.")
 @click.option("--flash", is_flag=True, help="Light up disks at their contacts.")
 @click.option("--dark", is_flag=True, help="Draw on a dark ground.")

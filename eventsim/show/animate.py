@@ -33,7 +33,7 @@ ROOM = {".mp4": (1280, 720), ".gif": (640, 480), ".png": (520, 440)}
 """Pixels that a frame may take where no size is given."""
 
 TRAIL = 1.0
-"""Seconds of the movie that a trail reaches back."""
+"""Seconds of the movie that a trail reaches back; in a strip of moments, of an mp4 of usual length."""
 
 MOMENTS = 6
 PALETTE_FRAMES = 8
@@ -84,7 +84,7 @@ def animate(
         ffmpeg()  # missing: say so before any work is done
     hidden = BANDS if suffix == ".png" and look.trails else 0
     trail_frames = BANDS if suffix == ".png" else round(TRAIL * timing.fps)
-    picture = Picture(passage, look, ROOM[suffix], timing.times, trail_frames)
+    picture = Picture(passage, look, ROOM[suffix], timing.times, trail_frames, _caption(suffix, look, timing))
     with atomic_write(file) as part:
         drawn = _drawn(picture, passage, timing, hidden, progress)
         if suffix == ".mp4":
@@ -93,6 +93,13 @@ def animate(
             write_gif(part, drawn, palette_of(_samples(picture, passage, timing)), len(timing.times), timing.fps)
         else:
             write_strip(part, drawn, len(timing.times), picture.layout.size)
+
+
+def _caption(suffix: str, look: Look, timing: Timing) -> str:
+    """Return how much of the scene's clock passes in a second of a movie, and how far trails reach back on that clock."""
+    speed = f"{float(f'{timing.speed:.2g}'):g}"  # not 1.1e+02
+    words = [f"trails: last {float(f'{TRAIL * timing.speed:.2g}'):g} time units"] if look.trails else []
+    return "   ".join([*words, *([] if suffix == ".png" else [f"\N{MULTIPLICATION SIGN} {speed}"])])
 
 
 def _page(log: AnyLog, film: Film, look: Look) -> str:

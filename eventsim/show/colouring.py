@@ -107,7 +107,7 @@ def shades_of(n: int) -> Floats:
 def _key_of_numbers(n: int) -> Scale | Kinds | None:
     if n > FEW:
         return Scale("disk", 0.0, n - 1.0)
-    return Kinds(tuple((f"disk {k}", KINDS[k]) for k in range(n))) if n > 1 else None
+    return Kinds(tuple((str(k) if k else "disk 0", KINDS[k]) for k in range(n))) if n > 1 else None
 
 
 def amounts() -> Colormap:

@@ -83,15 +83,27 @@ class Bars:
         self.counter = self._text(PAD, BAR / 2, "", "left", palette.faint)
         for text in (self.clock, self.counter):
             text.set_animated(True)
+        self._key = float(PAD)
 
     def draw_key(self, key: Scale | Kinds | None) -> None:
         """Draw the key of the colours at the right of the lower bar."""
         if isinstance(key, Scale):
-            self._draw_scale(key)
+            self._key = self._draw_scale(key)
         elif key is not None:
-            self._draw_dots(key.labels, float(PAD))
+            self._key = self._draw_dots(key.labels, float(PAD))
 
-    def _draw_scale(self, key: Scale) -> None:
+    def longest_that_fits(self, texts: Sequence[str]) -> str:
+        """Return the first of some texts, the longest first, that fits beside the key of the colours; the last where none does."""
+        room = self._place.size[0] / self._place.unit - PAD - self._key
+        for text in texts:
+            self.counter.set_text(text)
+            if self._width(self.counter) <= room:
+                break
+        self.counter.set_text("")
+        return text
+
+    def _draw_scale(self, key: Scale) -> float:
+        """Draw a scale; how far it reaches from the right."""
         right, length, faint = float(PAD), 90.0, self._palette.faint
         high = self._text(-right, BAR / 2, f"{AT_LEAST if key.beyond else ''}{key.high:.3g}", "right", faint)
         right += self._width(high) + 6
@@ -107,19 +119,19 @@ class Bars:
         strip.imshow(amounts()(np.linspace(0, 1, 256))[None], aspect="auto", interpolation="bilinear")
         strip.axis("off")
         low = self._text(-(right + length + 6), BAR / 2, f"{key.title}  {key.low:.3g}", "right", faint)
-        self._draw_dots(key.apart, right + length + 6 + self._width(low) + 10)
+        return self._draw_dots(key.apart, right + length + 6 + self._width(low) + 10)
 
-    def _draw_dots(self, labels: Sequence[tuple[str, str]], right: float) -> None:
-        """Draw dots with their labels from the right to the left, as many as there is room for."""
+    def _draw_dots(self, labels: Sequence[tuple[str, str]], right: float) -> float:
+        """Draw dots with their labels from the right to the left, as many as there is room for; how far they reach."""
         room = 0.55 * self._place.size[0] / self._place.unit
-        for label, colour in reversed(labels):
+        for left, (label, colour) in zip(range(len(labels) - 1, -1, -1), reversed(labels), strict=True):
             text = self._text(-right, BAR / 2, label, "right", self._palette.faint)
             right += self._width(text) + 5
             dot = self._text(-right, BAR / 2, "\N{BLACK CIRCLE}", "right", colour)
             right += self._width(dot) + 10
-            if right > room:
-                self._text(-right, BAR / 2, "...", "right", self._palette.faint)
-                return
+            if right > room and left:
+                return right + self._width(self._text(-right, BAR / 2, "...", "right", self._palette.faint)) + 10
+        return right
 
     def _text(self, x: float, y: float, text: str, align: str, colour: str, weight: str = "normal") -> Text:
         """Place a text; x from the left (negative: from the right), y from the bottom (negative: from the top)."""

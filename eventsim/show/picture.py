@@ -21,7 +21,7 @@ from eventsim.replay.passage import Passage
 from eventsim.scene.names import plural
 from eventsim.show import outlines
 from eventsim.show.colouring import colouring_of
-from eventsim.show.frames import Frame
+from eventsim.show.frames import Frame, energy_name, energy_zero
 from eventsim.show.images import disks_with_images, lines_with_images
 from eventsim.show.layout import DPI, Bars, layout
 from eventsim.show.output import name_of
@@ -41,6 +41,11 @@ WALL_WIDTH, WIDEST_WALL = 2.0, 0.08
 
 LATEST = 1e15
 """A time from which on it has more digits than anybody reads."""
+
+SHORT = "kin. + pot. energy"
+"""Of the energy under gravity, where there is little room."""
+
+WIDEST_NUMBER = "-8.888e-88"
 
 LONGEST_ARROW = 0.08
 """The arrow of the fastest flight is this share of the picture's larger side."""
@@ -68,10 +73,15 @@ class Picture:
     """
 
     def __init__(
-        self, passage: Passage, look: Look, room: tuple[int, int], times: Floats, trail_frames: int = 1
+        self, passage: Passage, look: Look, room: tuple[int, int], times: Floats, trail_frames: int = 1, caption: str = ""
     ) -> None:
-        """room: pixels that a picture may take where the look gives no size. times: of the frames to come."""
+        """Begin a picture.
+
+        room: pixels that it may take where the look gives no size. times: of the frames to come.  caption: to stand before the
+        clock.
+        """
         log, self._look = passage.log, look
+        self._log = log
         self._scene = log.scene
         self._palette = DARK if look.dark else LIGHT
         self._radius = log.scene.disks.radius
@@ -96,6 +106,8 @@ class Picture:
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
         self._bars = Bars(self._figure, self.layout, self._palette, name_of(log))
         self._bars.draw_key(self._colouring.key)
+        self._caption = f"{caption}   " if caption else ""
+        self._energy = self._energy_words()
         self._clock_format = _clock_format(times)
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
@@ -116,11 +128,21 @@ class Picture:
         if self._look.velocities:
             self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
             self._axes.draw_artist(self._arrows)
-        self._bars.clock.set_text(f"t = {frame.state.time:{self._clock_format}}")
-        self._bars.counter.set_text(f"{plural(frame.events, 'event')}   energy {frame.energy:.4g}")
+        self._bars.clock.set_text(f"{self._caption}t = {frame.state.time:{self._clock_format}}")
+        self._bars.counter.set_text(self._energy.format(events=plural(frame.events, "event"), energy=f"{frame.energy:.4g}"))
         for text in (self._bars.clock, self._bars.counter):
             self._figure.draw_artist(text)
         return np.asarray(self._canvas.buffer_rgba())
+
+    def _energy_words(self) -> str:
+        """Return the words of the lower bar, as long as there is room: which energy it is, and where it is 0."""
+        name, zero = energy_name(self._scene), energy_zero(self._scene)
+        words = [f"{{events}}   {name} {{energy}}"]
+        if zero is not None:
+            words = [f"{words[0]} ({zero})", *words, f"{{events}}   {SHORT} {{energy}}", f"{SHORT} {{energy}}"]
+        most = {"events": plural(len(self._log), "event"), "energy": WIDEST_NUMBER}
+        fitting = self._bars.longest_that_fits([text.format(**most) for text in words])
+        return next(text for text in words if text.format(**most) == fitting)
 
     def _place_disks(self, frame: Frame) -> None:
         colours = self._colouring.paint(frame)

@@ -265,6 +265,45 @@ def test_one_event_is_counted_as_one_event():
     assert told == ["0 events", "1 event"]
 
 
+@pytest.mark.parametrize(
+    ("gravity", "size", "told"),
+    [
+        (None, (640, 480), "1 event   kinetic energy 0.5"),
+        ((0.0, -1.0), (640, 480), "1 event   kinetic + potential energy 0.5 (0 at y = 0)"),
+        ((0.0, -1.0), (320, 200), "1 event   kin. + pot. energy 0.5"),
+    ],
+)
+def test_a_frame_says_which_energy_it_tells(gravity, size, told):
+    disks = es.Disks([[0.0, 0.0], [10.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], 0.5)
+    passage = Passage(es.simulate(es.Scene(disks, es.Open(), gravity=gravity), until=20.0, log=True).log)
+    picture = Picture(passage, Look(size=size, color="species"), size, np.array([0.0, 20.0]))
+    (frame,) = frames_at(passage, np.array([20.0]), 1.0)
+    picture.draw(frame)
+    assert picture._bars.counter.get_text() == told
+
+
+@pytest.mark.parametrize(
+    ("suffix", "film", "told"),
+    [
+        (".gif", Film(speed=0.3, end=0.03), "trails: last 0.3 time units   \N{MULTIPLICATION SIGN} 0.3   t = "),
+        (".png", Film(moments=1), "trails: last 0.1 time units   t = "),
+    ],
+)
+def test_a_movie_says_its_speed_and_how_far_trails_reach(broken, tmp_path, monkeypatch, suffix, film, told):
+    clocks = []
+    draw = Picture.draw
+
+    def noting(self, frame):
+        pixels = draw(self, frame)
+        clocks.append(self._bars.clock.get_text())
+        return pixels
+
+    monkeypatch.setattr(Picture, "draw", noting)
+    animate(broken, tmp_path / f"a{suffix}", film, Look(size=(320, 200), trails=True))
+    assert clocks
+    assert all(text.startswith(told) for text in clocks)
+
+
 def test_a_bar_of_masses_tells_disks_that_have_no_place_on_it():
     disks = es.Disks([(1, 1), (2, 1), (3, 1)], radius=0.2, mass=[1, 3, np.inf])
     run = es.simulate(es.Scene(disks, es.Box((4, 2)), until=1.0), log=True)

@@ -303,3 +303,18 @@ def test_the_last_contact_is_told_with_velocities_on_both_sides_of_it(opened, fl
         assert side["after"] == pytest.approx(after[side["disk"]].tolist(), abs=1e-12)
     (told_impulse,) = re.findall(r"momentum exchanged  ([\d.e-]+)", told)
     assert float(told_impulse) == pytest.approx(fluid.rows["impulse"][row], rel=1e-3)
+
+
+def test_a_wall_is_told_by_its_name_and_a_bounce_back_has_two_arrows(opened):
+    disks = es.Disks([(0.5, 1.0)], radius=0.05)
+    log = es.simulate(es.Scene(disks, es.Box((1.0, 2.0)), gravity=(0.0, -9.81)), events=1, engine="reference", log=True).log
+    driver = opened(log)
+    told, aside = driver.execute_script(
+        """
+        player.part("impulse").click();
+        player.seek(player.duration);
+        return [player.part("told").textContent, player.drawing._aside(player.world.contact(player.view.time).sides[0])];
+        """
+    )
+    assert "disk 0 at bottom" in told
+    assert abs(aside[0]) > 0.0

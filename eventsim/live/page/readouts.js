@@ -13,8 +13,9 @@ class Sum {
 }
 
 /* Kinetic energy, energy, momentum, mean square of it along x, across and along y, number, angular momentum and moment of inertia about
-   (x0, y0), of the disks of finite positive mass. */
-function sums(world, state, x0, y0, share) {
+   (x0, y0), of the disks of finite positive mass.  corner: from which places are counted; the potential energy is 0 at (0, 0) of the
+   scene's axes. */
+function sums(world, state, x0, y0, share, corner = [0, 0]) {
   const [kinetic, energy, px, py, turning] = Array.from({ length: 5 }, () => new Sum());
   let count = 0, inertia = 0, xx = 0, xy = 0, yy = 0;
   for (let i = 0; i < world.count; i++) {
@@ -23,8 +24,8 @@ function sums(world, state, x0, y0, share) {
     kinetic.add(0.5 * mass * (vx ** 2 + vy ** 2));
     energy.add(0.5 * mass * (vx ** 2 + vy ** 2));
     if (world.gravity) {
-      energy.add(-mass * world.gravity[0] * state.x[i]);
-      energy.add(-mass * world.gravity[1] * state.y[i]);
+      energy.add(-mass * world.gravity[0] * (state.x[i] + corner[0]));
+      energy.add(-mass * world.gravity[1] * (state.y[i] + corner[1]));
     }
     px.add(mass * vx);
     py.add(mass * vy);
@@ -77,6 +78,7 @@ class Readouts {
       const term = document.createElement("dt"), value = document.createElement("dd");
       term.textContent = name;
       this.values.set(name, value);
+      if (name === "energy") this.energyTerm = term;
       list.append(term, value);
     }
   }
@@ -84,7 +86,7 @@ class Readouts {
   /* view: what is shown; its state lies in world.now.  gas: what `measure` knows of the scene as a gas, and where it has a dash. */
   show(world, stage, gas, tally, view) {
     const state = world.now, [x0, y0] = gas.middle || stage.corner;
-    const found = sums(world, state, x0 - stage.corner[0], y0 - stage.corner[1], gas.lastDigits);
+    const found = sums(world, state, x0 - stage.corner[0], y0 - stage.corner[1], gas.lastDigits, stage.corner);
     const drift = (gas.kept[0] ? found.px ** 2 : 0) + (gas.kept[1] ? found.py ** 2 : 0);
     const common = (drift ? drift / (2 * gas.mass) : 0) + (gas.middle && found.inertia ? found.turning ** 2 / (2 * found.inertia) : 0);
     const events = world.eventsUntil(view.time), from = Math.max(view.time - view.speed, 0);
@@ -96,6 +98,9 @@ class Readouts {
     const pressure = noPressure ? null : this._pressure(world, stage, tally, view, events);
     const tell = (name, text) => { this.values.get(name).textContent = text; };
     tell("events / s", number((events - world.eventsUntil(from)) / lasted));
+    this.energyName = world.gravity ? "kin. + pot. energy" : "kinetic energy";
+    this.energyTerm.textContent = this.energyName;
+    this.energyTerm.title = world.gravity ? "Kinetic and potential energy; this is 0 at (0, 0)" : "";
     tell("energy", number(found.energy, 6));
     tell("momentum", `${number(found.px)}, ${number(found.py)}`);
     tell("temperature", known ? number(temperature, 4) : "–");
@@ -104,7 +109,7 @@ class Readouts {
     tell("p V / N kT", pressure === null || !temperature ? "–" : number((pressure * gas.area) / (found.count * temperature)));
     for (const name of ["pressure", "p V / N kT"]) this.values.get(name).title = noPressure || "";
     this.energy = found.energy;
-    this.temperature = temperature;
+    this.temperature = known ? temperature : null;
     this._drawSpeeds(world, state, temperature || (found.count ? found.kinetic / found.count : 0), gas.maxwell, view.dark ? stage.palettes.dark : stage.palettes.light);
   }
 

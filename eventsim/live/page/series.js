@@ -24,27 +24,34 @@ class Series {
     if (this.points.length > MOST_POINTS) this.points = this.points.filter((_, k) => k % 2 === 0);
   }
 
-  /* Draw both, each from 0 to its largest value, and the time that is shown. */
-  draw(palette, now) {
+  /* Draw what is known of both, each from 0 to its largest value, over a line of times; and the time that is shown.
+     energyName: which energy it is; start: the scene's clock at time 0. */
+  draw(palette, now, energyName, start) {
     const ratio = window.devicePixelRatio || 1, box = this.canvas.getBoundingClientRect(), context = this.canvas.getContext("2d");
     const width = (this.canvas.width = Math.round(box.width * ratio)), height = (this.canvas.height = Math.round(box.height * ratio));
     if (!width || !this.points.length) return;
-    const base = height - 14 * ratio, last = this.points[this.points.length - 1].time || 1;
-    const curves = [["energy", palette.ink], ["temperature", palette.arrow]];
+    const base = height - 28 * ratio, last = this.points[this.points.length - 1].time || 1;
+    const curves = [["energy", energyName, palette.ink], ["temperature", "temperature", palette.arrow]];
     context.font = `${11 * ratio}px system-ui, sans-serif`;
     context.textBaseline = "bottom";
-    curves.forEach(([name, colour], number) => {
-      const most = Math.max(...this.points.map((point) => Math.abs(point[name])));
+    curves.forEach(([key, name, colour], place) => {
+      const known = this.points.filter((point) => point[key] !== null), values = known.map((point) => point[key]);
+      if (!known.length) return;
+      const low = Math.min(...values, 0), high = Math.max(...values, 0), y = (value) => base - (base - 4 * ratio) * ((value - low) / (high - low || 1));
       context.strokeStyle = context.fillStyle = colour;
-      context.lineWidth = (number ? 1.5 : 2.5) * ratio;
-      context.textAlign = number ? "right" : "left";
-      context.fillText(name, number ? width : 0, height);
-      if (!(most > 0)) return;
+      context.lineWidth = (place ? 1.5 : 2.5) * ratio;
+      context.textAlign = place ? "right" : "left";
+      context.fillText(`${name} ${number(low)} to ${number(high)}`, place ? width : 0, height - 14 * ratio);
       context.beginPath();
-      this.points.forEach((point, k) => context[k ? "lineTo" : "moveTo"]((width * point.time) / last, base - (base - 4 * ratio) * (point[name] / most)));
+      known.forEach((point, k) => context[k ? "lineTo" : "moveTo"]((width * point.time) / last, y(point[key])));
       context.stroke();
     });
     context.fillStyle = palette.faint;
+    context.fillRect(0, base, width, ratio);
+    for (const [time, at, align] of [[0, 0, "left"], [last, width, "right"]]) {
+      context.textAlign = align;
+      context.fillText(`t = ${number(start + time)}`, at, height);
+    }
     context.fillRect((width * Math.min(now, last)) / last, 0, ratio, base);
   }
 }

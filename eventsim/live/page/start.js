@@ -84,7 +84,8 @@ class LiveView {
   tell(player) {
     this.readouts.show(player.world, player.stage, player.gas, player.tally, player.view);
     this.series.take(player.view.time, this.readouts.energy, this.readouts.temperature);
-    this.series.draw(player.view.dark ? player.stage.palettes.dark : player.stage.palettes.light, player.view.time);
+    this.series.draw(player.view.dark ? player.stage.palettes.dark : player.stage.palettes.light, player.view.time,
+                     this.readouts.energyName, player.start);
     const done = player.ended !== null && player.view.time >= player.duration;
     if (done !== this.done) { this.done = done; this._notice(done ? player.ended : null); }
     if (!player.comparison) return;

@@ -1,7 +1,7 @@
 "use strict";
 /* The drawing: one state of a world on a canvas. It keeps no time and asks nobody for events. */
 
-const GLOW_SECONDS = 0.2, TRAIL_SECONDS = 1, TRAIL_BANDS = 6, SMALLEST = 1.5, EDGED = 3;
+const GLOW_SECONDS = 0.2, TRAIL_SECONDS = 1, TRAIL_BANDS = 6, SMALLEST = 1.5, EDGED = 3, ASIDE = 5, BACK = 0.95;
 
 class Drawing {
   /* stage: {shown: [x0, y0, x1, y1], corner, size | null, period, walls, hard, open, species, fastest, kinds, amounts, few, darkEnough,
@@ -282,8 +282,23 @@ class Drawing {
       context.setLineDash([]);
     };
     stroke(this.palette.faint, 1.2, true, ({ disk, x, y }) => this._circle(x, y, this.world.disks.radius[disk]));
-    stroke(this.palette.ink, 2, true, ({ x, y, before }) => before.some(Boolean) && this._arrow(x - before[0] * time, y - before[1] * time, before[0] * time, before[1] * time));
-    stroke(this.palette.arrow, 2.4, false, ({ x, y, after }) => after.some(Boolean) && this._arrow(x, y, after[0] * time, after[1] * time));
+    stroke(this.palette.ink, 2, true, (side) => {
+      const { x, y, before } = side, [dx, dy] = this._aside(side);
+      if (before.some(Boolean)) this._arrow(x + dx - before[0] * time, y + dy - before[1] * time, before[0] * time, before[1] * time);
+    });
+    stroke(this.palette.arrow, 2.4, false, (side) => {
+      const { x, y, after } = side, [dx, dy] = this._aside(side);
+      if (after.some(Boolean)) this._arrow(x - dx, y - dy, after[0] * time, after[1] * time);
+    });
+  }
+
+  /* By how much the arrow before is moved to one side and that after to the other: of a disk that goes back the way it came they
+     would lie on each other. */
+  _aside({ before, after }) {
+    const came = Math.hypot(...before), left = Math.hypot(...after);
+    if (!(came && left) || before[0] * after[0] + before[1] * after[1] > -BACK * came * left) return [0, 0];
+    const apart = (ASIDE * this.ratio) / this.scale;
+    return [(-apart * before[1]) / came, (apart * before[0]) / came];
   }
 
   _mark(state, i) {

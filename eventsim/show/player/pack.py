@@ -133,6 +133,7 @@ def scene_description(stage: Stage) -> dict[str, Any]:
         "epochLength": stage.epoch_length,
         "period": stage.period,
         "gravity": stage.gravity,
+        "wallNames": stage.wall_names,
         "slopes": None if stage.supports is None else stage.slopes.tolist(),
     }
 

@@ -126,6 +126,7 @@ class Player {
     this.part("play").title = this.playing ? "Pause (space)" : "Play (space)";
     this.part("reverse").setAttribute("aria-pressed", String(this.direction < 0));
     this.part("rate").textContent = `× ${Number(this.view.speed.toPrecision(2))}`;
+    this.part("trails").parentElement.title = `Where disks have been in the last second of the film: ${Number(this.view.speed.toPrecision(2))} on the scene's clock`;
     this.part("rate").title = "So much of the scene's clock passes in a second: × 1 is real time, if its unit is a second (key 1)";
   }
 
@@ -216,7 +217,7 @@ class Player {
     const change = ({ before, after }) => Math.hypot(after[0] - before[0], after[1] - before[1]), [one] = found.sides;
     const changed = found.sides.filter((side) => change(side) > 1e-12 * this.stage.fastest), sides = changed.length ? changed : found.sides;
     const names = sides.slice(0, MOST_TOLD).map((side) => side.disk).join(", ");
-    const what = sides.length > 1 ? `disks ${names}${sides.length > MOST_TOLD ? ", ..." : ""}` : `disk ${one.disk} at a wall`;
+    const what = sides.length > 1 ? `disks ${names}${sides.length > MOST_TOLD ? ", ..." : ""}` : `disk ${one.disk} at ${found.walls.join(" and ")}`;
     const event = first === last ? `event ${first}` : `events ${first} to ${last}`;
     const lines = sides.slice(0, MOST_TOLD).map(({ disk, before, after }) => `disk ${disk}  v ${pair(before)} \u2192 ${pair(after)}`);
     const light = sides.find((side) => mass[side.disk] < Infinity);

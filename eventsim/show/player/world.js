@@ -26,7 +26,7 @@ class Column {
 
 class World {
   /* scene: {count, epochLength, period: [number | null, ...], gravity: [gx, gy] | null, disks: {x, y, vx, vy, radius, mass, spin},
-     slopes: the part of gravity that is left to a disk at rest on each wall, or null where none comes to rest; spin: undefined where disks have none}. */
+     wallNames: as the log numbers them; slopes: the part of gravity that is left to a disk at rest on each wall, or null where none comes to rest; spin: undefined where disks have none}. */
   constructor(scene) {
     this.count = scene.count;
     this.epochLength = scene.epochLength;
@@ -34,6 +34,7 @@ class World {
     this.gravity = scene.gravity;
     this.slopes = scene.slopes;
     this.disks = scene.disks;
+    this.wallNames = scene.wallNames || [];
     this.anchor = {};
     for (const name of ["epoch", "remainder", "time", "x", "y", "vx", "vy", "gx", "gy", "contacts", "spin", "angle"]) this.anchor[name] = new Column();
     this.event = {};
@@ -126,23 +127,24 @@ class World {
     return bisect(this.event.time, (other) => other <= time);
   }
 
-  /* The last contact at or before a time, with all that happened at its time: {events: [first, last], time, sides: [{disk, x, y, before,
-     after}, ...]}, velocities on both sides of it; null before the first. */
+  /* The last contact at or before a time, with all that happened at its time: {events: [first, last], time, walls: names, sides: [{disk, x, y,
+     before, after}, ...]}, velocities on both sides of it; null before the first. */
   contact(time) {
-    const { kind, a, b, anchor, time: times } = this.event;
+    const { kind, a, b, wall, anchor, time: times } = this.event;
     let last = this.eventsUntil(time) - 1;
     while (last >= 0 && kind.values[last] > WALL) last--;
     if (last < 0) return null;
     let first = last;
     while (first > 0 && times.values[first - 1] === times.values[last] && kind.values[first - 1] <= WALL) first--;
-    const sides = new Map();
+    const sides = new Map(), walls = new Set();
     for (let event = first; event <= last; event++) {
+      if (kind.values[event] === WALL) walls.add(this.wallNames[wall.values[event]] || "a wall");
       [a.values[event], b.values[event]].filter((disk) => disk >= 0).forEach((disk, k) => {
         const after = anchor.values[event] + k, at = this.anchor, before = sides.has(disk) ? sides.get(disk).before : this._before(disk, after);
         sides.set(disk, { disk, x: at.x.values[after], y: at.y.values[after], before, after: [at.vx.values[after], at.vy.values[after]] });
       });
     }
-    return { events: [first, last], time: times.values[last], sides: [...sides.values()] };
+    return { events: [first, last], time: times.values[last], walls: [...walls], sides: [...sides.values()] };
   }
 
   /* The velocity with which a disk came to an anchor. */
