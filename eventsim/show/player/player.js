@@ -168,6 +168,7 @@ class Player {
       species: () => speciesNames.slice(0, 4).flatMap((name, k) => [dot(kinds[k % kinds.length], ""), name]),
     };
     this.part("key").replaceChildren(...keys[this.view.colour]());
+    this.part("key").title = this.view.colour === "species" ? speciesNames.join("; ") : "";
   }
 
   _switch(name, value) {
