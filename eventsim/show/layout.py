@@ -93,7 +93,7 @@ class Bars:
             self._key = self._draw_dots(key.labels, float(PAD))
 
     def longest_that_fits(self, texts: Sequence[str]) -> str:
-        """Return the first of some texts, the longest first, that fits beside the key of the colours; the last where none does."""
+        """Return the first of some texts, the longest first, that fits beside the key of colours; the last where none does."""
         room = self._place.size[0] / self._place.unit - PAD - self._key
         for text in texts:
             self.counter.set_text(text)
