@@ -247,8 +247,9 @@ class _Judge:
                 )
                 if not is_it or not all(any(row is one for one in others) for others in ahead[1:]) or self._is_over(row, time):
                     continue
-                if not self._is_in_time(row, time) and self._changes_nothing(number, disks):
-                    continue  # a graze before it
+                before = not self._is_in_time(row, time) or self._leaves(row, number)
+                if before and self._changes_nothing(number, disks):
+                    continue  # a graze before it, or the end of a wall
                 return row
             i = disks[0]
             if ahead[0] and kind == REST and (rest := self._early_rest(i, wall, number)) is not None:
@@ -274,6 +275,14 @@ class _Judge:
 
     def _is_in_time(self, row: Row, time: Decimal) -> bool:
         return abs(float(time - row.time)) <= self._time_slack(row, row.parts[0].disk)
+
+    def _leaves(self, row: Row, number: int) -> bool:
+        """Whether a disk only comes, in the log, to the end of its wall, and meets at once what is there."""
+        i, seen = row.parts[0].disk, self.seen.rows
+        following = [k for k in range(number + 1, len(seen)) if i in (seen["a"][k], seen["b"][k])]
+        at_once = bool(following) and self._time(seen[following[0]]) == self._time(seen[number])
+        after = (float(seen["vxa"][number]), float(seen["vya"][number]))
+        return at_once and row.kind == WALL and math.dist(after, _floats(row.parts[0].velocity)) > self.close * self.speed
 
     def _is_over(self, row: Row, time: Decimal) -> bool:
         """Whether a row that may be missing is missing: it should have come before."""
