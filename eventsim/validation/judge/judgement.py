@@ -27,6 +27,7 @@ from eventsim.validation.judge.beginning import (
     within,
 )
 from eventsim.validation.judge.charge import Charge, Window, charged, in_our_form
+from eventsim.validation.judge.displaced import displacements
 from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, Turn, energy_on_the_way, flights_of
 from eventsim.validation.judge.gravity import wrong_gravity
@@ -219,6 +220,8 @@ def judge(
     faults = [fault for fault in seen_here if fault is not None]
     groups = [group for group in read.groups if any(turn.last > 0 for turn in group)]
     faults += jumps(groups, flights, around, mass, faults)
+    for jump, (begin, end) in displacements(flights, resolution):
+        faults = [jump, *(fault for fault in faults if not begin <= fault.time <= end)]
     return Judgement(
         name=scene.called,
         source=samples.source,

@@ -245,3 +245,19 @@ def test_contacts_and_paths_that_disagree_are_told():
     assert any(text.endswith("The paths alone say: no wrong event.") for text in remarks)
     alike = judge(SCENE, checked(Samples("motion", times, places)), contacts_of(contacts, len(SCENE.disks))).remarks
     assert not any("disagree" in text for text in alike)
+
+
+@pytest.mark.parametrize("gravity", [None, (0.0, -1.0)])
+def test_disks_that_are_all_displaced_at_once_do_not_turn(gravity):
+    """Four disks on a row: all are moved by (0.03, -0.02) between two samples, whose distances differ."""
+    disks = es.Disks([(1.0 + k, 4.0) for k in range(4)], [(0.1 * k, 0.2) for k in range(4)], 0.2)
+    scene = es.Scene(disks, es.Box((8.0, 8.0)), gravity=gravity, until=0.5)
+    times = np.concatenate([np.linspace(0.0, 0.25, 26), np.linspace(0.27, 0.51, 13)])
+    fall = 0.5 * np.array(gravity or (0.0, 0.0)) * times[:, None, None] ** 2
+    places = disks.position + disks.velocity * times[:, None, None] + fall
+    places[21:] += (0.03, -0.02)
+    found = es.validate(scene, trajectory=(times, places))
+    assert found.judgement.faults == [found.first_fault]
+    assert found.first_fault.sentence == "jump: all disks are displaced by (0.03, -0.02) between t = 0.2 and 0.21"
+    places[21:] -= (0.03, -0.02)
+    assert es.validate(scene, trajectory=(times, places)).first_fault is None
