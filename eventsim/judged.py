@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, overload
 import numpy as np
 
 from eventsim.errors import EventsimError
+from eventsim.meant import NamesMeant
 from eventsim.readers import read_samples, samples_in
 from eventsim.readers.contacts import ToldContacts, read_contacts, told_from
 from eventsim.readers.samples import Samples, checked
@@ -33,7 +34,7 @@ contacts rows (time, a, b[, wall])."""
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class Judged(NamesMeant):
     """What an engine's motion is worth: print it, or ask for the numbers.
 
     Attributes:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from eventsim.engines import ENGINES as TABLE
 from eventsim.engines import Engine
 from eventsim.engines.base import Stop
+from eventsim.meant import NamesMeant
 from eventsim.replay.past import PastRun
 from eventsim.runner.loop import run_scene
 from eventsim.runner.options import RunOptions
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True)
-class Run(PastRun):
+class Run(NamesMeant, PastRun):
     """What a simulation gives: the state it ended in, the log if one was kept, how good it is and why it stopped.
 
     begun_by: the engine that handed over to `engine`, where `auto` began with another one.

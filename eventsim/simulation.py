@@ -19,6 +19,7 @@ from eventsim.engines.collapse import TAIL
 from eventsim.engines.options import Options, names_of
 from eventsim.errors import CheckpointError, CollapseError, EventsimError, SceneError
 from eventsim.formulas.clock import clock_time
+from eventsim.meant import NamesMeant
 from eventsim.record.events import Rows, State, joined, unchangeable
 from eventsim.record.files import read_log
 from eventsim.record.provenance import Ending
@@ -243,7 +244,7 @@ class SavedSimulation:
     ended: tuple[str, str] | None
 
 
-class Simulation:
+class Simulation(NamesMeant):
     """A scene that is simulated step by step.
 
     log: True (in memory) or a path (.csv, .jsonl, .npz, .parquet), to which rows are streamed.  measure: the time at the

@@ -1,9 +1,11 @@
 """What Python users have in hand: short words for objects, tables, figures as axes, data frames, streamed simulations."""
 
+import copy
 import doctest
 import importlib
 import json
 import os
+import pickle
 import subprocess
 import sys
 import warnings
@@ -206,6 +208,24 @@ def test_what_python_users_write_is_understood(run, tmp_path):
     assert "eventsim.sweep" in repr(es.sweep)
     with pytest.raises(AttributeError, match=r"no attribute 'Disk' \(did you mean 'Disks'\?\)"):
         getattr(es, "Disk")  # noqa: B009
+
+
+def test_a_name_of_other_libraries_is_told_with_the_one_that_is_meant(run):
+    sim = es.Simulation(run.scene, engine="reference")
+    asked = (
+        (run.log, "to_dataframe", "to_pandas"),
+        (run, "events", "counters.events"),
+        (sim, "kick", "set_velocity"),
+        (sim, "run", "advance_to"),
+        (run.scene, "replace", "dataclasses.replace"),
+        (run.measures, "df", "to_dict"),
+        (run.state, "kinetic_energy", "state.energy"),
+    )
+    for thing, name, meant in asked:
+        with pytest.raises(AttributeError, match=rf"^'{type(thing).__name__}' object has no attribute '{name}': .*{meant}"):
+            getattr(thing, name)
+        assert not hasattr(thing, "nothing_of_the_kind")
+    assert pickle.loads(pickle.dumps(run.scene)) == copy.deepcopy(run.scene) == run.scene
 
 
 def test_settings_of_a_scene_may_be_one(tmp_path):

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from eventsim.meant import NamesMeant
 from eventsim.measure.correlation import Correlations
 from eventsim.measure.profile import Profile
 from eventsim.measure.series import TimeSeries
@@ -79,7 +80,7 @@ def _number(value: float) -> float | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Measures:
+class Measures(NamesMeant):
     """What was measured in a run: `measures["Z"].value`, `measures.keys()`, `measures.table()`.
 
     Attributes:

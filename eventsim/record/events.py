@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eventsim.errors import EventsimError
+from eventsim.meant import NamesMeant
 from eventsim.notebook import few, html_table
 
 if TYPE_CHECKING:
@@ -161,7 +162,7 @@ def unchangeable(rows: NDArray[Any]) -> NDArray[Any]:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class State:
+class State(NamesMeant):
     """Where all disks are at one time.
 
     time: on the scene's clock. position, velocity: float64 arrays (N, 2) on the scene's axes, as in a scene file;

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 import numpy as np
 
 from eventsim.errors import EventsimError, LogError
+from eventsim.meant import NamesMeant
 from eventsim.notebook import few, html_table
 from eventsim.record.events import FIELDS, LABELS, Column, Kind, Rows, SpinColumns, columns_of, has_spins, unchangeable
 from eventsim.record.places import on_scene_axes
@@ -63,7 +64,7 @@ def _no_row(place: object) -> str:
     return f"log[{type(place).__name__}]: rows go by one number or a slice; choose among them in log.rows or log.to_pandas()"
 
 
-class Excerpt(SpinColumns):
+class Excerpt(NamesMeant, SpinColumns):
     """Some rows of a log.
 
     Every column is an attribute holding a read-only array (`rows.time`, `rows.vxa`, ...), `spin_a` and `spin_b` only where disks

@@ -11,6 +11,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from eventsim.errors import SceneError
+from eventsim.meant import NamesMeant
 from eventsim.notebook import html_table
 from eventsim.scene.disks import Disks
 from eventsim.scene.domain import DOMAINS, Domain
@@ -26,7 +27,7 @@ UNNAMED = "a scene without a name"
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
-class Scene:
+class Scene(NamesMeant):
     """Disks in a domain with walls, and the rules of their motion; valid once it exists.
 
     Attributes:
