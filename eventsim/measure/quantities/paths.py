@@ -24,6 +24,8 @@ GAINS = "an average over this run: tracers gain speed without end from disks tha
 
 TABLE = "pi A / P of the table"
 
+PASSED_OVER = "between disks; walls passed over"
+
 
 def measures(records: Records) -> Iterator[Measure]:
     """Yield the means of a gas, and of tracers; names of tracers begin with tracer_ where there is a gas too."""
@@ -52,15 +54,17 @@ def _gas(records: Records) -> Iterator[Measure]:
         if ensemble.n > 1:
             yield dash("mean_free_path", "length", "no contact of disks was seen")
         return
+    walls = PASSED_OVER if records.wall_contacts.any() else None
     rate = expected_rate(records)
     expected = None if rate is None else Expected(1.0 / rate.value, 0.0, rate.source)
-    yield average(records, "mean_free_time", ensemble.n * records.time, met, "time", expected)
+    yield average(records, "mean_free_time", ensemble.n * records.time, met, "time", expected, walls)
     way = None
     if rate is not None and ensemble.torus and ensemble.at_rest:
         kt, mass = records.found["temperature"], ensemble.species[0].mass
         speed = theory.mean_speed(kt, mass, ensemble.thermal_share(mass), 0.5 * ensemble.freedoms - 1.0)
         way = Expected(speed / rate.value, 0.0, CLOSED if rate.source == CLOSED else rate.source)
-    yield average(records, "mean_free_path", records.path, met, "length", way, note=with_drift(records))
+    note = "; ".join(filter(None, (walls, with_drift(records)))) or None
+    yield average(records, "mean_free_path", records.path, met, "length", way, note)
 
 
 def _billiard(records: Records, kind: int | None, prefix: str) -> Iterator[Measure]:

@@ -36,9 +36,9 @@ def draw(figure: Figure, log: AnyLog) -> None:
         pairs, every = pairs + len(hits), every + seen
     until, end = (None, end) if last == end else (last, last)
     scene, table = log.scene, together(list(flights(passage, until)))
-    spread = np.ptp(table.place, axis=0)
-    axis = int(spread[1] > spread[0])
     time, ends, disk = table.pieces()
+    spread = np.ptp(table.place if scene.domain.size is not None else ends.reshape(-1, 2), axis=0)
+    axis = int(spread[1] > spread[0])
     lines = np.stack([time, ends[:, :, axis]], axis=2)
     period = scene.domain.period[axis]
     lines, disk = wrapped_pieces(lines, disk, (None, period), (0.0, scene.domain.origin[axis]))
