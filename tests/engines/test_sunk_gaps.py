@@ -202,3 +202,15 @@ def test_disks_that_meet_below_the_last_bits_of_their_places_end_a_run(restituti
         run = es.simulate(scene, until=1.5, engine=engine)
         assert (run.stopped, run.counters.events) == (stopped, contacts)
         assert run.reason is None or "reach of 2e-18 is below the last bits" in run.reason
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("speed", "stopped"), [(-1.0, "digits"), (1.0, "until")])
+def test_so_do_those_that_slide_into_each_other_on_one_wall(engine, speed, stopped):
+    """Last bits across the slope are wider than both: their contact would be missed."""
+    slope = es.Segment((-9.0, 0.5), (19.0, 7.3))
+    disks = es.Disks([(8.0, 5.0), (6.0, 4.3)], [(speed, 0.0), (0.0, 0.0)], 1e-18)
+    run = es.simulate(es.Scene(disks, es.Open(), [slope], (0.0, -9.81), 0.3), until=1.2, engine=engine)
+    assert run.stopped == stopped
+    assert run.counters.rests == (1 if stopped == "digits" else 2)
+    assert run.reason is None or "slide into each other" in run.reason

@@ -49,7 +49,7 @@ class PythonResolver:
         near = self._contacts_until(latest_tie(now, machine.rules.tie_screen))
         generation = self._ties.settle(near) if any(event.time == now for event in near) else []
         if (sunk := self._sunk.reason(generation)) is not None:
-            self.reason, self.sunk = sunk, machine.stage.law.loses_energy()
+            self.reason, self.sunk = sunk, self._sunk.sank and machine.stage.law.loses_energy()
             return "digits"
         if (doubtful := self._aimed.reason(generation)) is not None:
             self.reason = doubtful

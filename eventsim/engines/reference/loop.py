@@ -133,7 +133,7 @@ class ReferenceSession(ExactSession):
         """Resolve the contacts of the earliest instant that are predicted by now, then predict their disks anew."""
         generation = self._pop_generation()
         if self._sunk is not None and (sunk := self._sunk.reason(generation)) is not None:
-            self.reason, self.sunk = sunk, self.stage.law.loses_energy()
+            self.reason, self.sunk = sunk, self._sunk.sank and self.stage.law.loses_energy()
             return "digits"
         if self._aimed is not None and (doubtful := self._aimed.reason(generation)) is not None:
             self.reason = doubtful

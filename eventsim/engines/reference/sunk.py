@@ -14,6 +14,8 @@ from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
 from eventsim.formulas.doubt import AT_ONCE, BELOW, SLOWLY, is_sunk, is_too_small, piled_up
+from eventsim.formulas.real import Real
+from eventsim.formulas.rest import SUPPORTED
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.post import Post
 from eventsim.scene.stage import Stage
@@ -26,20 +28,28 @@ TINY = 2.0**-30
 
 
 class Sunk:
-    """Knows which contacts of one run close a gap that is below the digits."""
+    """Knows which contacts of one run close a gap that is below the digits.
+
+    sank: whether the last reason is such a gap, and not a reach that is too small.
+    """
 
     def __init__(self, stage: Stage, state: ExactState) -> None:
         self._stage = stage
         self._state = state
         self._looks, self._creeps, self._shrinks = can_sink(stage), can_creep(stage), can_be_too_small(stage)
         self._pile, self._slowly = piled_up(stage.law.loss()), SLOWLY * stage.epoch_length
+        self.sank = False
         self._start = list(zip(stage.x.tolist(), stage.y.tolist(), strict=True))
 
     def reason(self, generation: list[Event]) -> str | None:
         """Why contacts of an instant cannot be resolved: a sentence on the first gap below the digits; None where they can."""
         for event in generation:
+            self.sank = False
             if self._shrinks and event.b >= 0 and (place := self._place_too_small_for(event)) is not None:
-                return self._word_on_reach(event, place)
+                return self._word_on_reach(event.a, event.b, "meet at", place)
+            if self._shrinks and event.b < 0 and event.image[1] == SUPPORTED and (j := self._met_on_its_line(event)) is not None:
+                return self._word_on_reach(event.a, j, "slide into each other from", self._state.place(event.a, event.time))
+            self.sank = True
             if self._looks and (gap := self._gap(event)) is not None:
                 return self._sentence(event, gap)
             if self._creeps and (gap := self._hop(event)) is not None:
@@ -85,12 +95,32 @@ class Sunk:
             return None
         return approach * lag
 
-    def _place_too_small_for(self, event: Event) -> tuple[float, float] | None:
+    def _place_too_small_for(self, event: Event) -> tuple[Real, Real] | None:
         """Where two disks meet whose reach is below the last bits of their places; None where it is above them."""
-        state, radius = self._state, self._stage.radius
-        (xa, ya), (xb, yb) = state.place(event.a, event.time), state.place(event.b, event.time)
-        largest = max(abs(xa), abs(ya), abs(xb), abs(yb))
-        return (float(xa), float(ya)) if is_too_small(float(radius[event.a] + radius[event.b]), largest) else None
+        place = self._state.place(event.a, event.time)
+        return place if self._is_too_small(event.a, event.b, place, event.time) else None
+
+    def _met_on_its_line(self, event: Event) -> int | None:
+        """Whom a disk, which comes to rest on a line, slides towards there, if places cannot tell that they meet."""
+        state, t = self._state, event.time
+        supports = state.supports
+        assert supports is not None
+        line = supports[-1 - event.b]
+        assert line is not None
+        (x, y), (u, w) = state.place(event.a, t), state.speed(event.a, t)
+        for j in range(state.n):
+            other = state.support_of(j)
+            if j == event.a or other is None or other.line != line.line:
+                continue
+            (xj, yj), (uj, wj) = state.place(j, t), state.speed(j, t)
+            approach = (x - xj) * (u - uj) + (y - yj) * (w - wj)
+            if approach < 0.0 and self._is_too_small(event.a, j, (x, y), t):
+                return j
+        return None
+
+    def _is_too_small(self, a: int, b: int, place: tuple[Real, Real], t: Real) -> bool:
+        reach = float(self._stage.radius[a] + self._stage.radius[b])
+        return bool(is_too_small(reach, max(abs(c) for c in (*place, *self._state.place(b, t)))))
 
     def _have_just_met(self, event: Event) -> bool:
         """Whether one of two disks remembers their contact, at which its flight began."""
@@ -141,11 +171,11 @@ class Sunk:
             f"contact comes next, and when, float64 cannot tell any more; {self._stage.law.remedy()}"
         )
 
-    def _word_on_reach(self, event: Event, place: tuple[float, float]) -> str:
+    def _word_on_reach(self, a: int, b: int, how: str, place: tuple[Real, Real]) -> str:
         (x, y), (left, low) = place, self._stage.corner
-        reach = float(self._stage.radius[event.a] + self._stage.radius[event.b])
+        reach = float(self._stage.radius[a] + self._stage.radius[b])
         return (
-            f"disks {event.a} and {event.b} meet at ({x + left:.6g}, {y + low:.6g}), and their reach of {reach:.2g} is below the "
+            f"disks {a} and {b} {how} ({x + left:.6g}, {y + low:.6g}), and their reach of {reach:.2g} is below the "
             "last bits of places there: on which side, float64 cannot tell; larger disks can be told, points do not meet"
         )
 
