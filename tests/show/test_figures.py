@@ -157,7 +157,7 @@ def test_a_title_names_the_scene_or_else_the_file(still, tmp_path):
     assert name_of(read) == "mine"
     figure = new_figure()
     trajectories.draw(figure, read)
-    assert f"{len(read)} events (dots: the disks at their events)" in figure.axes[0].get_title(loc="left")
+    assert f"{len(read)} events (dots)" in figure.axes[0].get_title(loc="left")
 
 
 @pytest.mark.parametrize("size", [(400_000.0, 3.0), (3.0, 400_000.0), (40.0, 1.5)])

@@ -81,7 +81,7 @@ def draw(figure: Figure, log: AnyLog) -> None:
         axes,
         f"x [{LENGTH}]",
         f"y [{LENGTH}]",
-        f"{name_of(log)}: the ways of {which}, {told} (dots: the disks at their events)",
+        f"{name_of(log)}: the ways of {which}, {told} (dots)",
     )
     axes.grid(visible=False)
     width, height = sides_of(shown)
