@@ -19,7 +19,7 @@ from eventsim.replay.passage import Passage
 from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4
-from eventsim.show.output import suffix_of
+from eventsim.show.output import short_number, span_words, suffix_of
 from eventsim.show.picture import Look, Picture
 from eventsim.show.player.page import page, write_page
 from eventsim.show.strip import write_strip
@@ -97,9 +97,8 @@ def animate(
 
 def _caption(suffix: str, look: Look, timing: Timing) -> str:
     """Return how much of the scene's clock passes in a second of a movie, and how far trails reach back on that clock."""
-    speed = f"{float(f'{timing.speed:.2g}'):g}"  # not 1.1e+02
-    words = [f"trails: last {float(f'{TRAIL * timing.speed:.2g}'):g} time units"] if look.trails else []
-    return "   ".join([*words, *([] if suffix == ".png" else [f"\N{MULTIPLICATION SIGN} {speed}"])])
+    words = [f"trails: last {span_words(TRAIL * timing.speed)}"] if look.trails else []
+    return "   ".join([*words, *([] if suffix == ".png" else [f"\N{MULTIPLICATION SIGN} {short_number(timing.speed)}"])])
 
 
 def _page(log: AnyLog, film: Film, look: Look) -> str:

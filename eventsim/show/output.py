@@ -32,3 +32,14 @@ def name_of(log: AnyLog) -> str:
 def as_written(text: str) -> str:
     """Return a name as matplotlib draws it letter by letter: without it, what stands between two dollars is a formula."""
     return text.replace("$", r"\$")
+
+
+def short_number(value: float, digits: int = 2) -> str:
+    """Return a number to some significant digits, without an exponent where it has few before the point: 110, not 1.1e+02."""
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
+def span_words(span: float, digits: int = 2) -> str:
+    """Return a span of time in words."""
+    told = short_number(span, digits)
+    return f"{told} time unit" if told == "1" else f"{told} time units"

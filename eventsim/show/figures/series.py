@@ -20,7 +20,7 @@ from eventsim.scene.names import plural
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import BLUE, GREEN, ORANGE, TIME, label, say_none, scale_to
 from eventsim.show.frames import energies_of, energy_zero
-from eventsim.show.output import name_of
+from eventsim.show.output import name_of, span_words
 from eventsim.show.palette import LIGHT
 
 MOMENTS = 400
@@ -67,7 +67,7 @@ def steps_words(ends: Floats) -> str:
     spans = np.diff(ends)
     if len(spans) > 1 and np.ptp(spans[:-1]) > LEVEL * spans.max():
         return "steps: means over stretches of equally many contacts"
-    return f"steps: means over stretches of {spans[0]:.3g} {TIME}s"
+    return f"steps: means over stretches of {span_words(float(spans[0]), 3)}"
 
 
 def _draw_energy(axes: Axes, passage: Passage, measures: Measures, along: str) -> bool:
