@@ -165,23 +165,29 @@ def energy_of(log: AnyLog, state: State) -> float:
 
 def energies_of(log: AnyLog, state: State) -> tuple[float, float]:
     """Return (kinetic energy, that of spins too; potential energy - m g x, 0 at (0, 0)) of the disks of finite mass."""
-    disks, gravity = log.scene.disks, log.scene.gravity
+    scene, disks = log.scene, log.scene.disks
     mass = np.where(np.isfinite(disks.mass), disks.mass, 0.0)
     kinetic = 0.5 * float(mass @ (state.velocity**2).sum(axis=1))
     if state.spin is not None:
         kinetic += 0.5 * float((mass * disks.moments()) @ (disks.radius * state.spin) ** 2)
-    potential = 0.0 if gravity is None else -float(mass @ (state.position @ np.array(gravity)))
-    return kinetic, potential
+    if scene.gravity is None or not has_height(scene):
+        return kinetic, 0.0
+    return kinetic, -float(mass @ (state.position @ np.array(scene.gravity)))
+
+
+def has_height(scene: Scene) -> bool:
+    """Whether disks have a potential energy that their places tell: not where they fall along a period."""
+    return scene.gravity is not None and not any(g and p for g, p in zip(scene.gravity, scene.domain.periodic, strict=True))
 
 
 def energy_name(scene: Scene) -> str:
     """Return what `energy_of` is called."""
-    return "kinetic energy" if scene.gravity is None else "kinetic + potential energy"
+    return "kinetic + potential energy" if has_height(scene) else "kinetic energy"
 
 
 def energy_zero(scene: Scene) -> str | None:
     """Return where the potential energy is 0, in words; None where there is none."""
-    if scene.gravity is None:
+    if scene.gravity is None or not has_height(scene):
         return None
     along = [axis for axis, pull in zip("xy", scene.gravity, strict=True) if pull]
     return f"0 at {along[0]} = 0" if len(along) == 1 else "0 at (0, 0)"

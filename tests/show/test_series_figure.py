@@ -82,3 +82,12 @@ def test_residuals_end_with_what_the_run_says(pucks, ball):
     assert f"changed by {run.residuals.energy:.1e} of itself" in above.get_title(loc="left")
     assert words(below) == ["no contacts between disks"]
     assert not below.get_yticks().size
+
+
+def test_a_fall_along_a_period_has_a_kinetic_energy_alone():
+    """Places jump by a period there, and an energy of places with them."""
+    scene = es.Scene(es.Disks([(0.5, 0.5)], radius=0.05), es.Periodic((1.0, 1.0)), gravity=(0.0, -1.0))
+    log = es.simulate(scene, until=3.0, engine="reference", log=True).log
+    (kinetic,) = drawn(series, log).axes[0].lines
+    assert kinetic.get_ydata()[-1] == pytest.approx(4.5)  # m g^2 t^2 / 2
+    assert "kinetic energy from 0 to 4.5" in drawn(residuals, log).axes[0].get_title(loc="left")

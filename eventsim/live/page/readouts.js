@@ -23,7 +23,7 @@ function sums(world, state, x0, y0, share, corner = [0, 0]) {
     if (!(mass < Infinity) || mass === 0) continue;
     kinetic.add(0.5 * mass * (vx ** 2 + vy ** 2));
     energy.add(0.5 * mass * (vx ** 2 + vy ** 2));
-    if (world.gravity) {
+    if (hasHeight(world)) {
       energy.add(-mass * world.gravity[0] * (state.x[i] + corner[0]));
       energy.add(-mass * world.gravity[1] * (state.y[i] + corner[1]));
     }
@@ -41,6 +41,11 @@ function sums(world, state, x0, y0, share, corner = [0, 0]) {
   const told = { kinetic, energy, px, py, turning };
   for (const name in told) told[name] = told[name].known(share);
   return { ...told, count, inertia, xx, xy, yy };
+}
+
+/* Whether disks have a potential energy that their places tell: not where they fall along a period. */
+function hasHeight(world) {
+  return Boolean(world.gravity) && !world.gravity.some((pull, axis) => pull !== 0 && world.period[axis] !== null);
 }
 
 class Tally {
@@ -98,9 +103,9 @@ class Readouts {
     const pressure = noPressure ? null : this._pressure(world, stage, tally, view, events);
     const tell = (name, text) => { this.values.get(name).textContent = text; };
     tell("events / s", number((events - world.eventsUntil(from)) / lasted));
-    this.energyName = world.gravity ? "kin. + pot. energy" : "kinetic energy";
+    this.energyName = hasHeight(world) ? "kin. + pot. energy" : "kinetic energy";
     this.energyTerm.textContent = this.energyName;
-    this.energyTerm.title = world.gravity ? "Kinetic and potential energy; this is 0 at (0, 0)" : "";
+    this.energyTerm.title = hasHeight(world) ? "Kinetic and potential energy; this is 0 at (0, 0)" : "";
     tell("energy", number(found.energy, 6));
     tell("momentum", `${number(found.px)}, ${number(found.py)}`);
     tell("temperature", known ? number(temperature, 4) : "–");

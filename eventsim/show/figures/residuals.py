@@ -19,7 +19,7 @@ from eventsim.scene.stage import Stage
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.marks import Marks
 from eventsim.show.figures.style import BLUE, ORANGE, TIME, label, scale_to
-from eventsim.show.frames import energy_name, energy_of, energy_zero
+from eventsim.show.frames import energy_name, energy_of, energy_zero, has_height
 from eventsim.show.output import name_of
 from eventsim.show.palette import LIGHT
 
@@ -56,7 +56,8 @@ def _draw_energy(axes: Axes, passage: Passage, times: Floats) -> str:
     """Draw the energy, where contacts keep it its change as a run tells it; what to say of it in the title."""
     log, stage = passage.log, passage.stage
     name, zero = energy_name(log.scene), energy_zero(log.scene)
-    lossy = not keeps_energy(stage) or any((rows["kind"] == Kind.KICK).any() for rows in log.blocks())
+    falls = log.scene.gravity is not None and not has_height(log.scene)
+    lossy = falls or not keeps_energy(stage) or any((rows["kind"] == Kind.KICK).any() for rows in log.blocks())
     if lossy:
         energy = np.array([energy_of(log, state) for state in passage.states(times.tolist())])
         axes.plot(times, energy, color=BLUE, lw=1.2)
