@@ -143,6 +143,7 @@ def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scen
     """Return a built-in scene: settings that name one of its parameters first, then keys of the scene."""
     from eventsim.scene.files import apply_overrides, scene_from_dict, scene_to_dict
     from eventsim.scene.gallery import describe, gallery
+    from eventsim.scene.schema import SCENE
 
     allowed = describe(name).parameters
     parameters = {}
@@ -158,4 +159,8 @@ def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scen
     scene = gallery(name, **parameters)
     if not overrides:
         return scene
+    for setting in overrides:
+        key = setting.partition("=")[0].strip()
+        if allowed and "." not in key and key not in SCENE.schema and did_you_mean(key.lower(), allowed):
+            raise SceneError(f"{name}: {key}: unknown key{did_you_mean(key.lower(), allowed)}; its own are {', '.join(allowed)}")
     return scene_from_dict(apply_overrides(scene_to_dict(scene), overrides), source=name)

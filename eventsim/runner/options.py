@@ -79,7 +79,7 @@ def stop_of(scene: Scene, until: float | None, events: int | None) -> Stop:
     if until is None and events is None:
         until, events = scene.until, scene.events
     if until is None and events is None:
-        raise SceneError("nothing says when to stop: give until or events, in the scene or to simulate()")
+        raise SceneError("nothing says when to stop: give until or events, in the scene or with the run")
     until, events = optional_number(until, "until"), optional_whole(events, "events")
     if until is not None and not math.isfinite(until):
         raise SceneError(f"until = {until!r}: must be a finite time")

@@ -141,9 +141,23 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
                 return f"{why} (at line {here})" + _shown(lines, here, "")
     key = _key_of(lines[line - 1])
     example = "" if not key or key not in EXAMPLES else EXAMPLES[key]
-    return f"{match[1]} (at line {line}, column {column + 1})" + quoted(
+    return f"{_in_words(match[1])} (at line {line}, column {column + 1})" + quoted(
         lines[line - 1], column, "", example, f"line {line}", True
     )
+
+
+WORDS = {
+    "Cannot overwrite a value": "this key is there already, in the same table",
+    "Invalid value": "this is no value: a number, a text in quotation marks, true or false, or a list in square brackets",
+    "Expected newline or end of document after a statement": "a line holds one key and one value, and nothing more",
+    "Unclosed array": "a list is not closed",
+    "Invalid statement": "this is neither a key with a value, nor a table, nor a comment, which begins with #",
+}
+"""What the reader of TOML says, and what is meant."""
+
+
+def _in_words(told: str) -> str:
+    return WORDS.get(told, told)
 
 
 def _lines_before(lines: list[str], line: int) -> list[int]:

@@ -152,7 +152,8 @@ def chance_problems(domain: Domain, walls: Sequence[Wall], seed: int | None) -> 
     """The rule that chance has a seed."""
     warm = any(one.temperature is not None for one in (*(side for _, side in domain.walls), *walls))
     if warm and seed is None:
-        yield "seed is missing: where chance is used, a seed makes the run the same every time"
+        why = "where chance is used, a seed makes the run the same every time (a key of the scene: above the first table)"
+        yield f"seed is missing: {why}"
     if seed is not None and not 0 <= seed <= LARGEST_SEED:
         yield f"seed = {seed}: must be a whole number from 0 to {LARGEST_SEED}"
 

@@ -72,3 +72,9 @@ def test_a_file_named_without_its_end_and_a_scene_in_place_of_a_log_are_told(pla
     refused = CliRunner().invoke(main, ["state", "two-balls.toml", "--at", "1"])
     assert refused.exit_code == 2
     assert "eventsim run two-balls.toml --log two-balls.csv" in refused.output
+
+
+def test_a_parameter_of_a_built_in_scene_that_is_misspelt_is_told_with_its_own():
+    refused = CliRunner().invoke(main, ["run", "galperin", "--set", "massratio=5"])
+    assert refused.exit_code == 2
+    assert "did you mean 'mass_ratio'?" in refused.output

@@ -239,6 +239,20 @@ def test_what_is_proposed_is_right(tmp_path, text, line, right):
     assert problem.endswith(f"write:  {right}")
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (OPEN + 'kind = "open"\n' + ONE, "this key is there already"),
+        (OPEN + ONE.replace("0.05", "pi"), "this is no value: a number,"),
+        (OPEN + ONE.replace("radius", "mass = 1.0 radius"), "a line holds one key and one value"),
+    ],
+)
+def test_what_is_no_toml_is_told_in_words(tmp_path, text, words):
+    (tmp_path / "scene.toml").write_text(text)
+    (problem,) = told(tmp_path / "scene.toml")
+    assert words in problem
+
+
 def test_a_value_of_the_right_form_is_not_proposed_again(tmp_path):
     text = told_of(tmp_path, "[[disk]]\nposition = [0.5, inf]\nradius = 0.01\n")
     assert "position = [0.5, inf]" in text

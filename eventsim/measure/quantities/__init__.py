@@ -32,7 +32,11 @@ class Family(NamedTuple):
 
 
 FAMILIES = (
-    Family("temperature (kT); where there is none: energy_start, energy_end; kinetic_energy", temperature.measures),
+    Family(
+        "temperature (kT = 2 E / f, f = 2 N less the components of the momentum that are kept);\n"
+        "  where there is none: energy_start, energy_end; kinetic_energy",
+        temperature.measures,
+    ),
     Family(
         "Z (1 + virial of the pairs / 2 N kT; periodic: P V / N kT), Z_walls (the same from walls), pressure (periodic: from\n"
         "  the virial; else mean force on a length of wall), contact_value or contact_value_I_J",
