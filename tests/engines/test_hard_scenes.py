@@ -138,6 +138,18 @@ def test_f32_a_mirror_image_has_the_same_contacts(engine):
 
 
 @pytest.mark.kernels
+def test_f30_a_tie_that_only_the_partner_knows_is_seen():
+    """At .79289 a disk meets two at once; the first of them knows but of its own contact, the second one of none."""
+    sites = np.array([(i, j) for i in range(8) for j in range(8)], float)
+    signs = np.random.default_rng(2).choice([-1.0, 1.0], size=(64, 2))
+    scene = es.Scene(es.Disks(2.0 * sites + 1.0, signs, 0.5), es.Box((16.0, 16.0)))
+    reference, fast = (log_of(scene, engine, events=60) for engine in BOTH)
+    at_once = reference.joint[reference.joint >= 0]
+    assert len(at_once) > 10
+    assert fast.rows.tobytes() == reference.rows.tobytes()
+
+
+@pytest.mark.kernels
 def test_f29_both_boundaries_passed_at_one_time_are_passed_in_one_order():
     """A disk flies along the diagonal of a torus and through its corner, then into another one; places that round differently."""
     side = 7.8

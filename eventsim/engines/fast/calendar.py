@@ -212,7 +212,7 @@ def is_tied(m, grid, i, day, screen):
             if k != i and is_contact(code) and may_tie(due, time, screen):
                 mutual = k == j and code == i and due == time
                 shares = code == i or (j >= 0 and (k == j or code == j))
-                if not mutual and (shares or flagged or due == time):
+                if flagged or (not mutual and (shares or due == time)):  # a partner may know of a tie that disk i does not see
                     return True
             elif _may_hide_another(j, code, flagged, grid.posts) and may_tie(due, time, screen):
                 return True
