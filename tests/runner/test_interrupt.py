@@ -213,7 +213,15 @@ ENDLESS = {
 }
 
 
+@pytest.fixture(scope="module")
+def measuring_kernels():
+    """Compiled, since a signal breaks into compiling at the end of a run; with numba loaded so many rows are enough."""
+    pytest.importorskip("numba")
+    es.simulate(es.gallery("gas", n=16), events=5000, engine="reference", measure=True)
+
+
 @IN_MAIN
+@pytest.mark.usefixtures("measuring_kernels")
 @pytest.mark.parametrize("name", ENDLESS)
 def test_a_measured_run_hears_signals_within_a_second(name):
     """A gas that had cooled was measured for 53 s after it had been asked to end.  Seconds are CPU time: others may run."""
@@ -230,8 +238,6 @@ def test_a_measured_run_hears_signals_within_a_second(name):
         if waiting.ident is None and ((cold and cold[-1]) or not cools):
             waiting.start()
 
-    if cools:  # with numba loaded far fewer rows are measured by kernels: these were compiled after the signal
-        pytest.importorskip("numba")
     waiting, cold = threading.Timer(0.05, ask), []
     with interruptible() as interrupt:
         try:
