@@ -204,7 +204,7 @@ def lone(domain, velocity=(0.7, 0.3)):
 
 
 ENDLESS = {
-    "cooled by 1e12": lambda: es.gallery("cooling", n=25, restitution=0.8),
+    "cooled by 1e12": lambda: es.gallery("cooling", n=100, restitution=0.8),
     "alone": lambda: lone(es.Periodic((1.3, 0.7))),
     "alone in a box": lambda: lone(es.Box((1.3, 0.7))),
     "quiet for long": lambda: es.Scene(
