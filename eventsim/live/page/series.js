@@ -30,7 +30,7 @@ class Series {
     const ratio = window.devicePixelRatio || 1, box = this.canvas.getBoundingClientRect(), context = this.canvas.getContext("2d");
     const width = (this.canvas.width = Math.round(box.width * ratio)), height = (this.canvas.height = Math.round(box.height * ratio));
     if (!width || !this.points.length) return;
-    const base = height - 28 * ratio, last = this.points[this.points.length - 1].time || 1;
+    const base = height - 42 * ratio, last = this.points[this.points.length - 1].time || 1;
     const curves = [["energy", energyName, palette.ink], ["temperature", "temperature", palette.arrow]];
     context.font = `${11 * ratio}px system-ui, sans-serif`;
     context.textBaseline = "bottom";
@@ -40,8 +40,8 @@ class Series {
       const low = Math.min(...values, 0), high = Math.max(...values, 0), y = (value) => base - (base - 4 * ratio) * ((value - low) / (high - low || 1));
       context.strokeStyle = context.fillStyle = colour;
       context.lineWidth = (place ? 1.5 : 2.5) * ratio;
-      context.textAlign = place ? "right" : "left";
-      context.fillText(`${name} ${number(low)} to ${number(high)}`, place ? width : 0, height - 14 * ratio);
+      context.textAlign = "left";
+      context.fillText(`${name} ${number(low)} to ${number(high)}`, 0, height - (place ? 0 : 14) * ratio);
       context.beginPath();
       known.forEach((point, k) => context[k ? "lineTo" : "moveTo"]((width * point.time) / last, y(point[key])));
       context.stroke();
@@ -50,7 +50,7 @@ class Series {
     context.fillRect(0, base, width, ratio);
     for (const [time, at, align] of [[0, 0, "left"], [last, width, "right"]]) {
       context.textAlign = align;
-      context.fillText(`t = ${number(start + time)}`, at, height);
+      context.fillText(`t = ${number(start + time)}`, at, base + 14 * ratio);
     }
     context.fillRect((width * Math.min(now, last)) / last, 0, ratio, base);
   }
