@@ -88,13 +88,18 @@ def test_f21_the_slowest_disk_meets_the_nearest_one_in_time(engine):
         on_plane([[0.0, 0.0], [1.0 + ULP, 0.0]], [[1e-310, 0.0], [0.0, 0.0]])
 
 
+def along_diagonals(side, seed, first, domain):
+    """Disks on the sites of a square lattice, side by side, two apart from `first` on, which fly along diagonals."""
+    sites = np.array([(i, j) for i in range(side) for j in range(side)], float)
+    signs = np.random.default_rng(seed).choice([-1.0, 1.0], size=(len(sites), 2))
+    return es.Scene(es.Disks(2.0 * sites + first, signs, 0.5), domain((2.0 * side, 2.0 * side)))
+
+
 @pytest.mark.parametrize("domain", [es.Box, es.Periodic])
 @pytest.mark.kernels
 def test_f30_ties_with_cell_crossings_leave_the_log_of_all_pairs(domain):
     """Disks along diagonals, which pass corners of cells of width 1 (and 2) at the times of contacts on their edges."""
-    sites = np.array([(i, j) for i in range(6) for j in range(6)], float)
-    signs = np.random.default_rng(30).choice([-1.0, 1.0], size=(36, 2))
-    scene = es.Scene(es.Disks(2.0 * sites + 0.5, signs, 0.5), domain((12.0, 12.0)))
+    scene = along_diagonals(6, 30, 0.5, domain)
     session = ReferenceSession(stage_of(scene), options=ReferenceOptions(grid=None))
     session.advance(Stop(None, EVENTS), 10**9)
     rows = session.take_rows()
@@ -140,9 +145,7 @@ def test_f32_a_mirror_image_has_the_same_contacts(engine):
 @pytest.mark.kernels
 def test_f30_a_tie_that_only_the_partner_knows_is_seen():
     """At .79289 a disk meets two at once; the first of them knows but of its own contact, the second one of none."""
-    sites = np.array([(i, j) for i in range(8) for j in range(8)], float)
-    signs = np.random.default_rng(2).choice([-1.0, 1.0], size=(64, 2))
-    scene = es.Scene(es.Disks(2.0 * sites + 1.0, signs, 0.5), es.Box((16.0, 16.0)))
+    scene = along_diagonals(8, 2, 1.0, es.Box)
     reference, fast = (log_of(scene, engine, events=60) for engine in BOTH)
     at_once = reference.joint[reference.joint >= 0]
     assert len(at_once) > 10
