@@ -161,6 +161,7 @@ def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scen
         return scene
     for setting in overrides:
         key = setting.partition("=")[0].strip()
-        if allowed and "." not in key and key not in SCENE.schema and did_you_mean(key.lower(), allowed):
-            raise SceneError(f"{name}: {key}: unknown key{did_you_mean(key.lower(), allowed)}; its own are {', '.join(allowed)}")
+        near = did_you_mean(key.lower(), allowed)
+        if near and "." not in key and key not in SCENE.schema:
+            raise SceneError(f"{name}: {key}: unknown key{near}; its own are {', '.join(allowed)}")
     return scene_from_dict(apply_overrides(scene_to_dict(scene), overrides), source=name)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from eventsim.errors import SceneError
 from eventsim.scene import schema
-from eventsim.scene.remedies import EXAMPLES, Remedy, remedy
+from eventsim.scene.remedies import Remedy, example_of, remedy
 
 LONGEST = 1 << 23
 """Letters of a file whose lines are looked for."""
@@ -133,7 +133,7 @@ def _quotes(
         return
     if missing or "needs" in problem.split(":")[1][:8]:
         lacks = f"this table lacks {key}" if key else ""
-        example = 'kind = "segment"' if table.startswith("wall") and key == "kind" else EXAMPLES.get(key or "", "")
+        example = example_of(table.partition("[")[0], key or "")
         yield quoted(lines[place.line - 1], place.key, lacks, example, f"line {place.line}", True)
         return
     told = _remedy(table, key, _table(data, table) if key else data)

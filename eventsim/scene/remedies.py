@@ -311,11 +311,16 @@ COMBINED: dict[str, dict[tuple[str, ...], Callable[[Mapping[str, Any]], Remedy]]
 """Keys that together say what one key says here."""
 
 
+def example_of(table: str, key: str) -> str:
+    """A line that shows the form of a key of a table; empty for a key that nobody knows."""
+    return 'kind = "segment"' if (table, key) == ("wall", "kind") else EXAMPLES.get(key, "")
+
+
 def _of_value(table: str, key: str, value: Any) -> Remedy | None:
     """What to write instead of the value of a known key."""
     of_wall = table == "wall" and key == "kind"
-    line = 'kind = "segment"' if of_wall else EXAMPLES.get(key)
-    example = None if line is None else Remedy("", line, example=True)
+    line = example_of(table, key)
+    example = Remedy("", line, example=True) if line else None
     mended: Any = None
     if key in FILES and isinstance(value, str) and re.fullmatch(FILES[key], value):
         return None  # what is wrong is in that file
