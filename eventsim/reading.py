@@ -35,6 +35,9 @@ NUMBERS = "iufUSO"
 WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 """Opening a pipe without it would wait for a writer."""
 
+NO_TEXT = "is not a text file in UTF-8: save it anew with this encoding"
+"""What is said of a file that should hold text."""
+
 
 @contextmanager
 def reading(path: Path, error: type[EventsimError], what: str, most: int | None = None) -> Iterator[IO[bytes]]:

@@ -13,7 +13,7 @@ import numpy as np
 from eventsim import suffixes
 from eventsim.errors import EventsimError, SceneError
 from eventsim.readers import read_start
-from eventsim.reading import Npz, as_floats, reading
+from eventsim.reading import NO_TEXT, Npz, as_floats, reading
 from eventsim.scene.cells import Indices
 from eventsim.scene.disks import USUAL, Disks
 from eventsim.scene.domain import Domain
@@ -121,7 +121,7 @@ def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dic
     try:
         lines = file.read().decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise SceneError(f"{path}: is not a text file in UTF-8: save it anew with this encoding") from None
+        raise SceneError(f"{path}: {NO_TEXT}") from None
     number = [n for n, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
     header = [name.strip() for name in next(csv.reader([lines[number[0] - 1]]))] if number else []
     wanted = _wanted_columns(path, header, given)

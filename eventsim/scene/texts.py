@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
-from eventsim.reading import reading
+from eventsim.reading import NO_TEXT, reading
 from eventsim.scene.overrides import is_shallow
 
 MOST_BYTES = 1 << 30
@@ -68,7 +68,7 @@ def _text(path: Path) -> str:
         wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         return data.decode("utf-16" if wide else "utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError:
-        raise SceneError(f"{path}: is not a text file in UTF-8: save it anew with this encoding") from None
+        raise SceneError(f"{path}: {NO_TEXT}") from None
 
 
 def _whole_tables_of(path: Path, text: str) -> dict[str, Any]:
