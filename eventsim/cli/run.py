@@ -78,7 +78,7 @@ def command(
     A run that was interrupted, killed, or has reached its stop goes on from its checkpoint: the joined log is that of
     an uninterrupted run, bit for bit. With --resume, --until and --events replace the stop, --engine the engine, --log
     says where the log was moved to; a SCENE is compared with that of the checkpoint. FILE.part of a log is what
-    a killed run has written; every verb reads it.
+    a killed run has written; every verb reads it. A whole log that is there is replaced; a file that is no log is not.
 
     \b
     Examples:
@@ -147,6 +147,7 @@ def command(
         )
     if horizon and engine == "certified":
         raise click.UsageError("--horizon: what the certified engine has simulated is proven; eventsim certify compares float64")
+    replaces = files.log is not None and resume is None and files.log.exists() and files.log.stat().st_size > 0
     options = engine_options(engine or "auto", dt, engine_settings)
     if resume is not None and options:
         raise click.UsageError("--dt and --option: what an engine was told is not in a checkpoint")
@@ -190,7 +191,7 @@ def command(
     if as_json:
         say_data(as_json_text(summary_data(asked, run, files, estimate)))
     elif not quiet:
-        say(summary_text(asked, run, files, estimate))
+        say(summary_text(asked, run, files, estimate, replaces))
     if run.stopped in EXITS:
         if as_json or quiet:
             say(f"stopped early: {run.reason or run.stopped}", err=True)

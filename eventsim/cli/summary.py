@@ -53,8 +53,8 @@ def summary_data(asked: str, run: Run, files: Files, horizon: Horizon | None = N
     }
 
 
-def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = None) -> str:
-    """Return the summary as aligned lines."""
+def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = None, replaced: bool = False) -> str:
+    """Return the summary as aligned lines.  replaced: whether the log has taken the place of another one."""
     counters, residuals = run.counters, run.residuals
     rows = [
         ("engine", _engine(run)),
@@ -75,13 +75,15 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
     if run.digest is not None:
         rows.append(("digest", run.digest))
     if files.log is not None:
-        rows.append(("log", f"{files.log}: {plural(counters.events, 'row')}"))
+        rows.append(("log", f"{files.log}: {plural(counters.events, 'row')}{REPLACED if replaced else ''}"))
     if files.state is not None:
         rows.append(("state", str(files.state)))
     if files.checkpoint is not None:
         rows.append(("checkpoint", f"eventsim run --resume {quote(str(files.checkpoint))} goes on from here"))
     return f"{title(asked, run.scene.name)}: {scene_line(run.scene)}\n{aligned(rows)}"
 
+
+REPLACED = ", in place of the log that was there"
 
 USUAL = ("energy", "momentum", "max_overlap")
 """Residuals that every run has."""

@@ -97,6 +97,27 @@ def test_a_log_reads_back_with_the_digest_that_was_printed(eventsim, scene_file,
     assert events.digest() == summary["digest"]
 
 
+@pytest.mark.parametrize("suffix", [".csv", ".jsonl", ".npz", ".parquet"])
+def test_a_log_takes_the_place_of_another_one_and_says_so(eventsim, scene_file, tmp_path, suffix):
+    log, told = tmp_path / f"two{suffix}", "in place of the log that was there"
+    log.touch()  # as made by mktemp: nothing is lost
+    runs = [" ".join(eventsim("run", scene_file, "--log", log, *until).stdout.split()) for until in ([], ["--until", 0.5])]
+    assert [told in run for run in runs] == [False, True]
+    assert len(load_log(log)) == 0
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".jsonl", ".npz", ".parquet"])
+def test_a_file_that_is_no_log_is_not_replaced(eventsim, scene_file, tmp_path, suffix):
+    other = tmp_path / f"marks{suffix}"
+    other.write_text("x,y\n1,2\n")
+    result = eventsim("run", scene_file, "--log", other)
+    assert (result.exit_code, other.read_text()) == (2, "x,y\n1,2\n")
+    assert "holds no event log that a new one may replace; name another file" in " ".join(result.stderr.split())
+    assert not other.with_name(f"marks{suffix}.part").exists()
+    with pytest.raises(es.LogError, match="holds no event log"):
+        simulate(gallery("bounce"), log=True).log.save(other)
+
+
 def test_the_digest_needs_no_file(eventsim, scene_file, tmp_path):
     kept = json.loads(eventsim("run", scene_file, "--log", tmp_path / "a.csv", "--json").stdout)
     asked = json.loads(eventsim("run", scene_file, "--digest", "--json").stdout)

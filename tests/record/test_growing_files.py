@@ -52,13 +52,16 @@ def test_a_second_run_that_writes_the_same_log_is_refused(tmp_path: Path, suffix
 @pytest.mark.parametrize("suffix", LOGS)
 def test_a_file_appears_only_when_it_is_whole(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"log{suffix}"
-    path.write_text("what was there before")
+    earlier = open_sink(path, provenance())
+    earlier.write(random_rows(3))
+    earlier.close()
+    before = path.read_bytes()
     sink = open_sink(path, provenance())
     sink.write(random_rows(10))
-    assert path.read_text() == "what was there before"
+    assert path.read_bytes() == before
     sink.abandon()
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
-    assert path.read_text() == "what was there before"
+    assert path.read_bytes() == before
 
 
 @pytest.mark.parametrize("suffix", TEXT)

@@ -12,9 +12,10 @@ from pathlib import Path
 
 from eventsim import suffixes
 from eventsim.errors import LogError
-from eventsim.reading import told_as
+from eventsim.reading import reading, told_as
 from eventsim.record.events import Rows, joined
 from eventsim.record.files import csv, jsonl, npz
+from eventsim.record.files.atomic import demand_place
 from eventsim.record.files.sink import FileSink, Format, Mark, Opened, demand_same, part_of
 from eventsim.record.files.table import checked, verified
 from eventsim.record.provenance import Provenance, has_spin
@@ -32,7 +33,8 @@ __all__ = ["FileSink", "Mark", "continued_sink", "open_log", "open_sink", "read_
 def open_sink(path: str | PathLike[str], provenance: Provenance, compact: bool = False) -> FileSink:
     """Open a streaming writer in the format of a file's suffix.
 
-    The file grows as `NAME.part` (text formats may be followed there) and gets its name when closed.
+    The file grows as `NAME.part` (text formats may be followed there) and gets its name when closed.  A log that has it is
+    replaced then.
 
     Args:
         path: of the file.
@@ -40,12 +42,28 @@ def open_sink(path: str | PathLike[str], provenance: Provenance, compact: bool =
         compact: leave out what replay computes.
 
     Raises:
-        LogError: for an unknown suffix or a place that cannot be written.
+        LogError: for an unknown suffix, a place that cannot be written, or a file there that is no log.
     """
     file = Path(path)
+    demand_replaceable(file)
     kept = replace(provenance, compact=compact, ending=None, rows=None)
     kicks = provenance.kicks if provenance.compact else None
     return _format_of(file).sink(file, kept, kicks)
+
+
+def demand_replaceable(path: Path) -> None:
+    """Raise LogError where a file has this name that is no log: what others wrote is not replaced.  An empty one may be."""
+    form = _format_of(path)
+    demand_place(path, LogError)
+    if not path.is_file() or not path.stat().st_size:
+        return
+    try:
+        with reading(path, LogError, "no event log") as file:
+            found = form.is_log(file)
+    except LogError:
+        found = False
+    if not found:
+        raise LogError(f"{path}: holds no event log that a new one may replace; name another file, or remove this one")
 
 
 def continued_sink(path: Path, provenance: Provenance, compact: bool, mark: Mark) -> FileSink:

@@ -110,4 +110,4 @@ def _header(dtype: np.dtype[Any], count: int) -> bytes:
     return target.getvalue()
 
 
-FORMAT = Format(NpzSink, open_npz, open_journal)
+FORMAT = Format(NpzSink, open_npz, open_journal, lambda file: METADATA in Npz(file).names)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -157,4 +157,9 @@ def _column(column: Any) -> Column:
     return values
 
 
-FORMAT = Format(ParquetSink, open_parquet, open_journal)
+def is_parquet_log(file: IO[bytes]) -> bool:
+    """Whether an open file is a log."""
+    return METADATA.encode() in (pq.read_metadata(file).metadata or {})
+
+
+FORMAT = Format(ParquetSink, open_parquet, open_journal, is_parquet_log)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator, Iterable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 from eventsim.errors import LogError
 from eventsim.record.digest import StoredDigester
@@ -156,11 +156,15 @@ class Opened(NamedTuple):
 
 
 class Format(NamedTuple):
-    """How logs of one suffix are written and read; the readers raise LogError."""
+    """How logs of one suffix are written and read; the readers raise LogError.
+
+    is_log: whether an open file is a log, damaged or not; it may raise what its library does over a file of another format.
+    """
 
     sink: type[FileSink]
     open_whole: Callable[[Path], Opened]
     open_part: Callable[[Path], Opened]
+    is_log: Callable[[IO[bytes]], bool]
 
 
 def part_of(path: Path) -> Path:

@@ -17,7 +17,7 @@ from eventsim.errors import LogError
 from eventsim.reading import reading, reason_of
 from eventsim.record.events import Column, Rows
 from eventsim.record.files.sink import FileSink, Format, Opened, demand_same
-from eventsim.record.provenance import Provenance, provenance_from_text, provenance_text
+from eventsim.record.provenance import BEFORE_SCENE, Provenance, provenance_from_text, provenance_text
 from eventsim.suffixes import PART
 
 RESERVE = 512
@@ -167,7 +167,13 @@ def words_of(values: Column, missing: str) -> list[str]:
 
 def text_format(sink: type[TextSink], form: TextForm) -> Format:
     """The format of a text log."""
-    return Format(sink, lambda path: open_text(path, form), lambda path: open_text(path, form))
+    beginning = (form.prefix + BEFORE_SCENE).encode()
+    marked = BYTE_ORDER_MARK.encode() + beginning
+
+    def is_log(file: IO[bytes]) -> bool:
+        return file.read(len(marked)).startswith((beginning, marked))
+
+    return Format(sink, lambda path: open_text(path, form), lambda path: open_text(path, form), is_log)
 
 
 def open_text(path: Path, form: TextForm) -> Opened:
