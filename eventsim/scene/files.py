@@ -58,7 +58,7 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     try:
         return scene_from_dict(changed, path.parent, None, seed)
     except SceneError as error:
-        told = error if path.suffix.lower() == ".json" else with_lines(error, text, data, settings)
+        told = with_lines(error, text, data, settings, path.suffix.lower() == ".json")
         raise SceneError(f"{path}: {problem}" for problem in told.problems) from None
 
 

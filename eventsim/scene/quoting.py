@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Collection, Iterator, Mapping
+import tomllib
+from bisect import bisect_right
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from eventsim.errors import SceneError
@@ -22,6 +25,13 @@ INNER = re.compile(r"[{,]\s*([\w-]+)\s*=\s*")
 PATH = re.compile(r"(?P<table>[\w-]+(?:\[\d+\])?)(?:\.(?P<key>[\w-]+))?(?:\[\d+\])*(?P<rest>: | = | is missing)")
 GUESS = re.compile(r"unknown key \((?:did you mean \"(\w+)\"\?|known here: [^)]*)\)")
 CHOICE = re.compile(r"(?P<table>\w+\[\d+\]): (?:needs|has both) (?P<key>\w+)")
+TAKEN = re.compile(r"wall\[\d+\]: the name ")
+SUBJECT = re.compile(r"\b(?:disk|gas|wall)\[\d+\](?!\.)")
+MET = re.compile(r"(?:across|out of) \w+ (?P<name>.+?): ")
+ANCHORS = {"disk": "position", "wall": "name"}
+"""Tables that a sentence is about, and the key at which it points to one."""
+
+JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\],:]|[^\s{}\[\],:"]+')
 
 
 class Place(NamedTuple):
@@ -80,20 +90,66 @@ def places_in(text: str) -> dict[str, Place]:
     return found
 
 
-def with_lines(error: SceneError, text: str, data: Mapping[str, Any], settings: Collection[str] = ()) -> SceneError:
-    """The same problems, those with keys of a TOML text followed by their line, a caret and a line that would be right.
+def places_in_json(text: str) -> dict[str, Place]:
+    """Where each key and table of a JSON text, which can be read, stands, by the same paths.  O(length)."""
+    starts = [0, *(match.end() for match in re.finditer("\n", text))]
+    found: dict[str, Place] = {}
+    outer: list[tuple[str, int | None]] = []  # what is open: its path, and in a list the number of the next value
+    key: re.Match[str] | None = None
+    for token in JSON_TOKEN.finditer(text):
+        mark = token[0]
+        parent, count = outer[-1] if outer else ("", None)
+        if mark in "]}":
+            outer.pop()
+        elif mark == ",":
+            key = None
+            outer[-1] = parent, None if count is None else count + 1
+        elif mark == ":":
+            pass
+        elif outer and count is None and key is None:
+            key = token
+        else:
+            name = None if key is None else json.loads(key[0])
+            path = f"{parent}[{count}]" if name is None else f"{parent}.{name}" if parent else name
+            first = token if key is None else key
+            line = bisect_right(starts, first.start())
+            at, value = first.start() - starts[line - 1], token.start() - starts[line - 1]
+            found.setdefault(path, Place(line, at, at if "\n" in text[first.start() : token.start()] else value))
+            if mark in "[{":
+                outer.append((path if outer else "", 0 if mark == "[" else None))
+                key = None
+    return found
+
+
+def with_lines(
+    error: SceneError, text: str, data: Mapping[str, Any], settings: Collection[str] = (), is_json: bool = False
+) -> SceneError:
+    """The same problems, those with keys or tables of a text followed by their lines, a caret and a line that would be right.
 
     Args:
-        error: its problems begin with the path of a key, as in "disk[2].radius".
+        error: its problems begin with the path of a key, as in "disk[2].radius", or speak of tables, as in "disk[2]".
         text: of the file.
         data: its tables.
         settings: "key=value" as typed after --set; what they changed stands in no line.
+        is_json: whether the text is JSON; else it is TOML.
     """
     if len(text) > LONGEST:
         return error
-    places, lines = places_in(text), text.split("\n")
+    places, lines = (places_in_json if is_json else places_in)(text), text.split("\n")
+    form = _in_json if is_json else str
     typed = {re.sub(r"\.(\d+)", r"[\1]", setting.partition("=")[0].strip()): setting for setting in settings}
-    return SceneError(_with_quotes(problem, list(_quotes(problem, places, lines, data, typed))) for problem in error.problems)
+    return SceneError(
+        _with_quotes(problem, list(_quotes(problem, places, lines, data, typed, form))) for problem in error.problems
+    )
+
+
+def _in_json(write: str) -> str:
+    """What a line of TOML says, in JSON; empty where it is no whole line."""
+    try:
+        told = tomllib.loads(write)
+    except tomllib.TOMLDecodeError:
+        return ""
+    return ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in told.items())
 
 
 def _with_quotes(problem: str, quotes: list[str]) -> str:
@@ -105,11 +161,17 @@ def _with_quotes(problem: str, quotes: list[str]) -> str:
 
 
 def _quotes(
-    problem: str, places: Mapping[str, Place], lines: list[str], data: Mapping[str, Any], typed: Mapping[str, str]
+    problem: str,
+    places: Mapping[str, Place],
+    lines: list[str],
+    data: Mapping[str, Any],
+    typed: Mapping[str, str],
+    form: Callable[[str], str],
 ) -> Iterator[str]:
-    """What follows the sentence of one problem: nothing, or its quoted lines."""
+    """What follows the sentence of one problem: nothing, or its quoted lines; form: that in which TOML is written there."""
     match = PATH.match(problem) or CHOICE.match(problem)
-    if match is None:
+    if match is None or TAKEN.match(problem):
+        yield from _quotes_of_tables(problem, places, lines, data, typed)
         return
     table, key = match["table"], match["key"]
     path = f"{table}.{key}" if key else table
@@ -126,7 +188,7 @@ def _quotes(
         told = _remedy(table, other, here)
         if key and told.write.startswith(f"{key} = ") and f"{table}.{other}" in places:
             named = places[f"{table}.{other}"]
-            yield quoted(lines[named.line - 1], named.key, told.why, told.write, f"line {named.line}", told.example)
+            yield quoted(lines[named.line - 1], named.key, told.why, form(told.write), f"line {named.line}", told.example)
             return
     place = places.get(path) or places.get(table) or places.get(f"{table}[0]") or places.get(table.partition("[")[0])
     if place is None:
@@ -134,19 +196,46 @@ def _quotes(
     if missing or "needs" in problem.split(":")[1][:8]:
         lacks = f"this table lacks {key}" if key else ""
         example = example_of(table.partition("[")[0], key or "")
-        yield quoted(lines[place.line - 1], place.key, lacks, example, f"line {place.line}", True)
+        yield quoted(lines[place.line - 1], place.key, lacks, form(example), f"line {place.line}", True)
         return
     told = _remedy(table, key, _table(data, table) if key else data)
     unknown = "unknown key" in problem
     header = places.get(table) if key else None
     write = told.write
     if unknown and "above the first table" in told.why and header is not None:
-        first = min(place.line for place in places.values() if HEADER.match(lines[place.line - 1]))
-        write = f"{write}\n{lines[first - 1].strip()}"
-    column = place.key if unknown else place.value
-    if _bare(write) == _bare(lines[place.line - 1]):  # what was written is of the right form
+        headers = [place.line for place in places.values() if HEADER.match(lines[place.line - 1])]
+        write = f"{write}\n{lines[min(headers) - 1].strip()}" if headers else write
+    column, write = place.key if unknown else place.value, form(write)
+    bare, written = _bare(write), _bare(lines[place.line - 1])
+    if bare == written or (bare.startswith('"') and bare in written):  # what was written is of the right form
         write = ""
     yield quoted(lines[place.line - 1], column, told.why, write, f"line {place.line}", told.example)
+
+
+def _quotes_of_tables(
+    problem: str, places: Mapping[str, Place], lines: list[str], data: Mapping[str, Any], typed: Mapping[str, str]
+) -> Iterator[str]:
+    """Of each table that a sentence speaks of the line that it points to: of a disk its place, or what the sentence names."""
+    named = re.search(r"\bhas (\w+)", problem)
+    for table in _subjects(problem, data):
+        paths = [f"{table}.{key}" for key in (named[1] if named else "", ANCHORS.get(table.partition("[")[0], ""))]
+        setting = next((typed[path] for path in paths if path in typed), None)
+        place = next((places[path] for path in (*paths, table) if path in places), None)
+        if setting is not None:
+            yield quoted(setting, 0, table, "", "typed")
+        elif place is not None:
+            yield quoted(lines[place.line - 1], place.key, table, "", f"line {place.line}")
+
+
+def _subjects(problem: str, data: Mapping[str, Any]) -> list[str]:
+    """The tables that a sentence speaks of: disks, gases and walls by their numbers, walls by their names as well."""
+    found = SUBJECT.findall(problem)
+    met = MET.search(problem)
+    for i, wall in enumerate(data.get("wall", ()) if met else ()):
+        name = wall.get("name", f"wall{i}")
+        if met and (met["name"] == name or met["name"].startswith(f"{name}.")):
+            found.append(f"wall[{i}]")
+    return list(dict.fromkeys(found))
 
 
 def _bare(line: str) -> str:

@@ -41,8 +41,12 @@ def _tables_of(text: str, suffix: str) -> dict[str, Any]:
     try:
         return json.loads(text, object_pairs_hook=_once) if suffix == ".json" else tomllib.loads(text)
     except json.JSONDecodeError as error:
+        from eventsim.scene.quoting import quoted
+
         place = f"(at line {error.lineno}, column {error.colno})"
-        raise SceneError(f"is not valid JSON: {error.msg} {place}") from None
+        line = text.split("\n")[error.lineno - 1]
+        told = f"is not valid JSON: {error.msg} {place}"
+        raise SceneError(told + quoted(line, error.colno - 1, "", "", f"line {error.lineno}")) from None
     except tomllib.TOMLDecodeError as error:
         from eventsim.scene.slips import problem_of
 
@@ -53,11 +57,13 @@ def _tables_of(text: str, suffix: str) -> dict[str, Any]:
         raise SceneError("holds a number with too many digits") from None
 
 
-def with_lines(error: SceneError, text: str, data: Mapping[str, Any], settings: Collection[str] = ()) -> SceneError:
-    """The problems of the scene of a TOML text, followed by the lines that they speak of; see `quoting.with_lines`."""
+def with_lines(
+    error: SceneError, text: str, data: Mapping[str, Any], settings: Collection[str] = (), is_json: bool = False
+) -> SceneError:
+    """The problems of the scene of a text, followed by the lines that they speak of; see `quoting.with_lines`."""
     from eventsim.scene import quoting  # only who errs pays for it
 
-    return quoting.with_lines(error, text, data, settings)
+    return quoting.with_lines(error, text, data, settings, is_json)
 
 
 def _text(path: Path) -> str:

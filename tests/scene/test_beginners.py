@@ -1,6 +1,7 @@
 """Mistakes that beginners make in a scene file: each is answered with its line, a caret, and the line that would be right."""
 
 import re
+from itertools import pairwise
 
 import pytest
 
@@ -307,3 +308,88 @@ def test_two_numbers_behind_another_name_of_a_key_are_put_in_brackets(tmp_path):
     with pytest.raises(SceneError) as error:
         load_scene(path)
     assert "write:   pos = [0.3, 0.8]" in str(error.value)
+
+
+CROWD = """\
+[domain]
+kind = "box"
+size = [2.0, 1.0]
+[[wall]]
+kind = "segment"
+start = [1.0, 0.0]
+end = [1.0, 1.0]
+[[disk]]
+position = [0.5, 0.5]
+radius = 0.1
+[[disk]]
+position = [1.5, 0.5]
+radius = 0.1
+[[wall]]
+kind = "polygon"
+points = [[1.2, 0.1], [1.4, 0.1], [1.3, 0.2]]
+name = "block"
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "wrong", "places"),
+    [
+        ("position = [1.5, 0.5]", "position = [0.55, 0.5]", ["9 disk[0]", "12 disk[1]"]),
+        ("position = [1.5, 0.5]", "position = [1.95, 0.5]", ["12 disk[1]"]),
+        ("position = [1.5, 0.5]", "position = [1.05, 0.5]", ["12 disk[1]", "4 wall[0]"]),
+        ("position = [1.5, 0.5]", "position = [1.3, 0.25]", ["12 disk[1]", "17 wall[1]"]),
+        ('name = "block"', 'name = "wall0"', ["17 wall[1]", "4 wall[0]"]),
+        ("[domain]", "seed = 1\n[domain]\nwalls = {top = {temperature = 1.0}}", ["13 disk[0]"]),
+    ],
+)
+def test_disks_and_walls_that_a_sentence_speaks_of_are_quoted(tmp_path, line, wrong, places):
+    text = CROWD.replace(line, wrong)
+    (tmp_path / "scene.toml").write_text(text.replace("radius = 0.1\n", "radius = 0.1\nmass = inf\n", "seed" in wrong))
+    (problem, *_) = told(tmp_path / "scene.toml")
+    assert re.findall(r"line (\d+): [^\n]*\n +\^ (.*)", problem) == [tuple(place.split(" ")) for place in places]
+
+
+def test_a_place_that_was_typed_is_quoted_as_typed(tmp_path):
+    (tmp_path / "scene.toml").write_text(CROWD)
+    (problem,) = told(tmp_path / "scene.toml", "disk.1.position=[0.55,0.5]")
+    assert "typed: disk.1.position=[0.55,0.5]" in problem
+    assert "line 9: position = [0.5, 0.5]" in problem
+
+
+JSON = """\
+{"until": 2.0,
+ "domain": {"kind": "box",
+            "size": [2.0, 1.0]},
+ "disk": [{"position": [0.5, 0.5], "radius": 0.1},
+          {"velocity": [1.0, 0.0], "radius": 0.1, "position":
+            [1.5, 0.5]}]
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "line", "at", "write"),
+    [
+        ('"until"', '"gravity": -9.81, "until"', 1, "-9.81", '"gravity": [0.0, -9.81]'),
+        ("2.0,\n", '"2,0",\n', 1, '"2,0"', '"until": 2.0'),
+        ('"size"', '"dimensions"', 3, '"dimensions"', '"size": [2.0, 1.0]'),
+        ('"size": [2.0, 1.0]', '"size": [2.0, -1.0]', 3, "[2.0, -1.0]", None),
+        ('{"position": [0.5, 0.5], "radius": 0.1}', '{"position": [0.5, 0.5]}', 4, '{"position"', '"radius": 0.05'),
+        ('0.1, "position"', '0.1, "mass": "2 kg", "position"', 5, '"2 kg"', '"mass": 2.0'),
+        ("[1.5, 0.5]", "[1.5]", 5, '"position":', '"position": [0.3, 0.8]'),
+        ('{"velocity"', '[{"velocity"', 7, "}", None),
+        ("2.0,\n", "2.0\n", 2, '"domain"', None),
+        ("[1.5, 0.5]", "[0.6, 0.5]", 5, '"position":', None),
+    ],
+)
+def test_a_mistake_in_json_is_told_like_one_in_toml(tmp_path, right, wrong, line, at, write):
+    assert JSON.count(right) == 1
+    (tmp_path / "scene.json").write_text(JSON.replace(right, wrong))
+    problems = told(tmp_path / "scene.json")
+    found = []
+    for problem in problems:
+        _, *rows = problem.split("\n    ")
+        for shown, caret in pairwise(rows):
+            if shown.startswith(f"line {line}:"):
+                found.append((shown[caret.index("^") :].startswith(at), re.sub("^(write|as in): +", "", rows[-1])))
+    assert (True, write or rows[-1]) in found, problems
