@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
+from eventsim import suffixes
 from eventsim.cli.options import json_option, quiet_option, scene_options
 from eventsim.cli.output import say, say_data
 from eventsim.cli.source import chosen_scene, is_log
@@ -21,7 +24,8 @@ def command(
     """Validate SCENE, and explain what it has and which machinery it gets for that; or check all of a log file.
 
     A scene with problems is answered with all of them at once, each naming the key or the disks, the value
-    and the rule.  A warning tells where its outcome hangs on the last bits of its numbers.
+    and the rule.  A warning tells where its outcome hangs on the last bits of its numbers; of a file it tells which
+    disks have which numbers, and gases of one seed, which begin alike.
 
     \b
     Examples:
@@ -85,11 +89,14 @@ def command(
     from eventsim.cli.explain import explanation, page
     from eventsim.cli.needs import needs_of
     from eventsim.cli.words import as_json_text
+    from eventsim.scene import files
     from eventsim.scene.validate import all_written_out
 
     with all_written_out() if every else nullcontext():
         chosen = chosen_scene(scene, settings, seed)
     needs = needs_of(chosen)
+    is_file = Path(scene).suffix.lower() in suffixes.SCENES
+    origins = files.origins(scene, settings, seed, needs.disks) if is_file else None
     estimate = None
     if horizon:
         from eventsim.engines.base import Stop
@@ -98,11 +105,11 @@ def command(
         estimate = horizon_of(chosen, Stop(chosen.until, chosen.events))
     if as_json:
         told = None if estimate is None else asdict(estimate)
-        words = dict(explanation(needs))
+        words = dict(explanation(needs, origins))
         data = {"scene": scene, "name": chosen.name, **asdict(needs), "horizon": told, "explanation": words}
         say_data(as_json_text(data))
     elif not quiet:
-        say(page(scene, chosen.name, needs))
+        say(page(scene, chosen.name, needs, origins))
         if estimate is not None:
             from eventsim.cli.summary import horizon_words
 

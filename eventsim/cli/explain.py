@@ -13,6 +13,7 @@ from eventsim.scene.walls import SHAPES
 
 if TYPE_CHECKING:
     from eventsim.cli.needs import Needs
+    from eventsim.scene.origins import Origins
     from eventsim.validation.near_ties import NearTie
 
 DOMAINS = {
@@ -35,14 +36,18 @@ POINTS = (
 """What disks without a radius do at walls."""
 
 
-def page(asked: str, name: str | None, needs: Needs) -> str:
+def page(asked: str, name: str | None, needs: Needs, origins: Origins | None = None) -> str:
     """Return the whole page that `eventsim check` prints."""
-    return f"{title(asked, name)}: a valid scene\n{aligned(list(explanation(needs)))}"
+    return f"{title(asked, name)}: a valid scene\n{aligned(list(explanation(needs, origins)))}"
 
 
-def explanation(needs: Needs) -> Iterator[tuple[str, str]]:
-    """Yield (topic, words), in the order in which a scene file is read; then the machinery."""
+def explanation(needs: Needs, origins: Origins | None = None) -> Iterator[tuple[str, str]]:
+    """Yield (topic, words), in the order in which a scene file is read; then the machinery.  origins: of a file."""
     yield "disks", _disks(needs)
+    if origins is not None and len(origins.shares) > 1:
+        yield "numbers", _numbers(origins)
+    if origins is not None and origins.twins:
+        yield "seeds", "; ".join(map(_twins, origins.twins))
     yield "motion", _motion(needs)
     yield "domain", _domain(needs)
     if needs.walls:
@@ -82,6 +87,21 @@ def _disks(needs: Needs) -> str:
     if needs.tracers:
         parts.append("mass 0: a tracer, which deflects nobody")
     return ". ".join([text, *(part[0].upper() + part[1:] for part in parts)])
+
+
+def _numbers(origins: Origins) -> str:
+    first, blocks = 0, []
+    for table, count in origins.shares:
+        blocks.append(f"{first:,} is of {table}" if count == 1 else f"{first:,} to {first + count - 1:,} are of {table}")
+        first += count
+    mixed = origins.shares[0][0].startswith("[[") and len(origins.shares) > 1
+    return ", ".join(blocks) + (", whatever their order in the file" if mixed else "")
+
+
+def _twins(gases: tuple[int, ...]) -> str:
+    *others, last = (f"gas[{i}]" for i in gases)
+    alike = f"{', '.join(others)} and {last} have one seed and draw the same numbers"
+    return f"{alike}: give each its own, or their disks begin alike"
 
 
 def _motion(needs: Needs) -> str:

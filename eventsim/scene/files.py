@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
+from eventsim.scene.origins import Origins, origins_of
 from eventsim.scene.overrides import apply_overrides, is_shallow, settings_of
 from eventsim.scene.scene import Scene
 from eventsim.scene.texts import tables_of_file, tables_of_toml, with_lines
@@ -26,6 +27,7 @@ __all__ = [
     "draws_at_random",
     "listed_scene",
     "load_scene",
+    "origins",
     "scene_beside",
     "scene_beside_disks",
     "scene_from_dict",
@@ -71,6 +73,15 @@ def draws_at_random(path: str | Path, overrides: Iterable[str] | None = None) ->
     from eventsim.scene.tables import uses_chance
 
     return uses_chance(apply_overrides(tables_of_file(Path(path))[0], overrides))
+
+
+def origins(path: str | Path, overrides: Iterable[str] | None, seed: int | None, disks: int) -> Origins:
+    """Which tables the disks of a scene file, so many, come from; its mistakes are not looked at.
+
+    Raises:
+        SceneError: where the file cannot be read or the overrides lead nowhere.
+    """
+    return origins_of(apply_overrides(tables_of_file(Path(path))[0], overrides), disks, seed)
 
 
 def scene_from_dict(

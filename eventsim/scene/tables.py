@@ -72,7 +72,12 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None, runs: 
 
 def uses_chance(data: Mapping[str, Any]) -> bool:
     """Whether a [[gas]] table among these, as far as they can be read, cannot be placed without random numbers."""
-    return any(gas.uses_chance for _, gas in _read_gases(data, None, None, None, []))
+    return any(gas.uses_chance for _, gas in gases_of(data))
+
+
+def gases_of(data: Mapping[str, Any]) -> list[tuple[int, Gas]]:
+    """The [[gas]] tables among these, as far as they can be read, each with its index."""
+    return _read_gases(data, None, None, None, [])
 
 
 def _grows_with(gas: Gas, other: Gas, domain: Domain) -> bool:

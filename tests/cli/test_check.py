@@ -125,6 +125,51 @@ def test_check_says_where_velocities_carry_what_rounding_leaves(eventsim):
     assert "rounding leaves" not in eventsim("check", "galperin").stdout
 
 
+GAS = "[[gas]]\ncount = 5\nradius = 0.02\ntemperature = 1.0\n"
+MIXED = f"""
+[domain]
+kind = "box"
+size = [4.0, 2.0]
+{GAS}seed = 7
+region = [0.0, 0.0, 1.0, 1.0]
+[[disk]]
+position = [2.5, 1.0]
+radius = 0.25
+{GAS}seed = 7
+region = [1.0, 0.0, 2.0, 1.0]
+[[disks_file]]
+path = "start.csv"
+"""
+
+
+def told_of_file(eventsim, file, *options):
+    """The page of a scene file, as one line."""
+    result = eventsim("check", file, *options)
+    assert result.exit_code == 0, result.output
+    return " ".join(result.stdout.split())
+
+
+def test_a_file_is_told_which_disks_have_which_numbers(eventsim, tmp_path):
+    (tmp_path / "start.csv").write_text("x,y,radius\n3.5,0.5,0.1\n3.5,1.5,0.1\n")
+    (tmp_path / "mixed.toml").write_text(MIXED)
+    scene = es.load_scene(tmp_path / "mixed.toml")
+    words = "0 is of [[disk]], 1 to 2 are of [[disks_file]], 3 to 7 are of gas[0], 8 to 12 are of gas[1]"
+    assert scene.disks.radius.tolist() == [0.25, *2 * [0.1], *10 * [0.02]]
+    assert f"numbers {words}, whatever" in told_of_file(eventsim, tmp_path / "mixed.toml")
+
+
+def test_gases_of_one_seed_are_told(eventsim, tmp_path):
+    (tmp_path / "start.csv").write_text("x,y,radius\n3.5,0.5,0.1\n")
+    words = "gas[0] and gas[1] have one seed and draw the same numbers"
+    file = tmp_path / "mixed.toml"
+    file.write_text(MIXED)
+    assert words in told_of_file(eventsim, file)
+    assert "one seed" not in told_of_file(eventsim, file, "--seed", "1")
+    assert "one seed" not in told_of_file(eventsim, file, "--set", "gas.1.seed=8")
+    file.write_text(MIXED.replace("temperature = 1.0", 'arrangement = "square"'))
+    assert "one seed" not in told_of_file(eventsim, file)
+
+
 if __name__ == "__main__":
     PAGES.mkdir(exist_ok=True)
     for each in names():
