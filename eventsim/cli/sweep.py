@@ -25,6 +25,8 @@ SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given sever
 @click.option("--seed", type=click.IntRange(min=0), default=1, metavar="S", help="Every run's seed is derived from it.")
 @click.option("--out", required=True, metavar="FILE", help="The table: FILE.csv or .parquet.")
 @click.option("--figure", metavar="FILE", help="Draw Z against the packing fraction to FILE.png, .svg or .pdf.")
+@click.option("--x", metavar="COLUMN", help="Draw against this key or column.  [default, with --y: the first key of --set]")
+@click.option("--y", metavar="COLUMN", help="Draw this measure.  [default, with --x: Z]")
 @click.option("--until", type=float, metavar="T", help="Stop every run at this time.")
 @click.option("--events", type=Whole(min=1), metavar="N", help="Stop every run after N events.")
 @click.option("--discard", type=click.FloatRange(min=0), metavar="T", help="Leave out this time at the beginnings.")
@@ -42,6 +44,8 @@ def command(
     seed: int,
     out: str,
     figure: str | None,
+    x: str | None,
+    y: str | None,
     until: float | None,
     events: int | None,
     discard: float | None,
@@ -62,6 +66,7 @@ def command(
     \b
     Examples:
       eventsim sweep periodic-fluid --set packing_fraction=0.1:0.6:6 --replicas 4 --events 200000 --out z.csv --figure z.png
+      eventsim sweep cooling --set restitution=0.8:0.95:4 --events 3000 --out e.csv --figure e.png --y cooling_exponent
       eventsim sweep gas.toml --set gas.0.count=100,1000 --set restitution=0.9,0.95 --out cooling.parquet
       eventsim sweep gas.toml --set gas.0.radius=0.01:0.02:11 --out gas.csv --dask tcp://head:8786
 
@@ -77,6 +82,8 @@ def command(
     target = writable(out, "--out", suffixes.TABLES)
     drawn = drawable(figure, "--figure")
     assert target is not None
+    if drawn is None and (x or y):
+        raise click.UsageError("--x and --y say what is drawn: give --figure FILE too")
     if dask is not None and workers is not None:
         raise click.UsageError("--workers is for this machine, --dask for a cluster: give one of them")
 
@@ -113,7 +120,11 @@ def command(
     except KeyboardInterrupt:
         say(f"interrupted; the same command again goes on from here ({target}.journal)", err=True)
         click.get_current_context().exit(INTERRUPTED)
-    if drawn is not None:
+    if drawn is not None and (x or y):
+        from eventsim.show.figures.swept import write_swept
+
+        write_swept(rows, drawn, x, y, scene)
+    elif drawn is not None:
         from eventsim.show.figures.equation_of_state import write_equation_of_state
 
         write_equation_of_state(rows, drawn, scene)

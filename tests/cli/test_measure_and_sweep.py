@@ -87,6 +87,21 @@ def test_a_sweep_writes_a_table_and_a_figure(eventsim, tmp_path):
     assert figure.read_text().startswith("<?xml")
 
 
+def test_a_sweep_draws_any_measure_against_any_key(eventsim, tmp_path):
+    words = ["sweep", "cooling", "--set", "n=20", "--set", "restitution=0.8,0.9", "--events", 200, "--workers", 1]
+    words += ["--engine", "reference", "--out", tmp_path / "e.csv"]
+    drawn = tmp_path / "e.svg"
+    result = eventsim(*words, "--figure", drawn, "--y", "mean_free_path")
+    assert result.exit_code == 0, result.stderr
+    assert drawn.exists()
+    result = eventsim(*words, "--figure", drawn, "--x", "restituton", "--y", "mean_free_path")
+    assert result.exit_code == 2
+    assert "--x restituton: no run of the table has such a number (did you mean 'restitution'?); there are n, restitution," in (
+        " ".join(result.stderr.split())
+    )
+    assert "give --figure FILE too" in eventsim(*words, "--y", "mean_free_path").stderr
+
+
 def test_a_sweep_makes_studies_of_each_run(eventsim, tmp_path):
     pytest.importorskip("freud")
     words = ["sweep", "periodic-fluid", "--set", "n=16", "--set", "packing_fraction=0.1", "--events", 1500, "--workers", 1]

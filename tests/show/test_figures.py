@@ -16,7 +16,7 @@ from eventsim.measure.free_paths import free_paths, path_density
 from eventsim.replay.flight_table import flight_table, flights
 from eventsim.replay.replay import Replay
 from eventsim.scene.gallery import names
-from eventsim.show.figures import equation_of_state, msd, trajectories
+from eventsim.show.figures import equation_of_state, msd, swept, trajectories
 from eventsim.show.figures.residuals import gaps_at_contact
 from eventsim.show.figures.style import new_figure
 from eventsim.show.figures.write import write_figure
@@ -203,6 +203,30 @@ def test_replicas_are_averaged_and_theory_keeps_its_accuracy():
     equation_of_state.draw(figure, rows)
     (off,) = figure.axes[1].lines[1].get_ydata()  # a guide is not compared with
     assert off == pytest.approx((2.1 - 2.06) / np.hypot(0.1 / np.sqrt(2.0), 0.01))
+
+
+def test_any_measure_of_a_sweep_is_drawn_against_any_key():
+    rows = [
+        {"e": e, "n": n, "replica": k, "rate": n * e + k, "energy": 10.0 * e + 2.0 * k, "rate_error": 1.0 + k}
+        for e in (0.9, 0.8)
+        for n in (16, 64)
+        for k in (0, 1)
+    ]
+    figure = Figure()
+    swept.draw(figure, rows, None, "rate", "mine")
+    (axes,) = figure.axes
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["n = 16", "n = 64"]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("e", "rate")
+    series = [line for line in axes.lines if line.get_marker() == "o"]
+    assert series[0].get_xdata().tolist() == [0.8, 0.9]
+    assert series[0].get_ydata() == pytest.approx([16 * 0.8 + 0.2, 16 * 0.9 + 0.2])  # weights 1 and 1 / 4
+    e, mean, error, theory = swept.averages(rows[:2], "e", "energy")
+    assert (e.tolist(), mean.tolist(), error.tolist()) == ([0.9], [10.0], [pytest.approx(1.0)])  # the scatter of 9 and 11
+    assert np.isnan(theory).all()
+    with pytest.raises(EventsimError, match=r"--y energi: .*did you mean 'energy'\?.* there are e, n, rate, energy$"):
+        swept.draw(Figure(), rows, None, "energi")
+    with pytest.raises(EventsimError, match="has both e and late"):
+        swept.draw(Figure(), [*rows, {"late": 1.0}], "e", "late")
 
 
 def test_disks_that_nothing_deflects_have_no_mean_squared_displacement(tmp_path):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import cycle, takewhile
 from pathlib import Path
 from typing import Any
@@ -46,7 +46,7 @@ def draw(figure: Figure, rows: Sequence[Row], name: str | None = None) -> None:
     if below is not None:
         below.axhspan(-1.0, 1.0, color="#e3e6ea")
         below.axhline(0.0, color=ORANGE, lw=1.5)
-        for (_, members), style in zip(series_of(rows), _styles(), strict=False):
+        for (_, members), style in zip(series_of(rows), styles(), strict=False):
             eta, _, _, theory, accuracy, _ = averages(members)
             below.plot(eta[np.isfinite(theory) & np.isfinite(accuracy)], _off(members), **style)
         label(below, "packing fraction", "difference\n[std. errors]", "")
@@ -58,7 +58,7 @@ def _draw_z(axes: Axes, rows: Sequence[Row]) -> None:
     curve = [compressibility_factor(value) for value in x.tolist()]
     axes.plot(x, curve, color=ORANGE, lw=1.5, label="Kolafa & Rottner 2006, fluid, N \N{RIGHTWARDS ARROW} \N{INFINITY}")
     doubtful = False
-    for (words, members), style in zip(series_of(rows), _styles(), strict=False):
+    for (words, members), style in zip(series_of(rows), styles(), strict=False):
         eta, z, error, _, _, settled = averages(members)
         axes.errorbar(eta, z, error, fmt="none", color=style["color"])
         axes.plot(eta[settled], z[settled], label=as_written(words) or "measured", **style)
@@ -69,7 +69,7 @@ def _draw_z(axes: Axes, rows: Sequence[Row]) -> None:
     axes.legend(frameon=False)
 
 
-def _styles() -> Iterator[dict[str, Any]]:
+def styles() -> Iterator[dict[str, Any]]:
     """How the series are drawn, one after the other."""
     for mark, colour in zip(cycle(MARKS), cycle(COLOURS), strict=False):
         yield {"marker": mark, "ls": "none", "ms": 4, "color": colour}
@@ -83,26 +83,31 @@ def _off(rows: Sequence[Row]) -> list[float]:
     return off
 
 
-def series_of(rows: Sequence[Row]) -> list[tuple[str, list[Row]]]:
-    """(words, rows) for each setting of the keys that are swept besides the packing fraction, in the order of the table."""
+def series_of(
+    rows: Sequence[Row], x: str = "packing_fraction", drawn: Callable[[Row], bool] | None = None
+) -> list[tuple[str, list[Row]]]:
+    """(words, rows) for each setting of the keys that are swept besides what changes x, in the order of the table.
+
+    drawn: whether a row has what is drawn; None: a packing fraction and a Z.
+    """
     settings = takewhile(lambda key: key != "replica", rows[0] if rows else ())
     keys = [key for key in settings if len({row.get(key) for row in rows}) > 1]
-    along = next((key for key in keys if _moves_along(rows, key, keys)), None)
+    along = next((key for key in keys if _moves_along(rows, key, keys, x)), None)
     others = [key for key in keys if key != along]
     found: dict[str, list[Row]] = {}
     for row in rows:
         found.setdefault(", ".join(f"{key} = {row.get(key)}" for key in others), []).append(row)
-    return [(words, members) for words, members in found.items() if any(map(_can_be_drawn, members))]
+    return [(words, members) for words, members in found.items() if any(map(drawn or _can_be_drawn, members))]
 
 
-def _moves_along(rows: Sequence[Row], key: str, keys: Sequence[str]) -> bool:
-    """Whether a key changes the packing fraction where the others stay as they are."""
-    etas: dict[tuple[object, ...], set[float]] = {}
+def _moves_along(rows: Sequence[Row], key: str, keys: Sequence[str], x: str) -> bool:
+    """Whether a key changes x where the others stay as they are."""
+    places: dict[tuple[object, ...], set[float]] = {}
     for row in rows:
-        eta = row.get("packing_fraction")
-        if isinstance(eta, float):
-            etas.setdefault(tuple(row.get(other) for other in keys if other != key), set()).add(round(eta, 12))
-    return any(len(values) > 1 for values in etas.values())
+        place = row.get(x)
+        if isinstance(place, int | float):
+            places.setdefault(tuple(row.get(other) for other in keys if other != key), set()).add(round(place, 12))
+    return any(len(values) > 1 for values in places.values())
 
 
 def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, Floats, NDArray[np.bool_]]:
@@ -117,7 +122,10 @@ def averages(rows: Sequence[Row]) -> tuple[Floats, Floats, Floats, Floats, Float
             # the same setting may differ in the last digit of what the disks cover
             groups.setdefault((round(float(row["packing_fraction"] or 0.0), 12), row.get("disks")), []).append(row)
     if not groups:
-        raise EventsimError("there is nothing to draw: no run of the table has a packing fraction and a Z with an error bar")
+        raise EventsimError(
+            "there is nothing to draw: no run of the table has a packing fraction and a Z with an error bar; "
+            "--x and --y take any columns of numbers"
+        )
     means = [_mean(group) for _, group in sorted(groups.items(), key=lambda item: item[0][0])]
     z, error, theory, accuracy, settled = (np.array([mean[k] for mean in means]) for k in range(5))
     return np.array(sorted(eta for eta, _ in groups)), z, error, theory, accuracy, settled.astype(np.bool_)
