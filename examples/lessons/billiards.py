@@ -16,6 +16,7 @@ import eventsim as es
 from eventsim.measure import study
 
 FULL = "--full" in sys.argv  # longer paths
+SAVE = "--save" in sys.argv  # pictures become files here
 APART = 1e-9
 
 # %% [markdown]
@@ -60,7 +61,7 @@ for name, values in distance.items():
     axes.semilogy(times, values, label=name)
 axes.set(xlabel="time", ylabel="distance of the two points", title="who parts exponentially is chaotic")
 axes.legend()
-plt.show()
+plt.savefig("billiards-paths.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** Sinai's points and those in the stadium are lost; in the ellipse the distance grows at most like the time.
@@ -108,7 +109,7 @@ axes.set(xscale="log", xlabel="radius of the post", ylabel="Lyapunov exponent pe
 axes.set_xticks(radii, [f"{radius:g}" for radius in radii], minor=False)
 axes.minorticks_off()
 axes.legend()
-plt.show()
+plt.savefig("billiards-posts.png") if SAVE else plt.show()
 
 off = np.abs(values - small_posts(radii))
 print(f"off the asymptote by less than R ln(R)^2, but for bars: {np.all(off < radii * np.log(radii) ** 2 + 3 * bars)}")

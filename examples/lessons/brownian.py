@@ -15,6 +15,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # more runs of it
+SAVE = "--save" in sys.argv  # pictures become files here
 SEEDS = 200 if FULL else 24
 UNTIL = 100.0
 
@@ -47,7 +48,7 @@ right.plot(times, energy.mean(axis=0), label=f"mean of {SEEDS} runs")
 right.axhline(1, color="grey", label="kT")
 right.set(xlabel="time", ylabel="its kinetic energy", ylim=(0, None))
 right.legend()
-plt.show()
+plt.savefig("brownian.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** It starts with nothing, and has $kT = 1$ in the second half (the bath has given a little: 60 disks at

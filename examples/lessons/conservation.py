@@ -18,6 +18,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # more events and sharper checks
+SAVE = "--save" in sys.argv  # pictures become files here
 
 # %% [markdown]
 # **Run.** The log has one row per contact: who met, where, and the momentum exchanged.
@@ -51,7 +52,7 @@ below.plot(times, momentum, label="sum of m v")
 below.plot(times, by_walls, "k:", label="start + what the walls gave")
 below.set(xlabel="time", ylabel="momentum along x")
 below.legend()
-plt.show()
+plt.savefig("conservation.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.**

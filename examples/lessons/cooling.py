@@ -16,6 +16,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # more disks
+SAVE = "--save" in sys.argv  # pictures become files here
 N = 1000 if FULL else 200
 E = 0.9
 
@@ -40,7 +41,7 @@ axes.semilogy(s, temperature, "o", ms=4, label="run")
 axes.semilogy(s, haff, label="Haff")
 axes.set(xlabel="contacts per disk", ylabel="temperature / at the start")
 axes.legend()
-plt.show()
+plt.savefig("cooling.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.**

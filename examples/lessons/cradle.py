@@ -16,6 +16,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # longer rows
+SAVE = "--save" in sys.argv  # pictures become files here
 
 # %% [markdown]
 # **Run.** Disks of diameter 1 on a line; walls send the last ones back.
@@ -36,7 +37,7 @@ for k, run in runs.items():
 # %%
 axes = plt.figure(figsize=(6, 5), layout="constrained").gca()
 runs[2].plot("space-time", ax=axes)
-plt.show()
+plt.savefig("cradle.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** As many leave as came, with the same speed, and all others stop. Equal masses exchange velocities, one

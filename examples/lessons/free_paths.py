@@ -16,6 +16,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # smaller error bars
+SAVE = "--save" in sys.argv  # pictures become files here
 EVENTS = 300_000 if FULL else 8_000
 
 # %% [markdown]
@@ -33,7 +34,7 @@ path, diffusion = run.measures["mean_free_path"], run.measures["diffusion"]
 # %%
 run.plot("free-paths")
 run.plot("msd")
-plt.show()
+plt.savefig("free_paths.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** Enskog corrects the density by the contact value $\chi = (1 - 7\eta/16)/(1-\eta)^2$, the chance to find a

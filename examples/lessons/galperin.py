@@ -17,6 +17,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # two digits more
+SAVE = "--save" in sys.argv  # pictures become files here
 
 # %% [markdown]
 # **Run.**
@@ -38,7 +39,7 @@ figure, axes = plt.subplots(figsize=(5, 5), layout="constrained")
 axes.plot(scaled[:, 1], scaled[:, 0], "o-", ms=4, lw=0.7)
 axes.set(xlabel=r"$\sqrt{M}\,V$ (heavy)", ylabel=r"$\sqrt{m}\,v$ (light)", aspect="equal")
 axes.set_title("31 contacts: each is a chord of the same circle", fontsize=10)
-plt.show()
+plt.savefig("galperin.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** A pair and a wall contact together turn the point by $2\theta$, $\theta = \arctan\sqrt{m/M}$. There are

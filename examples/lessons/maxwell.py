@@ -16,6 +16,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # more disks
+SAVE = "--save" in sys.argv  # pictures become files here
 N = 2000 if FULL else 400
 
 # %% [markdown]
@@ -53,7 +54,7 @@ v = np.linspace(0, 3, 200)
 right.plot(v, 2 * v * np.exp(-(v**2)), label="Maxwell, kT = 1/2")
 right.set(xlabel="speed", ylabel="density", title="speeds in the last third")
 right.legend()
-plt.show()
+plt.savefig("maxwell.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** Maxwell in two dimensions has $\langle v^4\rangle/\langle v^2\rangle^2 = 2$ (a little less at fixed

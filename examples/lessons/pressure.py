@@ -15,6 +15,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # smaller error bars
+SAVE = "--save" in sys.argv  # pictures become files here
 EVENTS = 200_000 if FULL else 6_000
 
 # %% [markdown]
@@ -51,7 +52,7 @@ axes.axhline(1, color="grey", lw=0.8, label="ideal gas")
 axes.errorbar(etas, [z.value for z in found], [z.error for z in found], fmt="o", ms=4, capsize=3, label="contacts")
 axes.set(xlabel="packing fraction", ylabel="Z = pV / NkT")
 axes.legend()
-plt.show()
+plt.savefig("pressure.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** Bars of 100 disks, and the equation itself is good to about one percent.

@@ -15,6 +15,7 @@ import numpy as np
 import eventsim as es
 
 FULL = "--full" in sys.argv  # smaller steps
+SAVE = "--save" in sys.argv  # pictures become files here
 N = 150
 
 # %% [markdown]
@@ -43,7 +44,7 @@ axes.loglog(shares, np.abs(missed), "o-", label="share of contacts, net")
 axes.loglog(shares, places, "s-", label="error of places at the end / radius")
 axes.set(xlabel="step, in radii of flight", ylabel="wrong by")
 axes.legend()
-plt.show()
+plt.savefig("time_steps.png") if SAVE else plt.show()
 
 # %% [markdown]
 # **Check.** Energy says nothing: these steps keep it to the last bits and lose contacts all the same.

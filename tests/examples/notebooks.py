@@ -1,6 +1,7 @@
 """Makes the notebooks of the lessons from their scripts, outputs and figures included.
 
     python -m tests.examples.notebooks
+    python -m tests.examples.notebooks --without-answers FOLDER    scripts and notebooks for students, not run yet
 
 A script has cells as editors know them: a line `# %%` begins code, `# %% [markdown]` text.
 """
@@ -19,6 +20,11 @@ from typing import Any
 
 LESSONS = Path(__file__).parents[2] / "examples" / "lessons"
 DPI = 80
+WITHOUT = "--without-answers"
+ANSWER = "\n#\n# **Answer.**"
+"""What stands between an exercise and its answer, with which a script ends."""
+
+ROOM = "\n\n# %%\n# your answer\n"
 
 
 def cells_of(script: str) -> list[tuple[str, str]]:
@@ -77,16 +83,43 @@ def notebook_of(script: str, outputs: list[list[dict[str, Any]]]) -> dict[str, A
     return {"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}
 
 
+def without_answer(script: str) -> str:
+    """The script with room where its answer was."""
+    question, found, _ = script.partition(ANSWER)
+    assert found, "a lesson has an answer"
+    return question + ROOM
+
+
+def write_notebook(path: Path, script: str, outputs: list[list[dict[str, Any]]]) -> None:
+    """Write the notebook of a script."""
+    notebook = notebook_of(script, outputs)
+    text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+    path.write_text(text, encoding="utf-8")
+    print(f"{path.stem}: {len(notebook['cells'])} cells, {len(text) // 1000} kB")
+
+
 def main() -> int:
-    """Write all notebooks, or those of the lessons that are named."""
+    """Write all notebooks, or those of the lessons that are named; or scripts and notebooks without answers to a folder."""
     sys.argv, names = sys.argv[:1], sys.argv[1:]
+    folder = LESSONS
+    if WITHOUT in names:
+        at = names.index(WITHOUT)
+        if at + 1 == len(names):
+            print(f"{WITHOUT} FOLDER: say where the lessons for students are to be written", file=sys.stderr)
+            return 2
+        folder = Path(names[at + 1])
+        folder.mkdir(parents=True, exist_ok=True)
+        names = names[:at] + names[at + 2 :]
     for path in sorted(LESSONS.glob("*.py")):
         if not names or path.stem in names:
             script = path.read_text(encoding="utf-8")
-            notebook = notebook_of(script, executed(cells_of(script)))
-            text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
-            path.with_suffix(".ipynb").write_text(text, encoding="utf-8")
-            print(f"{path.stem}: {len(notebook['cells'])} cells, {len(text) // 1000} kB")
+            if folder.resolve() == LESSONS:
+                outputs = executed(cells_of(script))
+            else:
+                script = without_answer(script)
+                outputs = [[] for _ in cells_of(script)]
+                (folder / path.name).write_text(script, encoding="utf-8")
+            write_notebook(folder / f"{path.stem}.ipynb", script, outputs)
     return 0
 
 
