@@ -29,8 +29,8 @@ def pixels(context: click.Context, option: click.Parameter, value: str | None) -
 @click.option("--out", required=True, metavar="FILE", help="FILE.mp4, .gif, .png (a strip of moments) or .html.")
 @stop_options
 @click.option("--fps", type=float, metavar="F", help="Frames per second; 30, of a gif 20.")
-@click.option("--speed", type=float, metavar="S", help="Time of the scene that passes in a second of the movie.")
-@click.option("--duration", type=float, metavar="D", help="Seconds that the movie lasts; 10, of a gif 6.")
+@click.option("--speed", type=float, metavar="S", help="Time of the scene that passes in a second.  [default: all in 10 seconds]")
+@click.option("--duration", type=float, metavar="D", help="Seconds that it lasts.  [default: 10]")
 @click.option("--from", "begin", type=float, metavar="T", help="Begin at this time on the scene's clock.")
 @click.option("--to", "end", type=float, metavar="T", help="End at this time on the scene's clock.")
 @click.option("--moments", type=click.IntRange(min=1), metavar="N", help="Pictures in a png; 6.")
@@ -70,9 +70,10 @@ def command(
 ) -> None:
     """Draw a run: simulates SCENE, or reads LOG, and writes what happened to a file that shows it.
 
-    Frames are exact at their times, at any rate: they come from the log, not from a clock that ticks along. A movie
-    shows the whole run in 10 seconds unless told otherwise. The html file is a player with a play button, a time
-    line and steps from event to event; it needs no network and nothing else.
+    Frames are exact at their times, at any rate: they come from the log, not from a clock that ticks along. Movie and
+    page show the whole run in 10 seconds, whatever the scene's clock says, unless told otherwise; so does eventsim live
+    show the span to the scene's until. The picture tells the rate: x 2, two time units a second. The html file is a
+    player with a play button, a time line and steps from event to event; it needs no network and nothing else.
 
     \b
     Examples:

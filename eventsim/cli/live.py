@@ -56,7 +56,8 @@ def command(
     measures what it shows, compares it with a per-frame engine side by side, and downloads scene and log. The server
     simulates a few seconds ahead and sends events; the page draws what lies between them, exactly. It listens on
     127.0.0.1 alone unless --host says otherwise, and ends with Ctrl-C. What the keys until and events of a scene say is
-    not heeded: it goes on.
+    not heeded: it goes on. It plays as movies do: the span to until in 10 seconds; a scene without until so that a
+    disk of usual speed crosses the picture in 5, and the menu's disks one time unit a second. The page tells the rate.
 
     \b
     Examples:

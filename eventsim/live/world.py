@@ -26,6 +26,7 @@ from eventsim.record.events import State
 from eventsim.replay.replay import Replay
 from eventsim.scene import Box, Disks, Scene, Segment
 from eventsim.scene.disks import join
+from eventsim.show.frames import SECONDS
 from eventsim.show.player.pack import PackedColumn, scene_description, stage_description, start_columns
 
 if TYPE_CHECKING:
@@ -43,11 +44,8 @@ MOST_EVENTS = 3_000_000
 SCOUT_EVENTS = 2000
 """Events simulated before a scene is shown, which tell how fast disks get and how far they go."""
 
-SECONDS = 10.0
-"""How long the span that a scene is made for (`until`) plays at the usual speed."""
-
 CROSSING_SECONDS = 5.0
-"""Where there is no such span: how long a disk of usual speed takes to cross the picture."""
+"""Where a scene is made for no span (`until`): how long a disk of usual speed takes to cross the picture."""
 
 MAKING_SECONDS = 20.0
 """How long a page waits for its disks to be placed; a file or a notebook waits longer."""

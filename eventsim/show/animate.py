@@ -16,7 +16,7 @@ from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
-from eventsim.show.frames import GLOW, Timing, frame_timing, frames_at, moments, shown_span
+from eventsim.show.frames import GLOW, SECONDS, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4
 from eventsim.show.output import short_number, span_words, suffix_of
@@ -26,9 +26,6 @@ from eventsim.show.strip import write_strip
 from eventsim.show.strokes import BANDS
 
 FPS = {".mp4": 30.0, ".gif": 20.0}
-DURATION = {".mp4": 10.0, ".gif": 6.0}
-"""Seconds that a movie lasts where neither duration nor speed is given."""
-
 ROOM = {".mp4": (1280, 720), ".gif": (640, 480), ".png": (520, 440)}
 """Pixels that a frame may take where no size is given."""
 
@@ -107,7 +104,7 @@ def _page(log: AnyLog, film: Film, look: Look) -> str:
         if value is not None:
             raise EventsimError(f"{name} = {value}: a page plays the whole log, at any size and rate; leave it out")
     span = Passage(log).span
-    timing = frame_timing(span, FPS[".mp4"], DURATION[".mp4"], film.speed, film.duration)
+    timing = frame_timing(span, FPS[".mp4"], film.speed, film.duration)
     return page(
         log,
         color=look.color,
@@ -134,7 +131,6 @@ def _timing(span: tuple[float, float], suffix: str, film: Film) -> Timing:
         return frame_timing(
             span,
             FPS[suffix] if film.fps is None else film.fps,
-            DURATION[suffix],
             film.speed,
             film.duration,
             film.begin,
@@ -144,7 +140,7 @@ def _timing(span: tuple[float, float], suffix: str, film: Film) -> Timing:
         raise EventsimError(f"moments = {film.moments}: must be at least 1")
     times = moments(span, film.moments, film.begin, film.end)
     first, last = shown_span(span, film.begin, film.end)
-    return Timing(times, FPS[".mp4"], (last - first) / DURATION[".mp4"])
+    return Timing(times, FPS[".mp4"], (last - first) / SECONDS)
 
 
 def _drawn(

@@ -17,6 +17,9 @@ from eventsim.replay.passage import Moment, Passage
 from eventsim.scene import Scene
 from eventsim.show.turns import Turns
 
+SECONDS = 10.0
+"""How long a run plays where neither duration nor speed is given: as a movie, as a page, in the live view."""
+
 GLOW = 0.2
 """Seconds of the movie for which a contact lights up its disks."""
 
@@ -36,7 +39,6 @@ class Timing:
 def frame_timing(
     span: tuple[float, float],
     fps: float,
-    default_duration: float,
     speed: float | None = None,
     duration: float | None = None,
     begin: float | None = None,
@@ -53,7 +55,7 @@ def frame_timing(
     for name, value in (("fps", fps), ("speed", speed), ("duration", duration)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise EventsimError(f"{name} = {value}: must be finite and above 0")
-    seconds = (last - first) / speed if speed is not None else duration or default_duration
+    seconds = (last - first) / speed if speed is not None else duration or SECONDS
     if not seconds * fps <= MOST_FRAMES:
         raise EventsimError(f"this movie would have {seconds * fps:.3g} frames: give a higher speed or a shorter span")
     if speed is None:

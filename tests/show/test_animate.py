@@ -119,6 +119,14 @@ def test_a_gif_lasts_as_long_as_asked_and_repeats(broken, tmp_path):
         assert (image.size, sum(durations), image.info["loop"]) == ((320, 200), 1000, 0)
 
 
+def test_a_gif_and_an_mp4_last_ten_seconds_where_nothing_is_asked(broken, tmp_path):
+    for name in ("break.gif", "break.mp4"):
+        animate(broken, tmp_path / name, Film(fps=2.0), SMALL)
+    with Image.open(tmp_path / "break.gif") as image:
+        assert sum(frame.info["duration"] for frame in ImageSequence.Iterator(image)) == 10_000
+    assert imageio_ffmpeg.count_frames_and_secs(str(tmp_path / "break.mp4")) == (20, pytest.approx(10.0, abs=0.6))
+
+
 def test_a_png_is_a_strip_of_moments(broken, tmp_path):
     path = tmp_path / "break.png"
     animate(

@@ -10,13 +10,13 @@ from eventsim.show.frames import energy_of, frame_timing, frames_at, moments
 
 
 def test_a_duration_spreads_the_frames_from_beginning_to_end():
-    timing = frame_timing((2.0, 6.0), 30.0, 10.0, duration=2.0)
+    timing = frame_timing((2.0, 6.0), 30.0, duration=2.0)
     assert len(timing.times) == 60
     assert (timing.times[0], timing.times[-1], timing.speed) == (2.0, 6.0, 2.0)
 
 
 def test_a_speed_spaces_the_frames_and_keeps_the_last():
-    timing = frame_timing((0.0, 1.0), 10.0, 10.0, speed=0.5)
+    timing = frame_timing((0.0, 1.0), 10.0, speed=0.5)
     np.testing.assert_allclose(timing.times, np.arange(21) * 0.05, rtol=1e-15)
 
 
@@ -38,7 +38,7 @@ def test_the_moments_of_a_strip_include_both_ends():
 )
 def test_options_that_do_not_fit_are_explained(options, expected):
     with pytest.raises(EventsimError, match=expected):
-        frame_timing((0.0, 4.0), 30.0, 10.0, **options)
+        frame_timing((0.0, 4.0), 30.0, **options)
 
 
 def test_frames_show_the_state_and_count_contacts(broken):
