@@ -8,6 +8,9 @@ before, once a last bit of the disk's place is worth as much energy as it has le
 from eventsim.formulas.doubt import LEAST_LOSS, ROUNDED
 from eventsim.formulas.real import Real
 
+ALONG = 8.0 * ROUNDED
+"""A speed along a wall that is so small a part of the terms that it is the sum of is rounding."""
+
 SPENT = 8.0
 """Energy so many times that of a fall by the last bit of a place, over 1 - e^2, is what rounding may keep up in a corner."""
 
@@ -21,6 +24,34 @@ def holds(ax: Real, ay: Real, bx: Real, by: Real, gx: Real, gy: Real) -> bool:
         return False
     turn = ax * by - ay * bx
     return bool(turn * (gy * bx - gx * by) > 0.0 and turn * (gx * ay - gy * ax) > 0.0)
+
+
+def slides_into(ax: Real, ay: Real, bx: Real, by: Real, gx: Real, gy: Real) -> bool:
+    """Whether a disk that comes to rest on wall a is pressed onto wall b as well: gravity along a leads into b.
+
+    So it does where b is level, which holds what falls onto it alone.  Walls along the axes: as for `holds`.
+    """
+    if (ax == 0.0 or ay == 0.0) and (bx == 0.0 or by == 0.0):
+        return False
+    return bool((ax * by - ay * bx) * (gx * ay - gy * ax) > 0.0)
+
+
+def passes_sliding(ax: Real, ay: Real, bx: Real, by: Real, u: Real, w: Real, gx: Real, gy: Real) -> bool:
+    """Whether a disk with velocity (u, w), whose bounces on wall a are over, does not meet wall b, which it is above as well.
+
+    Along a it comes no nearer to b; off a it is further from both.
+    """
+    turn = ax * by - ay * bx
+    if not ax * bx + ay * by > 0.0:
+        return False
+    return not _leads(turn, ax, ay, u, w) and not _leads(turn, ax, ay, gx, gy)
+
+
+def _leads(turn: Real, ax: Real, ay: Real, u: Real, w: Real) -> bool:
+    """Whether a vector has a part along wall a towards another wall, on the left (turn < 0) or right of a's normal."""
+    one, other = ax * w, ay * u
+    slack = ALONG * (abs(one) + abs(other))
+    return bool(one - other < -slack) if turn > 0.0 else bool(turn < 0.0 and one - other > slack)
 
 
 def is_spent(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from eventsim.formulas.corner import holds
+from eventsim.formulas.corner import holds, slides_into
 from eventsim.formulas.real import Real, is_float
 from eventsim.formulas.rest import LEFT, SUPPORTED
 from eventsim.scene.stage import Stage
@@ -23,19 +23,23 @@ class Corner(NamedTuple):
 def corners_of(
     stage: Stage, met: Sequence[tuple[int, int, int]], place: int, side: int, x: Real, y: Real
 ) -> Iterator[Corner]:
-    """The corners that a wall, met from a side, makes with others that a disk at (x, y) met last; none where nothing settles.
+    """The corners that a wall, met from a side, makes with others that a disk at (x, y) met last, and that hold it."""
+    assert stage.gravity is not None
+    for corner in _beside(stage, met, place, side, x, y):
+        if holds(*corner.first, *corner.second, *stage.gravity):
+            yield corner
 
-    Walls in line make none.
-    """
+
+def _beside(
+    stage: Stage, met: Sequence[tuple[int, int, int]], place: int, side: int, x: Real, y: Real
+) -> Iterator[Corner]:
+    """All of them; none where nothing settles.  Walls in line make none."""
     others = [last for last in met if last[0] < 0 and last[2] != LEFT and not _is_one(stage, place, -1 - last[0])]
     if not others or not stage.settles or not is_float(x):
         return
-    assert stage.gravity is not None
     second = stage.normal(place, side, x, y)
     for wall, from_side, how in others:
-        first = stage.normal(-1 - wall, from_side, x, y)
-        if holds(*first, *second, *stage.gravity):
-            yield Corner(-1 - wall, how == SUPPORTED, first, second)
+        yield Corner(-1 - wall, how == SUPPORTED, stage.normal(-1 - wall, from_side, x, y), second)
 
 
 def _is_one(stage: Stage, place: int, other: int) -> bool:
@@ -47,5 +51,8 @@ def _is_one(stage: Stage, place: int, other: int) -> bool:
 
 
 def is_cornered(stage: Stage, met: Sequence[tuple[int, int, int]], place: int, side: int, x: Real, y: Real) -> bool:
-    """Whether there is such a corner."""
-    return next(corners_of(stage, met, place, side, x, y), None) is not None
+    """Whether a disk that comes to rest on a wall would be pressed onto another one as well that it met last."""
+    gravity = stage.gravity
+    if gravity is None:
+        return False
+    return any(slides_into(*corner.second, *corner.first, *gravity) for corner in _beside(stage, met, place, side, x, y))

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 import eventsim as es
-from eventsim.formulas.corner import holds, is_spent
+from eventsim.formulas.corner import holds, is_spent, passes_sliding, slides_into
 
 ENGINES = ["reference", pytest.param("fast", marks=pytest.mark.slow)]
 
@@ -82,6 +82,59 @@ def test_bounces_on_one_of_two_walls_along_the_axes_do_not_feel_the_other(engine
     assert run.stopped == "collapse"
 
 
+LEVEL_AND_ANOTHER = {
+    "steep": ([(0.0, 3.0), (1.0, 1.0), (4.0, 1.0)], (1.0, 3.0), 0.0, "wall0.1"),
+    "its mirror image": ([(4.0, 3.0), (3.0, 1.0), (0.0, 1.0)], (3.0, 3.0), 0.0, "wall0.1"),
+    "told the other way": ([(4.0, 1.0), (1.0, 1.0), (0.25, 2.0)], (1.0, 3.0), 0.0, "wall0.0"),
+    "shallow": ([(4.0, 1.0), (1.0, 1.0), (0.0, 1.125)], (1.0, 3.0), 0.0, "wall0.0"),
+    "two steep ones": ([(0.0, 3.0), (1.0, 1.0), (2.0, 1.0), (3.0, 3.0)], (1.0, 3.0), 0.0, "wall0.1"),
+    "a disk at a steep one": ([(0.25, 2.0), (1.0, 1.0), (4.0, 1.0)], (1.25, 3.5), 0.5, "wall0.1"),
+    "a disk at a shallow one": ([(0.0, 1.75), (1.0, 1.0), (4.0, 1.0)], (1.25, 3.75), 0.75, "wall0.1"),
+    "a disk at a vertical one": ([(4.0, 1.0), (1.0, 1.0), (1.0, 4.0)], (1.25, 3.25), 0.25, "wall0.0"),
+    "a disk at the floor": ([(0.25, 1.0), (1.0, 0.0)], (1.25, 2.5), 0.5, "bottom"),
+}
+"""The chain, where the disk starts, 2 above its contact with both, its radius, and the wall that is level."""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("kind", LEVEL_AND_ANOTHER)
+def test_what_falls_into_a_corner_of_a_level_wall_rests_on_that_alone_at_its_zeno_time(engine, kind):
+    """The other wall never gives it anything: they are one cluster at each bounce, and so they are at the end."""
+    chain, start, radius, level = LEVEL_AND_ANOTHER[kind]
+    run = fall(start, radius, engine, restitution=0.5, domain=es.Box((4.0, 8.0)), walls=(es.Polyline(chain),))
+    assert {run.log.provenance.wall_names[row["wall"]] for row in run.log.rows} == {level}
+    assert run.log.rows["kind"].tolist() == [1] * (len(run.log.rows) - 1) + [2]
+    assert run.log.time[-1] == pytest.approx(2.0 * (1.0 + 0.5) / (1.0 - 0.5), rel=1e-14)
+    assert (run.log.vxa[-1], run.log.vya[-1]) == (0.0, 0.0)
+    assert (run.log.xa[-1], run.log.ya[-1]) == (start[0], start[1] - 2.0)
+    assert run.stopped == "quiet"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_falls_into_a_corner_of_a_side_and_a_wall_across_gravity_rests_on_that(engine):
+    wall = es.Segment((0.0, 2.75), (3.0, 0.5))
+    disk = es.Disks([(0.75, 3.75)], radius=0.0)
+    made = es.Scene(disk, es.Box((4.0, 8.0)), (wall,), gravity=(-3.0, -4.0), restitution=0.5)
+    run = es.simulate(made, until=5.0, engine=engine, log=True)
+    assert {run.log.provenance.wall_names[row["wall"]] for row in run.log.rows} == {"wall0"}
+    assert run.log.rows["kind"][-1] == 2
+    assert run.log.time[-1] == pytest.approx(math.sqrt(2.0 * 1.25 / 5.0) * 3.0, rel=1e-14)
+    assert (run.log.xa[-1], run.log.ya[-1]) == pytest.approx((0.0, 2.75), abs=1e-14)
+    assert (run.log.vxa[-1], run.log.vya[-1]) == pytest.approx((0.0, 0.0), abs=1e-15)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_bounces_where_a_floor_bends_down_end_on_the_part_that_leads_away(engine):
+    """By 1e-13 it does: each bounce, of twice its speed in all, adds that share of 1 + e of the speed, to e v in the end."""
+    bend = 1e-13
+    floor = es.Polyline([(0.0, 3.0), (1.0, 1.0), (4.0, 1.0 - 3.0 * bend)])
+    run = fall((1.0, 3.0), 0.0, engine, restitution=0.5, domain=es.Box((4.0, 8.0)), walls=(floor,))
+    assert {run.log.provenance.wall_names[row["wall"]] for row in run.log.rows} == {"wall0.1"}
+    assert run.log.rows["kind"].tolist() == [1] * (len(run.log.rows) - 1) + [2]
+    assert run.log.time[-1] == pytest.approx(6.0, rel=1e-9)
+    assert run.log.vxa[-1] == pytest.approx(6.0 * bend, rel=1e-3)
+
+
 def test_a_corner_holds_where_gravity_lies_between_its_walls():
     assert holds(1.0, 1.0, -1.0, 2.0, 0.0, -1.0)
     assert holds(-1.0, 2.0, 1.0, 1.0, 0.0, -1.0)
@@ -89,6 +142,27 @@ def test_a_corner_holds_where_gravity_lies_between_its_walls():
     assert not holds(1.0, -1.0, -1.0, -1.0, 0.0, -1.0)
     assert holds(1.0, 0.0, -0.1, 1.0, 0.0, -1.0)
     assert not holds(1.0, 0.0, 0.0, 1.0, -0.5, -1.0)
+
+
+def test_a_disk_at_rest_on_a_wall_is_pressed_onto_another_one_where_it_would_slide_into_it():
+    assert slides_into(1.0, 1.0, -1.0, 2.0, 0.0, -1.0)
+    assert slides_into(-1.0, 2.0, 1.0, 1.0, 0.0, -1.0)
+    assert slides_into(1.0, 1.0, 0.0, 1.0, 0.0, -1.0)
+    assert not slides_into(0.0, 1.0, 1.0, 1.0, 0.0, -1.0)
+    assert slides_into(2.0, 1.0, 1.0, 2.0, 0.0, -1.0)
+    assert not slides_into(1.0, 2.0, 2.0, 1.0, 0.0, -1.0)
+    assert not slides_into(1.0, 0.0, 0.0, 1.0, -0.5, -1.0)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_at_the_end_of_its_bounces_on_a_wall_a_disk_meets_what_it_slides_into(side):
+    level, steep, overhanging, down = (0.0, 1.0), (side, 1.0), (side, -0.5), (0.0, -1.0)
+    assert passes_sliding(*level, *steep, 0.0, 1e-8, *down)
+    assert passes_sliding(*level, *steep, side, 1e-8, *down)
+    assert not passes_sliding(*level, *steep, -1e-9 * side, 1e-8, *down)
+    assert not passes_sliding(*level, *steep, 0.0, 1e-8, -0.5 * side, -1.0)
+    assert not passes_sliding(*level, *overhanging, side, 1e-8, *down)
+    assert passes_sliding(3.0 * side, 4.0, 4.0 * side, 0.1, 3e-8 * side, 4e-8 * (1.0 + 2.0**-52), -3.0 * side, -4.0)
 
 
 def test_the_energy_left_in_a_corner_counts_from_its_lowest_place():

@@ -48,7 +48,7 @@ from eventsim.engines.fast.shapes import (
     lies_on,
     wall_normal,
 )
-from eventsim.formulas.corner import holds, kept_up_energy
+from eventsim.formulas.corner import kept_up_energy, passes_sliding, slides_into
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import (
@@ -103,7 +103,7 @@ WIDER = 2.0
 
 @inline
 def is_cornered(m, rules, i, wall, side, x, y, still):
-    """Whether a wall makes a corner that holds disk i, at (x, y), with another one that it met last."""
+    """Whether disk i, at rest on a wall at (x, y), would be pressed onto another one that it met last."""
     if still is None:
         return False
     return _is_cornered(m, rules, i, wall, side, x, y)
@@ -133,7 +133,7 @@ def _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
         return False
     bx, by = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
     ax, ay = wall_normal(m, rules, -1 - other, from_side, x, y, rules.wall_x, rules.wall_y, m.features)
-    return holds(ax, ay, bx, by, rules.gx, rules.gy)
+    return slides_into(bx, by, ax, ay, rules.gx, rules.gy)
 
 
 @inline
@@ -189,19 +189,70 @@ def _since_met(m, i, place):
 @part
 def border_contact(m, rules, i, place, side, target, x, v, g):
     """(time, how) of the next event of disk i at a wall of the domain, which keeps its coordinate x at `target`."""
+    delay, how = _border_delay(m, rules, i, place, side, target, x, v, g)
+    if how == STRUCK and slides_past(m, rules, i, place, side, delay, rules.still):
+        return NEVER, STRUCK
+    return real(m.disks, i * REALS + T) + delay, how
+
+
+@part
+def _border_delay(m, rules, i, place, side, target, x, v, g):
+    """(delay, how) of the same, whatever else the disk comes to rest on."""
     f = i * REALS
-    t = real(m.disks, f + T)
     if rests(m, i) and word(m.disks, i * WORDS + MET) == -1 - place:
         return NEVER, STRUCK
     both = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y))
     size = border_size(x, both, target, real(m.disks, f + CONTACT_TIME) == -math.inf)
     restitution, since = _share_of_series(m, rules, place, m.shares), _since_met(m, i, place)
-    delay, how = free_border_contact(side, target, x, v, g, size, restitution, t, since)
+    delay, how = free_border_contact(side, target, x, v, g, size, restitution, real(m.disks, f + T), since)
     if how == SUPPORTED and is_cornered(
         m, rules, i, place, side, real(m.disks, f + X), real(m.disks, f + Y), rules.still
     ):
-        return t + crossing_delay(x, v, g, target, side), STRUCK
-    return t + delay, how
+        return crossing_delay(x, v, g, target, side), STRUCK
+    return delay, how
+
+
+@inline
+def slides_past(m, rules, i, wall, side, delay, still):
+    """Whether disk i is about to rest on the wall that it met last, and to slide there, but not into this one."""
+    if still is None:
+        return False
+    met = word(m.disks, i * WORDS + MET)
+    if not NOBODY < met < 0 or met == -1 - wall or not delay < NEVER:
+        return False
+    return _slides_past(m, rules, i, wall, side, delay, -1 - met)
+
+
+@part
+def _slides_past(m, rules, i, wall, side, delay, last):
+    f, w = i * REALS, i * WORDS
+    if word(m.disks, w + MET_KY) != STRUCK or not is_support(m, last):
+        return False
+    x, y = place(m, rules, i, real(m.disks, f + T) + delay)
+    side_there = word(m.disks, w + MET_KX)
+    ax, ay = wall_normal(m, rules, last, side_there, x, y, rules.wall_x, rules.wall_y, m.features)
+    bx, by = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
+    gx, gy = pulls(m, rules, i)
+    if not passes_sliding(ax, ay, bx, by, real(m.disks, f + VX), real(m.disks, f + VY), gx, gy):
+        return False
+    rest, how = _next_on(m, rules, i, last, side_there)
+    return how == SUPPORTED and delay <= rest
+
+
+@part
+def _next_on(m, rules, i, wall, side):
+    """(delay, how) of the next event of disk i at a wall that it met from a side; a later rest counts alone."""
+    f = i * REALS
+    if wall >= rules.first_feature:
+        delay, _, how = shape_rest(m, rules, i, wall - rules.first_feature)
+        return delay, how
+    ax, ay = pulls(m, rules, i)
+    sign, r = float(side), real(m.disks, f + RADIUS)
+    if rules.wall_x is not None and wall < 2 and rules.wall_x == 0:
+        target = rules.width - r if sign < 0.0 else r
+        return _border_delay(m, rules, i, wall, sign, target, real(m.disks, f + X), real(m.disks, f + VX), ax)
+    target = rules.height - r if sign < 0.0 else r
+    return _border_delay(m, rules, i, wall, sign, target, real(m.disks, f + Y), real(m.disks, f + VY), ay)
 
 
 @part
@@ -272,19 +323,4 @@ def is_for_rules(m, rules, i, code, time):
     if rests(m, i):
         return True
     wall_code = WALL - code
-    place = wall_code // 2
-    if place >= rules.first_feature:
-        return shape_rest(m, rules, i, place - rules.first_feature)[2] != STRUCK
-    f = i * REALS
-    r, side = real(m.disks, f + RADIUS), -1.0 if wall_code % 2 else 1.0
-    ax, ay = pulls(m, rules, i)
-    if rules.wall_x is not None and place < 2 and rules.wall_x == 0:
-        target = rules.width - r if side < 0.0 else r
-        return (
-            border_contact(m, rules, i, place, side, target, real(m.disks, f + X), real(m.disks, f + VX), ax)[1]
-            != STRUCK
-        )
-    target = rules.height - r if side < 0.0 else r
-    return (
-        border_contact(m, rules, i, place, side, target, real(m.disks, f + Y), real(m.disks, f + VY), ay)[1] != STRUCK
-    )
+    return _next_on(m, rules, i, wall_code // 2, -1 if wall_code % 2 else 1)[1] != STRUCK

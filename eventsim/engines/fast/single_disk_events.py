@@ -27,7 +27,7 @@ from eventsim.engines.fast.layout import (
     X,
     Y,
 )
-from eventsim.engines.fast.rest import border_contact, shape_rest
+from eventsim.engines.fast.rest import border_contact, shape_rest, slides_past
 from eventsim.engines.fast.shapes import shape_delay
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
@@ -188,4 +188,6 @@ def shape_time(m, rules, i, k, supports):
         gy,
         real(m.disks, f + RADIUS),
     )
+    if supports is not None and slides_past(m, rules, i, rules.first_feature + k, side, delay, rules.still):
+        return NEVER, side, STRUCK
     return real(m.disks, f + T) + delay, side, STRUCK

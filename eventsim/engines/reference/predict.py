@@ -9,11 +9,12 @@ from eventsim.engines.reference.calendar import CONTACT, CROSSING, WRAP, Calenda
 from eventsim.engines.reference.cells import Cells, Group, images_of
 from eventsim.engines.reference.state import EngineState
 from eventsim.formulas.contact import screened_pair_delay
+from eventsim.formulas.corner import passes_sliding
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays
-from eventsim.formulas.real import NEVER, Real
+from eventsim.formulas.real import NEVER, Real, is_float
 from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, border_contact, border_size, held_by, shape_contact
 from eventsim.formulas.walls.shape import Shape
 from eventsim.scene.corners import is_cornered
@@ -180,25 +181,48 @@ class Predictor:
             return
         rank, place, position_, inset = border
         state = self._state
-        x, v, g = (state.x, state.vx, state.gravity_x) if axis == 0 else (state.y, state.vy, state.gravity_y)
         target = position_ - step * (inset * self._radius[i])
-        if state.supports is None or rank == WRAP:
-            delay, how = crossing_delay(x[i], v[i], g[i], target, -step), STRUCK
+        if rank == WRAP:
+            x, v, g = self._along(i, axis)
+            delay, how = crossing_delay(x, v, g, target, -step), STRUCK
         else:
-            size = border_size(x[i], abs(state.x[i]) + abs(state.y[i]), target, state.is_as_at_start(i))
-            held, e = held_by(state.met[i]), self._series[place]
-            since = state.since_met(i, -1 - place)
-            delay, how = border_contact(
-                state.supports, held, place, -step, target, x[i], v[i], g[i], size, e, state.t[i], since
-            )
-            if how == SUPPORTED and self._is_cornered(i, place, -step):
-                delay, how = crossing_delay(x[i], v[i], g[i], target, -step), STRUCK
+            delay, how = self._border_contact(i, place, axis, -step, target)
+            if how == STRUCK and self._slides_past(i, place, -step, delay):
+                return
         if delay < NEVER:
             b, image = (axis, (step, 0)) if rank == WRAP else (-1 - place, (-step, how))
             self._push(Event(state.t[i] + delay, rank, i, b, image, state.count[i], 0))
 
+    def _along(self, i: int, axis: int) -> tuple[Real, Real, Real]:
+        """The coordinate, velocity and acceleration of disk i along an axis."""
+        state = self._state
+        if axis == 0:
+            return state.x[i], state.vx[i], state.gravity_x[i]
+        return state.y[i], state.vy[i], state.gravity_y[i]
+
+    def _border_contact(self, i: int, place: int, axis: int, side: float, target: Real) -> tuple[Real, int]:
+        """(delay, STRUCK or SUPPORTED) of the next event at a wall of the domain, which keeps a coordinate at `target`."""
+        state = self._state
+        x, v, g = self._along(i, axis)
+        if state.supports is None:
+            return crossing_delay(x, v, g, target, side), STRUCK
+        size = border_size(x, abs(state.x[i]) + abs(state.y[i]), target, state.is_as_at_start(i))
+        held, e = held_by(state.met[i]), self._series[place]
+        since = state.since_met(i, -1 - place)
+        delay, how = border_contact(state.supports, held, place, side, target, x, v, g, size, e, state.t[i], since)
+        if how == SUPPORTED and self._is_cornered(i, place, int(side)):
+            return crossing_delay(x, v, g, target, side), STRUCK
+        return delay, how
+
     def _wall(self, i: int, place: int, shape: Shape) -> None:
         """Push the contact of disk i with a shape inside the domain."""
+        state = self._state
+        delay, side, how = self._shape_contact(i, place, shape)
+        if delay < NEVER and not (how == STRUCK and self._slides_past(i, place, side, delay)):
+            self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, how), state.count[i], 0))
+
+    def _shape_contact(self, i: int, place: int, shape: Shape) -> tuple[Real, int, int]:
+        """(delay, side, how) of the next event at a shape inside the domain."""
         state = self._state
         met = next((last[1] for last in state.met[i] if last[0] == -1 - place), 0)
         flight = state.x[i], state.y[i], state.vx[i], state.vy[i], state.gravity_x[i], state.gravity_y[i]
@@ -213,14 +237,41 @@ class Predictor:
             state.supports, held, place, shape, flight, self._radius[i], met, e, t, since, touches, beside
         )
         if how == SUPPORTED and self._is_cornered(i, place, side):
-            (delay, side), how = shape.delay(*flight, self._radius[i], met, touches, beside), STRUCK
-        if delay < NEVER:
-            self._push(Event(state.t[i] + delay, CONTACT, i, -1 - place, (side, how), state.count[i], 0))
+            return *shape.delay(*flight, self._radius[i], met, touches, beside), STRUCK
+        return delay, side, how
 
     def _is_cornered(self, i: int, place: int, side: int) -> bool:
-        """Whether a wall that disk i has not met last makes a corner that holds it with one that it has."""
+        """Whether disk i, at rest on a wall that it has not met last, would be pressed onto one that it has."""
         state = self._state
         return is_cornered(self._stage, state.met[i], place, side, state.x[i], state.y[i])
+
+    def _slides_past(self, i: int, place: int, side: int, delay: Real) -> bool:
+        """Whether disk i is about to rest on the wall that it met last, and to slide there, but not into this one.
+
+        Then it does not meet this one in its last bounces, which nobody tells one by one: these are on both, or on that one.
+        """
+        state, met = self._state, self._state.met[i]
+        if not self._settles or state.supports is None or not delay < NEVER or len(met) != 1:
+            return False
+        last, side_there, how = met[0]
+        if last >= 0 or how != STRUCK or last == -1 - place or state.supports[-1 - last] is None:
+            return False
+        if not is_float(delay):
+            return False
+        px, py = state.place(i, state.t[i] + delay)
+        normals = *self._stage.normal(-1 - last, side_there, px, py), *self._stage.normal(place, side, px, py)
+        flight = state.vx[i], state.vy[i], state.gravity_x[i], state.gravity_y[i]
+        return passes_sliding(*normals, *flight) and self._rests_behind(i, -1 - last, delay)
+
+    def _rests_behind(self, i: int, place: int, delay: Real) -> bool:
+        """Whether the next event of disk i at a wall is to rest there, after a delay or later."""
+        boundary = self._stage.boundary(place)
+        if boundary is None:
+            shape = self._features[place - len(self._stage.boundaries)][1]
+            rest, _, how = self._shape_contact(i, place, shape)
+        else:
+            rest, how = self._border_contact(i, place, boundary.axis, boundary.side, boundary.target(self._radius[i]))
+        return how == SUPPORTED and bool(delay <= rest)
 
     def _crossing(self, i: int, now: Real) -> None:
         """Push the next passage of disk i into another cell, reckoned from where it is now."""
