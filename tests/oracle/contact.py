@@ -87,11 +87,20 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
     run.last = run.now
     demand_small(run, disks)
     demand_ends(run)
-    settled = [m.a for m in cluster if m.b < 0 and len(cluster) == 1 and settle(run, m, es[0])]
+    settled = [] if may_refuse and len(cluster) > 1 else settled_by(run, cluster, es, impulses)
     predict(run, [i for i in disks if i not in settled])
     for i in settled:
         predict(run, [i])
     return disks
+
+
+def settled_by(run: State, cluster: list[Meeting], es: list[Decimal], impulses: list[Decimal]) -> list[int]:
+    """The disk, if any, that comes to rest behind a contact with one wall; with others at the same time that give it nothing."""
+    given = [k for k, q in enumerate(impulses) if q != 0]
+    if len(given) != 1 or any(m.b >= 0 for m in cluster):
+        return []
+    m, others = cluster[given[0]], [other for k, other in enumerate(cluster) if k != given[0]]
+    return [m.a] if settle(run, m, es[given[0]], others) else []
 
 
 def restitution_of(run: State, m: Meeting) -> Decimal:

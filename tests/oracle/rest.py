@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from decimal import Decimal
 
 import numpy as np
@@ -24,13 +25,20 @@ end is that here.
 """
 
 
-def settle(run: State, m: Meeting, e: Decimal) -> bool:
-    """Whether a bounce was the last that floats can tell; then the disk comes to rest at the end of the series."""
+def settle(run: State, m: Meeting, e: Decimal, others: Sequence[Meeting] = ()) -> bool:
+    """Whether a bounce was the last that floats can tell; then the disk comes to rest at the end of the series.
+
+    others: what it met at the same time, and got nothing from; it does not rest where it would be pressed onto that.
+    """
     one, i = run.table.shapes[m.shape], m.a
     f = run.flights[i]
     if e >= 1 or run.table.contact_duration is not None or m.image != (0, 0):
         return False
     nx, ny = run.normal(m)
+    for other in others:
+        ox, oy = run.normal(other)
+        if other.image != (0, 0) or (f.ax * ny - f.ay * nx) * (ox * ny - oy * nx) < 0:
+            return False
     rate, slip = nx * f.u + ny * f.w, nx * f.w - ny * f.u
     fall = nx * f.ax + ny * f.ay
     if not isinstance(one, Line):  # what slips along a round wall leaves it, or is pressed onto it from inside

@@ -263,6 +263,17 @@ def test_what_keeps_no_speed_rests_at_its_first_contact() -> None:
     assert [(row.kind, float(row.time)) for row in told.rows] == [("wall", 1.0), ("rest", 1.0)]
 
 
+def test_a_drop_into_a_corner_of_a_level_and_a_steep_wall_rests_on_the_level_one_at_its_zeno_time() -> None:
+    """Drop height h = 2, g = 1, e = .5: t* = sqrt(2h/g) (1+e)/(1-e) = 6; the steep wall is met each time, and gives nothing."""
+    corner = es.Polyline(((0.0, 3.0), (1.0, 1.0), (4.0, 1.0)))
+    told = story(
+        es.Scene(disks([(1.0, 3.0)], radius=0.0), es.Open(), [corner], gravity=(0.0, -1.0), restitution=0.5, until=9.0)
+    )
+    assert told.rows[-1].kind == "rest"
+    assert float(told.rows[-1].time) == pytest.approx(6.0, abs=1e-12)
+    assert velocities(told) == [(0.0, 0.0)]
+
+
 def test_what_slides_into_a_corner_of_two_sides_has_no_answer_behind_its_zeno_time() -> None:
     """It lies on the bottom, 1 from the right side, to which gravity pulls it by 1/2: 2 until there, 4 more of bounces."""
     scene = es.Scene(disks([(1.5, 0.5)]), es.Box((3.0, 4.0)), gravity=(0.5, -1.0), restitution=0.5, until=9.0)
