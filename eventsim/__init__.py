@@ -39,10 +39,10 @@ if TYPE_CHECKING:
     from eventsim.judged import Judged as Judged
     from eventsim.judged import validate as validate
     from eventsim.record.events import State as State
-    from eventsim.replay.log import EventLog as EventLog
-    from eventsim.replay.log import load_log as load_log
     from eventsim.run import ENGINES as ENGINES
+    from eventsim.run import EventLog as EventLog
     from eventsim.run import Run as Run
+    from eventsim.run import load_log as load_log
     from eventsim.scene import Box as Box
     from eventsim.scene import Channel as Channel
     from eventsim.scene import Disks as Disks
@@ -86,8 +86,8 @@ _HOMES = {
     "Run": "run",
     "Stop": "engines.base",
     "State": "record.events",
-    "EventLog": "replay.log",
-    "load_log": "replay.log",
+    "EventLog": "run",
+    "load_log": "run",
     "ENGINES": "run",
     "EventsimError": "errors",
     "SceneError": "errors",

@@ -13,7 +13,7 @@ MEANT = {
         **dict.fromkeys(("to_dataframe", "to_df", "df"), FRAME),
         "to_csv": "save('log.csv') writes it",
         "columns": "each is an attribute (log.time, log.a), all are log.rows",
-        "measures": "eventsim measure LOG, or simulate(..., measure=True)",
+        "measures": "log.measure()",
     },
     "Run": {"events": "run.counters.events is their number, run.log tells them", "energy": "run.state.energy"},
     "Simulation": {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from os import PathLike
@@ -11,6 +12,7 @@ from eventsim.engines import ENGINES as TABLE
 from eventsim.engines import Engine
 from eventsim.engines.base import Stop
 from eventsim.meant import NamesMeant
+from eventsim.replay import log
 from eventsim.replay.past import PastRun
 from eventsim.runner.loop import run_scene
 from eventsim.runner.options import RunOptions
@@ -21,6 +23,62 @@ if TYPE_CHECKING:
 
     from eventsim.measure import Measures
     from eventsim.measure.trust import Trust
+
+
+class EventLog(log.EventLog):
+    """An immutable log: its provenance and one row per impulse.
+
+    Every column is an attribute holding a read-only array (`log.time`, `log.vxa`, ...): `log.kind` holds codes
+    (`log.kinds` the text), `log.wall` indices into `log.provenance.wall_names` (`log.wall_name` the text).
+    `log[3]` is one event, `log[3:8]` are some, `log.to_pandas()` is a data frame.
+    Places in columns (`log.xa`, and in files) count from `log.corner`, the domain's lower-left corner; in `log[3]` and in data
+    frames they are on the scene's axes: `log[3].xa` is `log.xa[3] + log.corner[0]`, wrapped where the domain is periodic.
+    path: the file that it was read from, None where it comes from a run.
+
+    `log.measure()` measures it, `log.plot("speeds")` draws a figure, `log.animate("a.gif")` a movie.
+
+    In a compact log the columns that an engine computes again are missing (NaN); `expand()` gives the full log.
+
+    >>> import eventsim as es
+    >>> log = es.simulate(es.gallery("two-disks"), events=3, engine="reference", log=True).log
+    >>> len(log), log.kinds.tolist()
+    (3, ['pair', 'wall', 'pair'])
+    >>> log[1].a, log[1].wall
+    (1, 'right')
+    """
+
+    def measure(self, discard: float | None = None, profile: str | None = None) -> Measures:
+        """Measure the run that the log tells: what `simulate(..., measure=True).measures` has.
+
+        discard: time at the beginning that is left out; None: as much as the run needs to settle.  profile: "x" or "y", for
+        density and temperature in slices along it.  Raises EventsimError where there is nothing to measure.
+        """
+        from eventsim.measure import measure  # loaded by who measures
+
+        return measure(self, discard, profile)
+
+    def plot(self, kind: str, ax: Axes | None = None) -> Axes:
+        """Draw a figure of the log; kind, ax: as of `Run.plot`.  Raises EventsimError as that does."""
+        from eventsim.show.figures.write import plot  # loaded by who wants a picture
+
+        return plot(self, kind, ax)
+
+    def animate(self, path: str | PathLike[str], **options: Any) -> None:
+        """Write an animation to `path`; options: as of `Run.animate`.  Raises EventsimError for what does not fit."""
+        from eventsim.show.animate import animate_with  # loaded by who wants a picture
+
+        animate_with(self, path, **options)
+
+
+def load_log(path: str | PathLike[str], law: Callable[..., float] | None = None) -> EventLog:
+    """Read a log file of any format; raise LogError with a sentence where it is not one.
+
+    A text log that still grows (NAME.csv.part, NAME.jsonl.part) is read up to its last whole line.  Warns (LogWarning) where
+    its numbers were changed since it was written.
+
+    law: the law of contacts of your own that the run had; a compact log needs it, since nothing is run from a log.
+    """
+    return EventLog.loaded(path, law)
 
 
 @dataclass(slots=True)
@@ -45,6 +103,11 @@ class Run(NamesMeant, PastRun):
 
     measures: Measures | None = None
     trust: Trust | None = None
+
+    @property
+    def log(self) -> EventLog:
+        """The log; one that was streamed to a file is read when first asked for.  Raises LogError where none was kept."""
+        return self._kept(EventLog)
 
     def __repr__(self) -> str:
         name = self.scene.called

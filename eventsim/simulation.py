@@ -23,8 +23,7 @@ from eventsim.meant import NamesMeant
 from eventsim.record.events import Rows, State, joined, unchangeable
 from eventsim.record.files import read_log
 from eventsim.record.provenance import Ending
-from eventsim.replay.log import EventLog
-from eventsim.run import Run
+from eventsim.run import EventLog, Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
 from eventsim.runner.keeping import Keeping
 from eventsim.runner.loop import run_scene

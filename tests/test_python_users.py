@@ -281,6 +281,27 @@ def test_a_log_file_tells_states(run, tmp_path):
         log.state_at(run.time + 1.0)
 
 
+@pytest.mark.parametrize("compact", [False, True])
+def test_a_log_file_is_measured_and_drawn_like_its_run(tmp_path, monkeypatch, compact):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    run = es.simulate(es.gallery("gas", n=20), events=300, log=True, measure=True)
+    run.log.save(tmp_path / "gas.npz", compact=compact)
+    log = es.load_log(tmp_path / "gas.npz")
+    assert isinstance(log, es.EventLog)
+    assert log.compact == compact
+    for one in (log, log.expand(), run.log):
+        assert one.measure().table() == run.measures.table()
+        assert one.measure(discard=0.1)["temperature"].value > 0.0
+    drawn, wanted = log.plot("speeds"), run.plot("speeds")
+    assert drawn.get_xlabel() == wanted.get_xlabel()
+    assert log.plot("trajectories", ax=wanted) is wanted
+    log.animate(tmp_path / "gas.png", moments=2)
+    assert (tmp_path / "gas.png").read_bytes().startswith(b"\x89PNG")
+    with es.Simulation(es.gallery("gas", n=20), engine="reference") as sim:
+        sim.advance_to(0.1)
+        assert sim.log.measure().keys() == sim.measures.keys()
+
+
 def test_slips_of_users_are_told_in_a_sentence(run):
     for slip, words in (
         (lambda: run.log["time"], r"it is a column, log\.time"),
@@ -402,7 +423,7 @@ def test_measures_of_a_simulation_are_those_of_its_log():
     assert found["collision_rate"].value > 0.0
 
 
-DOCUMENTED = ("eventsim", "eventsim.simulation", "eventsim.scene.scene", "eventsim.replay.log", "eventsim.run")
+DOCUMENTED = ("eventsim", "eventsim.simulation", "eventsim.scene.scene", "eventsim.run")
 
 
 @pytest.mark.parametrize("name", DOCUMENTED)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Self, overload
 
 from eventsim.errors import LogError
 from eventsim.record.digest import digest_of
@@ -27,23 +27,9 @@ SAVE_BLOCK = 1 << 16
 
 
 class EventLog(Excerpt):
-    """An immutable log: its provenance and one row per impulse.
+    """An immutable log in memory: its provenance and one row per impulse; `run.EventLog` tells of its columns.
 
-    Every column is an attribute holding a read-only array (`log.time`, `log.vxa`, ...): `log.kind` holds codes
-    (`log.kinds` the text), `log.wall` indices into `log.provenance.wall_names` (`log.wall_name` the text).
-    `log[3]` is one event, `log[3:8]` are some, `log.to_pandas()` is a data frame.
-    Places in columns (`log.xa`, and in files) count from `log.corner`, the domain's lower-left corner; in `log[3]` and in data
-    frames they are on the scene's axes: `log[3].xa` is `log.xa[3] + log.corner[0]`, wrapped where the domain is periodic.
     path: the file that it was read from, None where it comes from a run.
-
-    In a compact log the columns that an engine computes again are missing (NaN); `expand()` gives the full log.
-
-    >>> import eventsim as es
-    >>> log = es.simulate(es.gallery("two-disks"), events=3, engine="reference", log=True).log
-    >>> len(log), log.kinds.tolist()
-    (3, ['pair', 'wall', 'pair'])
-    >>> log[1].a, log[1].wall
-    (1, 'right')
     """
 
     def __init__(self, provenance: Provenance, rows: Rows) -> None:
@@ -67,7 +53,7 @@ class EventLog(Excerpt):
         return self.provenance.compact
 
     @cached_property
-    def _full(self) -> EventLog:
+    def _full(self) -> Self:
         return self.expand()
 
     @overload
@@ -107,7 +93,7 @@ class EventLog(Excerpt):
         rows = self._full.rows
         yield from (rows[first : first + SAVE_BLOCK] for first in range(0, len(rows), SAVE_BLOCK))
 
-    def expand(self, until: float | None = None) -> EventLog:
+    def expand(self, until: float | None = None) -> Self:
         """Return the full log: an engine runs the scene of a compact one again, and each row is compared.
 
         until: a time on the scene's clock; a compact log is made full up to there, and ends there.
@@ -118,9 +104,9 @@ class EventLog(Excerpt):
         from eventsim.replay.expand import expand_rows, expand_until  # only who has a compact log pays for it
 
         if until is None:
-            full = EventLog(replace(self.provenance, compact=False), expand_rows(self.provenance, self.rows))
+            full = type(self)(replace(self.provenance, compact=False), expand_rows(self.provenance, self.rows))
         else:
-            full = EventLog(*expand_until(self.provenance, self.rows, until))
+            full = type(self)(*expand_until(self.provenance, self.rows, until))
         full.path = self.path
         return full
 
@@ -151,6 +137,21 @@ class EventLog(Excerpt):
         sink.close(ending)
 
 
+    @classmethod
+    def loaded(cls, path: str | PathLike[str], law: Callable[..., float] | None = None) -> Self:
+        """The log of a file; path, law: as of `load_log`."""
+        file = Path(path)
+        provenance, rows = read_log(file)
+        if law is not None:
+            scene = provenance.scene
+            if scene.law is None:
+                raise LogError(f"{file}: its run had no law of contacts of the user's own")
+            provenance = replace(provenance, scene=replace(scene, law=scene.law.run_by(law)))
+        log = cls(provenance, rows)
+        log.path = file
+        return log
+
+
 def load_log(path: str | PathLike[str], law: Callable[..., float] | None = None) -> EventLog:
     """Read a log file of any format; raise LogError with a sentence where it is not one.
 
@@ -159,16 +160,7 @@ def load_log(path: str | PathLike[str], law: Callable[..., float] | None = None)
 
     law: the law of contacts of your own that the run had; a compact log needs it, since nothing is run from a log.
     """
-    file = Path(path)
-    provenance, rows = read_log(file)
-    if law is not None:
-        scene = provenance.scene
-        if scene.law is None:
-            raise LogError(f"{file}: its run had no law of contacts of the user's own")
-        provenance = replace(provenance, scene=replace(scene, law=scene.law.run_by(law)))
-    log = EventLog(provenance, rows)
-    log.path = file
-    return log
+    return EventLog.loaded(path, law)
 
 
 def stream_log(path: str | PathLike[str], verify: bool = True) -> tuple[Provenance, Generator[Rows]]:

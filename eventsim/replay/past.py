@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Self
+from typing import Self, TypeVar
 
 from eventsim.errors import LogError
 from eventsim.record.events import State
-from eventsim.replay.log import EventLog, load_log
+from eventsim.replay.log import EventLog
 from eventsim.replay.replay import one_time
 from eventsim.runner.outcome import Outcome
+
+Log = TypeVar("Log", bound=EventLog)
 
 
 @dataclass(slots=True)
@@ -31,11 +33,15 @@ class PastRun(Outcome):
     @property
     def log(self) -> EventLog:
         """The log; one that was streamed to a file is read when first asked for.  Raises LogError where none was kept."""
-        if self._log is None:
+        return self._kept(EventLog)
+
+    def _kept(self, kind: type[Log]) -> Log:
+        """The log, as a class that has more to offer."""
+        if not isinstance(self._log, kind):
             if self.recorded is not None:
-                self._log = EventLog(*self.recorded)
+                self._log = kind(*self.recorded)
             elif self.log_path is not None:
-                self._log = load_log(self.log_path)
+                self._log = kind.loaded(self.log_path)
             else:
                 raise LogError("this run kept no log: simulate(..., log=True), or log='file.csv'")
         return self._log

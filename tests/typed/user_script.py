@@ -40,7 +40,8 @@ with es.Simulation(gas, engine="reference", log="gas.csv", checkpoint="gas.ckpt"
     sim.set_velocity(np.int64(1), sim.state.velocity[0])
     print(len(rows), sim.time, sim.state.position.shape)
 resumed = es.resume("gas.ckpt", until=1.0)
-print(resumed.time, es.load_log("gas.csv").scene)
+read = es.load_log("gas.csv")
+print(resumed.time, read.scene, read.measure().keys(), read.plot("speeds"))
 
 
 try:
