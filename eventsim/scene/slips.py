@@ -46,24 +46,29 @@ def _fraction(match: re.Match[str]) -> str:
     return written(one * other) if match[2] == "*" else written(one / other) if other else match[0]
 
 
+def _pointed(text: str) -> str:
+    """A text whose numbers have a decimal point where they had a comma."""
+    return re.sub(r"(?<![\d.,])(\d+),(\d+)(?![\d.,])", r"\1.\2", text)
+
+
 def _comma(line: str, key: str) -> str:
     head, equals, value = line.partition("=")
     if key in WHOLES:
         return head + equals + re.sub(r"(?<=\d)[,'](?=\d{3})", "", value)
     if key in PAIRS and "[" not in value and "(" not in value:
         return line
-    return head + equals + re.sub(r"(?<![\d.,])(\d+),(\d+)(?![\d.,])", r"\1.\2", value)
+    return head + equals + _pointed(value)
 
 
 def _semicolon(line: str, key: str) -> str:
     between = r"(?<=[\d\]])\s*;\s*(?=[-+.\d\[])"
-    return re.sub(between, ", ", re.sub(r"(\d),(\d)", r"\1.\2", line)) if re.search(between, line) else line
+    return re.sub(between, ", ", _pointed(line)) if re.search(between, line) else line
 
 
 def _pair(line: str, key: str) -> str:
     number = r"[-+]?[\d.][\d.eE+-]*"
-    if key == "gravity" and (match := re.search(r"=\s*-?(\d+),(\d+)\s*(?=#|$)", line)):  # one number, with a decimal comma
-        return line[: match.start()] + f"= [0.0, -{match[1]}.{match[2]}]" + line[match.end() :]
+    if key == "gravity" and (match := re.search(r"=\s*-?(\d+,\d+)\s*(?=#|$)", line)):  # one number, with a decimal comma
+        return line[: match.start()] + f"= [0.0, -{_pointed(match[1])}]" + line[match.end() :]
     return re.sub(rf"(=\s*)({number})\s*[,;x]\s*({number})(?=\s*(#|$))", r"\1[\2, \3]", line) if key in PAIRS else line
 
 
