@@ -141,6 +141,7 @@ def test_read_outs_are_what_measure_says(page, tmp_path, name):
     pressure = taken / (2.0 * sum(log.scene.domain.size) * (moment - since))
     z = pressure * ensemble.area / (ensemble.n * ensemble.temperature(kinetic))
     assert float(told["p V / N kT"]) == pytest.approx(z, rel=1e-2)
+    assert "V is all of the box" in page.js("return live.readouts.values.get('p V / N kT').title")
 
 
 @pytest.mark.parametrize(

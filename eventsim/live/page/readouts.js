@@ -74,6 +74,8 @@ class Tally {
   contacts(count) { return count ? this.met.values[count - 1] : 0; }
 }
 
+const WHOLE_AREA = "V is all of the box; Z of eventsim measure counts where centres can be, and is smaller by about 2 r / L";
+
 class Readouts {
   constructor(list, canvas) {
     this.list = list;
@@ -112,7 +114,8 @@ class Readouts {
     this.values.get("temperature").title = noTemperature || "";
     tell("pressure", pressure === null ? "–" : number(pressure));
     tell("p V / N kT", pressure === null || !temperature ? "–" : number((pressure * gas.area) / (found.count * temperature)));
-    for (const name of ["pressure", "p V / N kT"]) this.values.get(name).title = noPressure || "";
+    this.values.get("pressure").title = noPressure || "";
+    this.values.get("p V / N kT").title = noPressure || WHOLE_AREA;
     this.energy = found.energy;
     this.temperature = known ? temperature : null;
     this._drawSpeeds(world, state, temperature || (found.count ? found.kinetic / found.count : 0), gas.maxwell, view.dark ? stage.palettes.dark : stage.palettes.light);

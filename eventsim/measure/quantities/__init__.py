@@ -38,8 +38,9 @@ FAMILIES = (
         temperature.measures,
     ),
     Family(
-        "Z (1 + virial of the pairs / 2 N kT; periodic: P V / N kT), Z_walls (the same from walls), pressure (periodic: from\n"
-        "  the virial; else mean force on a length of wall), contact_value or contact_value_I_J",
+        "Z (1 + virial of the pairs / 2 N kT; periodic: P V / N kT), Z_walls (the same from walls, over the area that\n"
+        "  centres have; p V / N kT of the live page takes all of it and is larger by about 2 r / L), pressure (periodic:\n"
+        "  from the virial; else mean force on a length of wall), contact_value or contact_value_I_J",
         pressure.measures,
     ),
     Family(
