@@ -39,7 +39,7 @@ LAST_ROUNDS = 4
 
 
 KEPT = 2.0**-10
-"""Where the last rounds change velocities alike, but for this part, gaps close because nothing stops what closes them."""
+"""Where the last rounds change velocities no less, but for this part, gaps close because nothing stops what closes them."""
 
 STEADY = 1.005
 """Ratios of rounds that differ by no more than this factor are one; near the critical restitution they drift by more."""
@@ -49,6 +49,9 @@ SEEN = 1e-9
 
 RECENT = 6
 """The disks of a series are those that are connected through so many rows at its end."""
+
+SQUEEZED = "speeds do not fall: one is squeezed between others, or walls, that it cannot deflect"
+"""What there is to say where no contact duration helps: the room goes, and not the motion."""
 
 LIES_STILL = (
     "what lies still on another disk, on several walls or on a round one is not modelled; begin with gaps, and with a "
@@ -63,7 +66,7 @@ class Rounds(NamedTuple):
     disks: those that meet at the last instant.  number: how many rounds followed each other ever faster.  ratio: how long the
     last ones took, each in terms of the one before; nan where there were none.  first, last: the longest and the shortest.
     ends_now: whether a series with this ratio is over within what the clock can tell.  steady: whether the ratio has settled.
-    kept_up: whether the last ones change velocities alike.
+    kept_up: whether the last ones change velocities no less.
     """
 
     disks: list[int]
@@ -86,10 +89,11 @@ def diagnosis(rows: Rows, stage: Stage, clock: tuple[int, float], time: float) -
     if rounds is None or (rounds.number < 2 and stage.gravity is not None):  # what rests there has no rounds to show
         return None
     if rounds.number < 2:
+        _, remedy = _called(rounds.disks, stage, _are_kept_up(rows, rounds.disks))
         return _of_an_instant(rows, rounds.disks, stage, time) or (
             "digits",
             f"the contacts of {named(rounds.disks)} at time {time:.9g} follow one another faster than the digits of float64 can "
-            f"tell, without a steady ratio before: they may or may not end; {stage.law.remedy()}",
+            f"tell, without a steady ratio before: they may or may not end; {remedy}",
         )
     return _of_rounds(rounds, stage, time, rounds.ends_now or rounds.last < SETTLED * rounds.first)
 
@@ -114,12 +118,12 @@ def _of_an_instant(rows: Rows, disks: list[int], stage: Stage, time: float) -> t
 
 
 def _called(disks: list[int], stage: Stage, kept_up: bool) -> tuple[str, str]:
-    """What a series is called, and what is left to do; kept_up: whether speeds stay what they are from round to round.
+    """What a series is called, and what is left to do; kept_up: whether speeds do not fall from round to round.
 
     So they do between disks that are not deflected: there the contacts take no motion, it is the room that goes.
     """
     if kept_up and stage.mass is not None and np.any(np.isinf(stage.mass[disks]) | (stage.mass[disks] == 0.0)):
-        return "contacts without end", "speeds do not fall: one is squeezed between others, or walls, that it cannot deflect"
+        return "contacts without end", SQUEEZED
     return "inelastic collapse", stage.law.remedy()
 
 
@@ -187,8 +191,13 @@ def rounds_before_the_end(
 
 def _series(disks: list[int], rows: Rows, times: Floats, end: float, clean: float) -> Rounds:
     """The rounds of rows at these times: as many rows as there are different contacts make one."""
-    period = len(set(zip(rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True)))
+    period = _period(rows)
     return _rounds(disks, rows, times[period:] - times[:-period] if len(times) > period else times[:0], period, end, clean)
+
+
+def _period(rows: Rows) -> int:
+    """How many different contacts there are."""
+    return len(set(zip(rows["a"].tolist(), rows["b"].tolist(), rows["wall"].tolist(), strict=True)))
 
 
 def _rounds(disks: list[int], rows: Rows, lengths: Floats, period: int, end: float, clean: float) -> Rounds:
@@ -217,7 +226,7 @@ def _rounds(disks: list[int], rows: Rows, lengths: Floats, period: int, end: flo
 
 
 def _is_kept_up(rows: Rows, period: int, rounds: int) -> bool:
-    """Whether the last round changes velocities as much as one some rounds before."""
+    """Whether the last round changes velocities as much as one some rounds before, or more."""
     before: dict[int, tuple[float, float]] = {}
     changes = np.zeros(len(rows))
     for k, row in enumerate(rows):
@@ -227,7 +236,14 @@ def _is_kept_up(rows: Rows, period: int, rounds: int) -> bool:
                 changes[k] = max(changes[k], math.dist(after, before.get(int(i), after)))
                 before[int(i)] = after
     now, then = (float(changes[end - period : end].sum()) for end in (len(rows), len(rows) - rounds * period))
-    return abs(now - then) < KEPT * then
+    return now > (1.0 - KEPT) * then
+
+
+def _are_kept_up(rows: Rows, disks: list[int]) -> bool:
+    """The same of the last contacts of disks with each other and with walls, which may all be at one instant."""
+    mine = _of_these(rows[(rows["kind"] == Kind.PAIR) | (rows["kind"] == Kind.WALL)][-TAIL:], disks)
+    period = _period(mine)
+    return len(mine) > LAST_ROUNDS * period and _is_kept_up(mine, period, LAST_ROUNDS)
 
 
 def _is_steady(series: Floats, period: int) -> bool:

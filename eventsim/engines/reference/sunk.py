@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from eventsim.engines.collapse import named
+from eventsim.engines.collapse import SQUEEZED, named
 from eventsim.engines.exact_state import ExactState
 from eventsim.engines.reference.calendar import Event
 from eventsim.engines.reference.generation import disks_of
@@ -166,10 +166,28 @@ class Sunk:
     def _sentence(self, event: Event, gap: float) -> str:
         wall = self._stage.wall_names[self._stage.surfaces[-1 - event.b].wall] if event.b < 0 else None
         who = named(disks_of(event)) if wall is None else f"disk {event.a} and {wall}"
+        remedy = SQUEEZED if self._is_squeezed(event) else self._stage.law.remedy()
         return (
             f"the gap of {who} has sunk to {gap:.2g}, the last bits of their places, behind contacts that take energy: which "
-            f"contact comes next, and when, float64 cannot tell any more; {self._stage.law.remedy()}"
+            f"contact comes next, and when, float64 cannot tell any more; {remedy}"
         )
+
+    def _is_squeezed(self, event: Event) -> bool:
+        """Whether what a disk cannot deflect presses it to something else of that kind, one of which moves."""
+        for i, other in ((event.a, event.b), (event.b, event.a)):
+            last = {met[0] for met in self._state.met[i]} if i >= 0 else ()
+            for one in last:
+                pressed = one != other and self._is_firm(i, one) and self._is_firm(i, other)
+                if pressed and any(j >= 0 and any(self._state.speed(j, event.time)) for j in (one, other)):
+                    return True
+        return False
+
+    def _is_firm(self, i: int, other: int) -> bool:
+        """Whether disk i cannot deflect another one, or a wall, which deflects it."""
+        mass = self._stage.mass
+        if mass is None:
+            return other < 0
+        return not math.isinf(mass[i]) and (other < 0 or math.isinf(mass[other]) or mass[i] == 0.0)
 
     def _word_on_reach(self, a: int, b: int, how: str, place: tuple[Real, Real]) -> str:
         (x, y), (left, low) = place, self._stage.corner
