@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -9,10 +11,12 @@ import click
 from eventsim import suffixes
 from eventsim.cli.options import Whole, complete_scene, drawable, json_option, quiet_option, writable
 from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say, say_data
+from eventsim.errors import EventsimError
 from eventsim.processes import cores
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
+    from eventsim.sweep.task import Row
 
 
 SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given several times: every combination."
@@ -72,7 +76,8 @@ def command(
 
     \b
     Keys of --json:
-      scene, out, figure     as typed; the files written (figure: null without)
+      scene, out, figure     as typed; the files written (figure: null without, or where
+                             every run failed)
       runs, failed           rows of the table; how many of them failed
       equilibrated           how many of the others nothing speaks against
       elapsed_s              seconds
@@ -120,15 +125,13 @@ def command(
     except KeyboardInterrupt:
         say(f"interrupted; the same command again goes on from here ({target}.journal)", err=True)
         click.get_current_context().exit(INTERRUPTED)
-    if drawn is not None and (x or y):
-        from eventsim.show.figures.swept import write_swept
-
-        write_swept(rows, drawn, x, y, scene)
-    elif drawn is not None:
-        from eventsim.show.figures.equation_of_state import write_equation_of_state
-
-        write_equation_of_state(rows, drawn, scene)
     failed = sum(row["failed"] is not None for row in rows)
+    drawn = drawn if failed < len(rows) else None
+    if drawn is not None:
+        try:
+            _draw(rows, drawn, x, y, scene)
+        except EventsimError as error:
+            raise EventsimError(f"{error}; the table {target} is whole") from None
     settled = sum(row.get("equilibrated") is True for row in rows)
     if as_json:
         data = {"scene": scene, "out": str(target), "figure": None if drawn is None else str(drawn)}
@@ -142,6 +145,18 @@ def command(
         )
     if failed == len(rows):
         click.get_current_context().exit(BAD_INPUT)
+
+
+def _draw(rows: Sequence[Row], path: Path, x: str | None, y: str | None, name: str) -> None:
+    """Draw the columns that are asked for, or else Z against the packing fraction."""
+    if x or y:
+        from eventsim.show.figures.swept import write_swept
+
+        write_swept(rows, path, x, y, name)
+    else:
+        from eventsim.show.figures.equation_of_state import write_equation_of_state
+
+        write_equation_of_state(rows, path, name)
 
 
 def _scene(scene: str, settings: tuple[str, ...], seed: int | None) -> Scene:

@@ -99,6 +99,9 @@ def test_a_sweep_draws_any_measure_against_any_key(eventsim, tmp_path):
     assert "--x restituton: no run of the table has such a number (did you mean 'restitution'?); there are n, restitution," in (
         " ".join(result.stderr.split())
     )
+    assert result.stderr.rstrip().endswith("e.csv is whole")
+    bad = eventsim(*words, "--set", "packing_fraction=0.99", "--figure", tmp_path / "f.svg", "--json")
+    assert (bad.exit_code, json.loads(bad.stdout)["figure"], (tmp_path / "f.svg").exists()) == (2, None, False)
     assert "give --figure FILE too" in eventsim(*words, "--y", "mean_free_path").stderr
 
 

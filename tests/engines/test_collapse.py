@@ -133,10 +133,11 @@ def test_a_disk_that_is_squeezed_is_no_inelastic_collapse(restitution, stopped):
     assert "contact_duration" not in run.reason
 
 
+@pytest.mark.parametrize("engine", ["reference", "fast"])
 @pytest.mark.parametrize("duration", [None, 1e-3])
 @pytest.mark.parametrize("walled", [True, False])
 @pytest.mark.parametrize("restitution", [0.0, 1e-9])
-def test_a_squeeze_without_bounces_gets_no_advice_that_does_not_help(restitution, walled, duration):
+def test_a_squeeze_without_bounces_gets_no_advice_that_does_not_help(restitution, walled, duration, engine):
     """After one contact it moves with what struck it, until it meets what it cannot deflect either."""
     places, speeds, masses = [(4.0, 1.0), (1.0, 1.0)], [(-1.0, 0.0), (0.0, 0.0)], [math.inf, 1.0]
     if not walled:
@@ -144,13 +145,10 @@ def test_a_squeeze_without_bounces_gets_no_advice_that_does_not_help(restitution
     domain = es.Box((6.0, 6.0)) if walled else es.Open()
     disks = es.Disks(places, speeds, 0.5, masses)
     scene = es.Scene(disks, domain, restitution=restitution, contact_duration=duration)
-    for engine in ("reference", "fast"):
-        run = es.simulate(scene, until=9.0, events=1000, engine=engine)
-        if duration is not None and run.stopped == "events":
-            continue  # kept up until it is told to stop
-        assert run.stopped in ("digits", "collapse")
-        assert "speeds do not fall: one is squeezed between" in run.reason
-        assert "contact_duration" not in run.reason
+    run = es.simulate(scene, until=9.0, events=1000, engine=engine)
+    assert run.stopped in ("digits", "collapse")
+    assert "speeds do not fall: one is squeezed between" in run.reason
+    assert "contact_duration" not in run.reason
 
 
 def test_a_pile_between_what_stands_still_may_be_kept_up():
