@@ -120,13 +120,21 @@ def read_disks(path: Path) -> list[tuple[str, Any]]:
 def flips(chosen: dict[str, Target], count: int, seed: int) -> Iterator[Flip]:
     """Flip `count` bits in turn over the targets."""
     chance = random.Random(seed)
-    wholes = {name: (target.file.read_bytes(), _heard(target.read, target.file)) for name, target in chosen.items()}
+    wholes = {name: _whole(target) for name, target in chosen.items()}
     for number in range(count):
         name = list(chosen)[number % len(chosen)]
         whole, usual = wholes[name]
         place, bit = chance.randrange(len(whole)), chance.randrange(8)
         with flipped(chosen[name].file, whole, place, bit):
             yield Flip(name, place, bit, *outcome(chosen[name].read, chosen[name].file, *usual))
+
+
+def _whole(target: Target) -> tuple[bytes, tuple[list[tuple[str, Any]], list[str]]]:
+    """The bytes of a file, and what it says; its reader may have gone on from there, so it is written again."""
+    whole = target.file.read_bytes()
+    usual = _heard(target.read, target.file)
+    target.file.write_bytes(whole)
+    return whole, usual
 
 
 @contextmanager

@@ -15,6 +15,7 @@ def test_no_flip_of_a_bit_raises_anything_but_an_error_of_ours(tmp_path):
     assert [flip for flip in found if flip.outcome == "raised"] == []
     assert sum(flip.outcome == "refused" for flip in found) > 300
     assert list(filter(is_silent, found)) == []
+    assert {flip.outcome for flip in found if flip.target == "run.checkpoint"} == {"refused", "same"}
 
 
 @pytest.mark.parametrize(
