@@ -9,13 +9,15 @@ from eventsim.errors import EventsimError, SceneError
 from eventsim.scene import Scene
 from eventsim.scene.files import scene_from_dict, tables_of_toml, with_lines
 from eventsim.scene.gallery import Value, gallery
+from eventsim.scene.surfaces import count_with_images
 from eventsim.scene.walls import parts_of
 
 MOST_DISKS = 5000
 """Disks in a live view; more are for files and movies."""
 
 MOST_SHAPES = 1000
-"""Walls, their edges counted: the first look of all disks at all of them must not take minutes."""
+"""Walls, their edges and their images in a periodic domain counted: the first look of all disks at all of them must not take
+minutes."""
 
 ABOUT_COUNTS = ("n", "n_small", "n_large")
 """Parameters of built-in scenes that count disks."""
@@ -77,9 +79,11 @@ class Text:
 def demand_small(scene: Scene) -> None:
     """Raise where a scene is too large for a live view."""
     demand_few(len(scene.disks), "disks")
-    shapes = len(parts_of(scene.walls))
+    reach = float(scene.disks.radius.max(initial=0.0))
+    shapes = count_with_images(scene.walls, reach, scene.domain.origin, scene.domain.period)
     if shapes > MOST_SHAPES:
-        raise EventsimError(f"a live view has at most {MOST_SHAPES} walls, edges counted, and there are {shapes}")
+        images = " and images" if shapes > len(parts_of(scene.walls)) else ""
+        raise EventsimError(f"a live view has at most {MOST_SHAPES} walls, edges{images} counted, and there are {shapes}")
 
 
 def demand_few(count: object, what: str) -> None:

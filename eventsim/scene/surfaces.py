@@ -22,7 +22,7 @@ from eventsim.scene.domain import Channel, Domain, Open, Periodic, hard_sides
 from eventsim.scene.joints import joints_of
 from eventsim.scene.numbers import Point
 from eventsim.scene.walls import Wall
-from eventsim.scene.walls.wall import Bounds, shifts
+from eventsim.scene.walls.wall import shifts
 
 
 class Feature(NamedTuple):
@@ -71,7 +71,7 @@ def features_of(
     along_x, along_y = (math.inf if length is None else length for length in period)
     rough = 0.0
     for wall in walls:
-        moves = [(0.0, 0.0)] if wall.holds else shifts(_bounds(wall), corner, (along_x, along_y), reach)
+        moves = _moves(wall, reach, corner, (along_x, along_y))
         pieces: list[tuple[Shape, int]] = []
         for move_x, move_y in moves:
 
@@ -88,6 +88,17 @@ def features_of(
         number += len(wall.parts(""))
         rough = max(rough, *(piece.scale() for piece in wall.parts("") if not piece.curvature_radius()), 0.0)
     return _joined(found, boundaries, rough)
+
+
+def count_with_images(walls: Sequence[Wall], reach: float, corner: Point, period: tuple[float | None, float | None]) -> int:
+    """How many walls, edges counted, disks can meet: each as often as there are images of it; as `features_of`."""
+    lengths = (math.inf if period[0] is None else period[0], math.inf if period[1] is None else period[1])
+    return sum(len(wall.parts("")) * len(_moves(wall, reach, corner, lengths)) for wall in walls)
+
+
+def _moves(wall: Wall, reach: float, corner: Point, period: Point) -> list[Point]:
+    """The translations by periods (inf: none) that bring a wall within reach of disks."""
+    return [(0.0, 0.0)] if wall.holds else shifts(wall.rectangle(), corner, period, reach)
 
 
 def turn_of(surface: Boundary | Feature) -> int:
@@ -134,14 +145,6 @@ def _joined(found: list[Feature], boundaries: Sequence[Boundary], rough: float) 
         for k, shape in shapes.items()
         if shape is not None
     )
-
-
-def _bounds(wall: Wall) -> Bounds:
-    """The rectangle that a wall lies in."""
-    found = [part.bounds() for part in wall.parts("")]
-    x0, y0 = (min(low[axis] for low, _ in found) for axis in (0, 1))
-    x1, y1 = (max(high[axis] for _, high in found) for axis in (0, 1))
-    return (x0, y0), (x1, y1)
 
 
 def supports_of(

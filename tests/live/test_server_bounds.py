@@ -18,6 +18,12 @@ aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed (the e
 from eventsim.live.server import MOST_BYTES  # noqa: E402
 from eventsim.live.world import LEAD_SECONDS  # noqa: E402
 
+ROUND_AND_ROUND = f"""
+domain = {{kind = "periodic", size = [1, 1]}}
+disk = [{{position = [0.5, 0.5], radius = 0.1}}]
+wall = [{{kind = "polyline", points = {[[0.1, 0.9 * k] for k in range(50)]}}}]
+"""
+
 
 def test_a_page_that_does_not_read_holds_up_nobody_and_fills_no_memory(monkeypatch):
     monkeypatch.setattr(sys.modules["eventsim.live.world"], "LEAD_EVENTS", 3000)
@@ -181,6 +187,7 @@ def test_the_future_is_not_asked_for():
         ({"scene": "text", "text": '[domain]\nkind = "open"\n[[gas]]\ncount = 1e9\nradius = 0.1'}, "at most 5000 disks"),
         ({"scene": "text", "text": "a = " + "1" * 5000}, "too many digits"),
         ({"scene": "text", "text": "a" + ".a" * 500 + " = 1"}, "nested too deeply"),
+        ({"scene": "text", "text": ROUND_AND_ROUND}, "at most 1000 walls, edges and images counted, and there are 4508"),
     ],
 )
 def test_a_scene_that_breaks_bounds_by_another_way_is_refused(message, words):

@@ -180,6 +180,9 @@ def test_a_container_must_fit_into_the_period():
 def test_a_wall_must_not_stretch_over_too_many_periods():
     with pytest.raises(SceneError, match="more than 1000 periods in x"):
         Scene(ONE, Periodic((2, 4)), [Segment((-1e6, 3), (1e6, 3))])
+    edges = [(900.0 * k, 3.0 + 0.1 * (k % 2)) for k in range(4)]
+    with pytest.raises(SceneError, match="more than 1000 periods in x"):  # all of its images are looked at
+        Scene(ONE, Periodic((2, 4)), [Polyline(edges)])
 
 
 @pytest.mark.parametrize(

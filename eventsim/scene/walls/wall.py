@@ -109,15 +109,22 @@ class Wall(Manner, ABC):
 
     def period_problems(self, axis: int, origin: float, length: float) -> Iterator[str]:
         """Rules along an `axis` that repeats, a `length` from `origin` on; each begins with the key that breaks it."""
-        extents = [part.bounds() for part in self.parts("")]
-        if max(high[axis] - low[axis] for low, high in extents) > MOST_PERIODS * length:
+        low, high = self.rectangle()
+        if high[axis] - low[axis] > MOST_PERIODS * length:
             letter = "xy"[axis]
             yield f": must not stretch over more than {MOST_PERIODS} periods in {letter} (an arc: its whole circle)"
 
     def most_periods(self, period: Sequence[float]) -> float:
-        """Over how many periods a piece of it stretches at most, in x times in y; period: of each axis, inf where it has none."""
-        extents = [part.bounds() for part in self.parts("")]
-        return max(math.prod(max((high[k] - low[k]) / period[k], 1.0) for k in (0, 1)) for low, high in extents)
+        """Over how many periods it stretches, in x times in y; period: of each axis, inf where it has none."""
+        low, high = self.rectangle()
+        return math.prod(max((high[k] - low[k]) / period[k], 1.0) for k in (0, 1))
+
+    def rectangle(self) -> Bounds:
+        """The rectangle that all of its parts lie in."""
+        found = [part.bounds() for part in self.parts("")]
+        x0, y0 = (min(low[axis] for low, _ in found) for axis in (0, 1))
+        x1, y1 = (max(high[axis] for _, high in found) for axis in (0, 1))
+        return (x0, y0), (x1, y1)
 
     def image_problems(self, period: Sequence[float]) -> Iterator[str]:
         """Pieces that lie on images of themselves; period: of each axis, inf where it has none."""
