@@ -28,7 +28,7 @@ from eventsim.scene.corner import corner_of
 from eventsim.scene.disks import Floats, named_species
 from eventsim.scene.numbers import Point
 from eventsim.scene.scene import Scene
-from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of, turn_of
+from eventsim.scene.surfaces import Feature, any_lies, boundaries_of, features_of, supports_of, turn_of, with_one_size
 from eventsim.scene.walls import feature_names, parts_of
 
 UNEVEN = 2.0**16
@@ -211,6 +211,7 @@ def stage_of(scene: Scene, corner: Point | None = None) -> Stage:
     size = domain.size
     boundaries, names = boundaries_of(domain)
     features = features_of(scene.walls, float(disks.radius.max()), corner, domain.period, boundaries)
+    features = with_one_size(features, disks.radius)
     law = law_of_scene(scene)
     lightest, heaviest = _extreme_masses(disks.mass)
     clock = clock_of(scene)

@@ -14,7 +14,7 @@ from eventsim.formulas.walls.arc import Arc
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.container import Container
 from eventsim.formulas.walls.face import Face, face, is_in_line, slope
-from eventsim.formulas.walls.point import end_of
+from eventsim.formulas.walls.point import POINT, end_of
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Shape, Thin
 from eventsim.scene.disks import Floats
@@ -99,6 +99,49 @@ def count_with_images(walls: Sequence[Wall], reach: float, corner: Point, period
 def _moves(wall: Wall, reach: float, corner: Point, period: Point) -> list[Point]:
     """The translations by periods (inf: none) that bring a wall within reach of disks."""
     return [(0.0, 0.0)] if wall.holds else shifts(wall.rectangle(), corner, period, reach)
+
+
+def with_one_size(features: Sequence[Feature], radii: Floats) -> tuple[Feature, ...]:
+    """The same features; those that share ends have one size where one of the radii is that of a point to some of them alone.
+
+    Else the wall on one side of an end would leave a disk there to the post, or to the other wall, and these to that one.
+    """
+    joined = [k for k, one in enumerate(features) if isinstance(one.shape, Thin | Post)]
+    every = [features[k].shape.size for k in joined]  # type: ignore[attr-defined]
+    if not every or not _parts(radii, min(every), max(every)):
+        return tuple(features)
+    group = list(range(len(features)))
+
+    def first_of(k: int) -> int:
+        while group[k] != k:
+            k = group[k]
+        return k
+
+    at: dict[Point, int] = {}
+    for k in joined:
+        for end in _ends(features[k].shape):
+            one, other = first_of(at.setdefault(end, k)), first_of(k)
+            group[max(one, other)] = min(one, other)
+    sizes: dict[int, tuple[float, float]] = {}
+    for k, size in zip(joined, every, strict=True):
+        low, high = sizes.get(first_of(k), (size, size))
+        sizes[first_of(k)] = min(low, size), max(high, size)
+    mixed = {k for k, (low, high) in sizes.items() if _parts(radii, low, high)}
+    found = list(features)
+    for k in joined:
+        if first_of(k) in mixed:
+            shape = features[k].shape._replace(size=sizes[first_of(k)][1])  # type: ignore[attr-defined]
+            found[k] = features[k]._replace(shape=shape)
+    return tuple(found)
+
+
+def _parts(radii: Floats, low: float, high: float) -> bool:
+    """Whether a disk of one of these radii is a point to a wall of size `high`, and none to one of size `low`."""
+    return bool(np.any((radii > POINT * low) & (radii <= POINT * high)))
+
+
+def _ends(shape: Shape) -> tuple[Point, ...]:
+    return ((shape.x, shape.y), (shape.x1, shape.y1)) if isinstance(shape, Thin) else ((shape.x, shape.y),)
 
 
 def turn_of(surface: Boundary | Feature) -> int:

@@ -80,3 +80,32 @@ def test_a_point_that_hits_the_tip_of_two_walls_behind_a_wrap_is_refused(engine,
     run = es.simulate(scene, until=67.0, engine=engine, log=True)
     assert (run.stopped, len(run.log)) == told
     assert (run.reason is None) == (told[0] == "until")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("off", [0.0, 2.0**-50, -(2.0**-50), 2.0**-41, -(2.0**-41)])
+def test_walls_that_share_an_end_agree_on_whether_a_disk_is_a_point(engine, off):
+    """It is smaller than the last bits of the long wall, and larger than those of the short one."""
+    roof = es.Polyline([(0.0, 1.5), (1.0, 2.0), (8.0, 1.0)])
+    run = run_of((1.0 + off, 4.0), (0.0, 0.0), 2.0**-40, engine, 2.5, walls=(roof,), gravity=(0.0, -1.0), restitution=0.5)
+    assert run.log.time[0] == pytest.approx(2.0, rel=1e-12)
+    assert (run.log.xa[0], run.log.ya[0]) == pytest.approx((1.0, 2.0), abs=1e-11)
+
+
+PEAKS = {
+    "faces": [es.Polyline([(0.0, 1.5), (1.0, 2.0), (8.0, 1.0)])],
+    "arc and face": [es.Arc((0.0, 1.0), (0.2, 1.5), (1.0, 2.0)), es.Segment((1.0, 2.0), (8.0, 1.0))],
+    "arcs": [es.Arc((0.0, 1.0), (0.2, 1.5), (1.0, 2.0)), es.Arc((1.0, 2.0), (5.0, 2.5), (8.0, 1.0))],
+}
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("speed", [0.0, 0.3, -1.5])
+@pytest.mark.parametrize("peak", PEAKS)
+def test_a_point_that_has_a_radius_does_not_fall_between_two_walls(engine, peak, speed):
+    """It touches one of them where its foot is beyond the end of that, and its centre passes the end on the side of this wall."""
+    for radius in (2.0**-45, 2.0**-42, 2.0**-41, 2.0**-40):
+        for off in (-1.0, -0.25, -(2.0**-10), 2.0**-10, 0.25, 1.0):
+            start = 1.0 + off * radius - 2.0 * speed, 4.0
+            run = run_of(start, (speed, 0.0), radius, engine, 2.1, walls=PEAKS[peak], gravity=(0.0, -1.0), restitution=0.5)
+            assert run.log.time[:1].tolist() == pytest.approx([2.0], rel=1e-11)

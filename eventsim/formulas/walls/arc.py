@@ -21,6 +21,7 @@ from eventsim.formulas.roots import Line, Moment, less_number, reaches
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.point import (
     CLOSE,
+    STEEPEST,
     End,
     begins_in_corner,
     end_of,
@@ -29,6 +30,7 @@ from eventsim.formulas.walls.point import (
     is_point,
     passes_end,
     side_known,
+    way_to_wall,
 )
 
 FLAT = 8.0
@@ -295,19 +297,45 @@ def _is_met(
     if not is_point(radius, shape.size):
         return _holds(shape, side, px, py, SLACK * reach)
     slack = 2.0 * CLOSE * reach
-    if abs(px - shape.x) + abs(py - shape.y) < slack:
+    qx, qy = _on_wall(shape, side, radius, px, py, u, w) if radius > 0.0 else (px, py)
+    at_first, at_second = _at_end(shape, False, px, py, qx, qy, slack), _at_end(shape, True, px, py, qx, qy, slack)
+    if at_first:
         turn = shape.sign * (u * shape.ux + w * shape.uy)  # of the velocity to the tangent into the arc
         ax, ay = -shape.sign * shape.uy, shape.sign * shape.ux
         end = End(shape.x, shape.y, ax, ay, shape.first_x, shape.first_y)
         near = begins_in_corner(beside, shape.size, end.x, end.y, x, y)
         return passes_end(shape.ends, False, end, near, side, -turn, x, y, vx, vy, gx, gy, u, w)
-    if abs(px - shape.x1) + abs(py - shape.y1) < slack:
+    if at_second:
         turn = -shape.sign * (u * (shape.ux - shape.ex) + w * (shape.uy - shape.ey))
         ax, ay = shape.sign * (shape.uy - shape.ey), -shape.sign * (shape.ux - shape.ex)
         end = End(shape.x1, shape.y1, ax, ay, shape.second_x, shape.second_y)
         near = begins_in_corner(beside, shape.size, end.x, end.y, x, y)
         return passes_end(shape.ends, True, end, near, side, -turn, x, y, vx, vy, gx, gy, u, w)
     return on_arc(shape, px, py)
+
+
+def _on_wall(shape: Arc, side: int, radius: Real, x: Real, y: Real, u: Real, w: Real) -> tuple[Real, Real]:
+    """Where the centre of a disk at (x, y), which is a point to the arc and touches it from a side, is on the arc itself."""
+    nx, ny = (x - shape.x) - shape.ux, (y - shape.y) - shape.uy
+    fast = abs(u) + abs(w)
+    if not fast > 0.0:
+        return x, y
+    way = way_to_wall(radius * shape.radius, side * (nx * u + ny * w), fast, STEEPEST * radius)
+    return x + way * (u / fast), y + way * (w / fast)
+
+
+def _at_end(shape: Arc, second: bool, x: Real, y: Real, qx: Real, qy: Real, slack: Real) -> bool:
+    """Whether one of two places is next to an end, or the end is between them."""
+    ex, ey = (shape.x1, shape.y1) if second else (shape.x, shape.y)
+    if abs(x - ex) + abs(y - ey) < slack or abs(qx - ex) + abs(qy - ey) < slack:
+        return True
+    if qx == x and qy == y:
+        return False
+    if abs(x - ex) + abs(y - ey) > abs(qx - x) + abs(qy - y):
+        return False
+    if second:
+        return bool((from_end(shape, x, y) < 0.0) != (from_end(shape, qx, qy) < 0.0))
+    return bool((from_start(shape, x, y) < 0.0) != (from_start(shape, qx, qy) < 0.0))
 
 
 def _holds(shape: Arc, side: int, x: Real, y: Real, slack: Real) -> bool:

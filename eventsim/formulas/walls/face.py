@@ -13,6 +13,7 @@ from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
 from eventsim.formulas.roots import Line, Moment, falls_to, less_number, root_of
 from eventsim.formulas.walls.point import (
     CLOSE,
+    STEEPEST,
     End,
     begins_in_corner,
     careful_line,
@@ -22,6 +23,7 @@ from eventsim.formulas.walls.point import (
     is_point,
     passes_end,
     side_known,
+    way_to_wall,
 )
 
 CANCELLED = 2.0**-4
@@ -288,9 +290,14 @@ def _is_within(
         return _holds(shape, side, along, SLACK * reach)
     if not is_point(radius, shape.size):
         return _holds(shape, side, along, SLACK * reach)
-    if along < -CLOSE * reach or along > shape.along2 + CLOSE * reach:
+    low = high = along
+    if radius > 0.0:
+        rate, most = side * (shape.nx * u + shape.ny * w), STEEPEST * radius * (abs(shape.ex) + abs(shape.ey))
+        way = way_to_wall(radius * shape.norm, rate, shape.ex * u + shape.ey * w, most)
+        low, high = min(along, along + way), max(along, along + way)
+    if high < -CLOSE * reach or low > shape.along2 + CLOSE * reach:
         return False
-    before, beyond = along < CLOSE * reach, along > shape.along2 - CLOSE * reach
+    before, beyond = low < CLOSE * reach, high > shape.along2 - CLOSE * reach
     if before:
         end = End(shape.x, shape.y, shape.ex, shape.ey, shape.first_x, shape.first_y)
         near = begins_in_corner(beside, shape.size, end.x, end.y, x, y)

@@ -31,6 +31,9 @@ SHORT = 1024.0
 ASLANT = 2.0**-8
 """The angle by which rounding turns the way from the beginning of such a flight: a last bit in less than 64 of them."""
 
+STEEPEST = 2.0**12
+"""A point of a radius flies on from its contact with a wall, until its centre is there, at most so many radii along it."""
+
 TINY, HUGE = 1e-200, 1e200
 """Between these, the products that the filter looks at have not underflowed, nor overflowed."""
 
@@ -142,6 +145,18 @@ def _comes_out_of(end: End, u: float, w: float, slack: float) -> bool:
     way = slack * (abs(u) + abs(w))
     first, second = way * (abs(end.ax) + abs(end.ay)), way * (abs(end.bx) + abs(end.by))
     return turn * (u * end.ay - w * end.ax) < -first or turn * (end.bx * w - end.by * u) >= -second
+
+
+def way_to_wall(gap: float, rate: float, along: float, most: float) -> float:
+    """How far along a wall the centre of a disk, which is a point to it, flies on from contact until it is on the wall itself.
+
+    On that way it may pass the end: so there, too, its hand tells.  gap: the radius; rate: at which the gap opens; along: the
+    speed along the wall; both in one unit.  0 where it does not come to the wall, and at most so much.
+    """
+    if not rate < 0.0:
+        return 0.0
+    way = along * (gap / -rate)
+    return most if way > most else -most if way < -most else way
 
 
 def careful_line(
