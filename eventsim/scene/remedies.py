@@ -324,6 +324,8 @@ def _of_value(table: str, key: str, value: Any) -> Remedy | None:
     mended: Any = None
     if key in FILES and isinstance(value, str) and re.fullmatch(FILES[key], value):
         return None  # what is wrong is in that file
+    if key == "inside" and isinstance(value, str):
+        return None  # the sentence lists the names that there are
     if key in WORDS and isinstance(value, str):
         word = value.lower()
         if of_wall and word.removesuffix("s") in NO_WALLS:

@@ -349,6 +349,15 @@ def test_disks_and_walls_that_a_sentence_speaks_of_are_quoted(tmp_path, line, wr
     assert re.findall(r"line (\d+): [^\n]*\n +\^ (.*)", problem) == [tuple(place.split(" ")) for place in places]
 
 
+def test_the_name_of_no_wall_is_answered_with_those_that_there_are(tmp_path):
+    gas = '[[gas]]\ncount = 3\nradius = 0.01\nseed = 1\ninside = "blok"\n'
+    (tmp_path / "scene.toml").write_text(CROWD + gas)
+    (problem,) = told(tmp_path / "scene.toml")
+    assert "must be the name of a wall (wall0, block)" in problem
+    assert 'line 22: inside = "blok"' in problem
+    assert "as in:" not in problem
+
+
 def test_a_place_that_was_typed_is_quoted_as_typed(tmp_path):
     (tmp_path / "scene.toml").write_text(CROWD)
     (problem,) = told(tmp_path / "scene.toml", "disk.1.position=[0.55,0.5]")
