@@ -34,13 +34,16 @@ def swept(path: Path) -> None:
     sweep(make, GRID, events=400, replicas=2, engine="reference", out=path, workers=2)
 
 
-def kill_sweeps(place: Path, kills: int, seed: int) -> int:
-    """Kill a sweep so often; the number of times that it came to its end in between."""
+def kill_sweeps(place: Path, kills: int, seed: int) -> tuple[int, int]:
+    """Kill a sweep so often; how many kills left a journal of some runs, and how many times it came to its end in between."""
     chance = np.random.default_rng(seed)
     context = multiprocessing.get_context("forkserver")
     whole, table = place / "whole.csv", place / "table.csv"
-    swept(whole)
-    longest, killed, ended = 3.0, 0, 0
+    began = time.monotonic()
+    first = context.Process(target=swept, args=(whole,))
+    first.start()
+    first.join()
+    longest, killed, begun, ended = 1.5 * (time.monotonic() - began), 0, 0, 0
     while killed < kills:
         child = context.Process(target=swept, args=(table,))
         began = time.monotonic()
@@ -58,12 +61,14 @@ def kill_sweeps(place: Path, kills: int, seed: int) -> int:
             assert child.exitcode == 0
             longest = max(longest, 1.2 * (time.monotonic() - began))
             ended += 1
+        journal = place / "table.csv.journal"
+        begun += alive and journal.exists() and len(journal.read_bytes().splitlines()) > 1
         if table.exists():
             assert table.read_bytes() == whole.read_bytes(), "the table is another one"
             table.unlink()
     swept(table)
     assert table.read_bytes() == whole.read_bytes(), "what goes on is another table"
-    return ended
+    return begun, ended
 
 
 def kill_servers(kills: int, seed: int) -> None:
@@ -102,8 +107,8 @@ def main() -> int:
             kill_again_and_again(Path(folder), suffix, compact, "reference", runs, asked.seed + number)
         print(f"{'compact' if compact else 'full'} {suffix}: {runs} kills, the same log", flush=True)
     with tempfile.TemporaryDirectory() as folder:
-        ended = kill_sweeps(Path(folder), sweeps, asked.seed)
-    print(f"sweeps: {sweeps} kills, {ended} ends in between, the same table", flush=True)
+        begun, ended = kill_sweeps(Path(folder), sweeps, asked.seed)
+    print(f"sweeps: {sweeps} kills, {begun} with runs in the journal, {ended} ends in between, the same table", flush=True)
     servers = asked.kills - runs * len(cases) - sweeps
     kill_servers(servers, asked.seed)
     print(f"live servers: {servers} kills, each told to its page", flush=True)
