@@ -25,6 +25,9 @@ AT_ONCE, WRAPS_X, WRAPS_Y, MET_KX, MET_KY = 27, 28, 29, 30, 31
 """In line 1: contacts at the time of the last one; wraps; the image in which it was met (of a wall: the side, and STRUCK,
 SUPPORTED or LEFT)."""
 
+REGISTER = 16
+"""Slots that are read at once, also past the end of what is wanted."""
+
 USUAL_DEPTH = 4
 """Slots in a cell that is too narrow for a fifth disk."""
 

@@ -18,7 +18,7 @@ from eventsim.engines.fast.calendar import (
     unsettled,
 )
 from eventsim.engines.fast.cells import enter, home_of, leave, level_of, place_in
-from eventsim.engines.fast.compiled import inline, kernel, pointer, real, store, word
+from eventsim.engines.fast.compiled import either, inline, kernel, pointer, real, store, word
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     COLUMN,
@@ -36,6 +36,7 @@ from eventsim.engines.fast.layout import (
     EVENTS,
     LEFT,
     LOOK,
+    NOBODY,
     NOW,
     PAIRS,
     PARTNER,
@@ -67,7 +68,7 @@ from eventsim.engines.fast.layout import (
     WRAPS,
     Arrays,
 )
-from eventsim.engines.fast.predict import predict, predict_post
+from eventsim.engines.fast.predict import predict, predict_both, predict_post
 from eventsim.engines.fast.resolve import is_unlawful, resolve_pair, resolve_wall
 from eventsim.engines.fast.sides import NOWHERE, keep_sides
 from eventsim.engines.fast.sunk import may_be_astray, pair_may_be_sunk, wall_may_be_sunk
@@ -164,7 +165,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 break
             i = i if k == grid.n else k
         steps += 1
-        floor = now
+        floor, partner = now, NOBODY
         code = word(m.disks, i * WORDS + PARTNER)
         if code >= 0:
             if is_stale(m, i):
@@ -186,7 +187,7 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 overlap = resolve_pair(m, rules, sums, i, code, now, clock, events, first_slot + events, grid.posts)
                 deepest = overlap if overlap > deepest else deepest
                 events += 1
-                room, deadline = _predict_partner(m, grid, rules, code, now, day, room, deadline, grid.posts)
+                partner = code
         elif code <= WALL:
             if (
                 word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
@@ -210,7 +211,11 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
                 counts[DISK] = i
                 status = STATUS_FULL
                 break
-        predict(m, grid, rules, i, now, floor)
+        if partner < 0:
+            predict(m, grid, rules, i, now, floor)
+        else:
+            foresee = either(grid.posts, _predict_mover, _predict_both)
+            room, deadline = foresee(m, grid, rules, i, partner, now, day, room, deadline)
         room, deadline = push_later(m, grid, i, day, room, deadline, grid.look_ahead)
         if word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
             counts[DISK] = i
@@ -237,12 +242,17 @@ def _take_partner(m, i, posts):
 
 
 @inline
-def _predict_partner(m, grid, rules, i, now, day, room, deadline, posts):
-    """Predict the second disk of a contact and put it into the calendar; a post stays in it, with nothing ahead."""
-    if posts is not None:
-        return room, deadline
+def _predict_both(m, grid, rules, i, j, now, day, room, deadline):
+    """Predict the disks of a contact and put the second one into the calendar."""
+    predict_both(m, grid, rules, i, j, now)
+    return push_later(m, grid, j, day, room, deadline, grid.look_ahead)
+
+
+@inline
+def _predict_mover(m, grid, rules, i, post, now, day, room, deadline):
+    """Predict a disk that has met a post, which stays in the calendar, with nothing ahead."""
     predict(m, grid, rules, i, now, now)
-    return push_later(m, grid, i, day, room, deadline, grid.look_ahead)
+    return room, deadline
 
 
 @kernel

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from eventsim.engines.base import Motion
 from eventsim.engines.fast.cells import WIDTH
 from eventsim.engines.fast.columns import Integers, aligned
-from eventsim.engines.fast.layout import USUAL_DEPTH, Grid
+from eventsim.engines.fast.layout import REGISTER, USUAL_DEPTH, Grid
 from eventsim.engines.fast.wall_cells import MANY_SHAPES, shapes_in_cells
 from eventsim.engines.reference.cells import MARGIN
 from eventsim.record.events import Floats
@@ -267,9 +267,6 @@ def cells_of_posts(stage: Stage, x: Floats, y: Floats, posts: NDArray[np.bool_])
 FEW_DISKS = 24
 """Below it, looking at all disks is as fast as cells."""
 
-REGISTER = 16
-"""Slots that are read at once, also past the end of what is wanted."""
-
 
 class Grids:
     """The cells of one session, chosen anew whenever they do not fit any more.
@@ -339,11 +336,12 @@ class Grids:
         return slots
 
     def near(self) -> Integers:
-        """Room for the neighbours of one disk."""
+        """Room for the neighbours of two disks; on several levels for those of one, which may be all others."""
         if self.sizes is None:
             return aligned(REGISTER, np.int32)
-        few = 9 * self.sizes[0].depth
-        return aligned((few if len(self.sizes) == 1 else self._stage.n) + 2 * REGISTER, np.int32)
+        if len(self.sizes) > 1:
+            return aligned(self._stage.n + 2 * REGISTER, np.int32)
+        return aligned(2 * (9 * self.sizes[0].depth + REGISTER), np.int32)
 
     def table(self) -> Floats | None:
         """The levels as a table of numbers, in one row of memory; None where there is only one."""

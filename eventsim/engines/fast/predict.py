@@ -25,6 +25,7 @@ from eventsim.engines.fast.layout import (
     PARTNER_COUNT,
     RADIUS,
     REALS,
+    REGISTER,
     ROW,
     SEVERAL,
     USUAL_DEPTH,
@@ -56,6 +57,48 @@ def predict_post(m, i):
 @inline
 def predict(m, grid, rules, i, now, floor):
     """Schedule the earliest event of disk i that is not before `floor`: a contact, a wrap, or the next cell crossing."""
+    x, y, time, code, shared = _alone(m, grid, rules, i, now, floor)
+    contacts = either(m.slots, contacts_in_cells, contacts_of_everyone)
+    time, code, shared = contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    _schedule(m, grid, rules, i, time, code, shared)
+
+
+@inline
+def predict_both(m, grid, rules, i, j, now):
+    """Schedule the earliest events of two disks that have just met."""
+    in_one_grid = either(grid.levels, _one_after_the_other, either(grid.lanes, _side_by_side, _one_after_the_other))
+    both = either(m.slots, in_one_grid, _one_after_the_other)
+    both(m, grid, rules, i, j, now)
+
+
+@inline
+def _one_after_the_other(m, grid, rules, i, j, now):
+    predict(m, grid, rules, i, now, now)
+    predict(m, grid, rules, j, now, now)
+
+
+@inline
+def _side_by_side(m, grid, rules, i, j, now):
+    """The same in lanes: neither disk waits for what is found for the other one, so the processor does both at once."""
+    x, y, time, code, shared = _alone(m, grid, rules, i, now, now)
+    other_x, other_y, other_time, other_code, other_shared = _alone(m, grid, rules, j, now, now)
+    edge, other_edge = word(m.disks, i * WORDS + FLAGS) & EDGE, word(m.disks, j * WORDS + FLAGS) & EDGE
+    begin = _room_of_list(grid)
+    end = _gather_around(m, grid, rules, i, now, x, y, edge, 0)
+    other_end = _gather_around(m, grid, rules, j, now, other_x, other_y, other_edge, begin)
+    edge |= other_edge
+    found = _eight(m, rules, i, now, now, x, y, edge, 0)
+    other_found = _eight(m, rules, j, now, now, other_x, other_y, edge, begin)
+    time, code, shared = _or_among(m, rules, i, now, now, x, y, edge, 0, end, found, time, code, shared)
+    _schedule(m, grid, rules, i, time, code, shared)
+    x, y, end, found, time, code, shared = other_x, other_y, other_end, other_found, other_time, other_code, other_shared
+    time, code, shared = _or_among(m, rules, j, now, now, x, y, edge, begin, end, found, time, code, shared)
+    _schedule(m, grid, rules, j, time, code, shared)
+
+
+@inline
+def _alone(m, grid, rules, i, now, floor):
+    """(x, y, time, code, shared): where disk i is, and its earliest event without another disk."""
     x, y = place(m, rules, i, now)
     u, w = speed(m, rules, i, now)
     home = home_of(m, grid, i)
@@ -66,8 +109,11 @@ def predict(m, grid, rules, i, now, floor):
         shared = 0
     time, code, shared = _look(m, grid, rules, i, now, u, w, time, code, shared, grid.levels)
     time, code, shared = earliest_at_shapes(m, home, rules, i, floor, time, code, shared, rules.features)
-    contacts = either(m.slots, contacts_in_cells, contacts_of_everyone)
-    time, code, shared = contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    return x, y, time, code, shared
+
+
+@inline
+def _schedule(m, grid, rules, i, time, code, shared):
     shared = _or_for_rules(m, rules, i, code, time, shared, m.supports, rules.still)
     count = word(m.disks, (code if code >= 0 else grid.n) * WORDS + COUNT)  # of the sentinel: 0
     store(m.disks, i * REALS + DUE, time)
@@ -187,14 +233,24 @@ def corner_slot(m, grid, i):
 def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
     """The same as one by one, eight at a time."""
     edge = word(m.disks, i * WORDS + FLAGS) & EDGE
-    if word(m.disks, i * WORDS + MET) == SEVERAL:
-        return _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    end = _gather_around(m, grid, rules, i, now, x, y, edge, 0)
+    return _earliest_of_list(m, rules, i, now, floor, x, y, edge, end, time, code, shared)
+
+
+@inline
+def _gather_around(m, grid, rules, i, now, x, y, edge, begin):
+    """List in `near`, from `begin` on, the disks in the nine cells around disk i, less the one that it has just met; the end."""
     skip = _partner_to_skip(m, rules, i, now, x, y, edge)
     start, width = corner_slot(m, grid, i), depth_of(grid, grid.deep) * (grid.columns + 2)
-    count = _gather(m, grid, start, 0, i, skip, grid.deep)
-    count = _gather(m, grid, start + width, count, i, skip, grid.deep)
-    count = _gather(m, grid, start + 2 * width, count, i, skip, grid.deep)
-    return _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, edge)
+    end = _gather(m, grid, start, begin, i, skip, grid.deep)
+    end = _gather(m, grid, start + width, end, i, skip, grid.deep)
+    return _gather(m, grid, start + 2 * width, end, i, skip, grid.deep)
+
+
+@inline
+def _room_of_list(grid):
+    """How much room such a list takes, with the register that is written behind its end."""
+    return 9 * depth_of(grid, grid.deep) + REGISTER
 
 
 @inline
@@ -202,15 +258,13 @@ def _contacts_on_levels_in_lanes(m, grid, rules, i, now, floor, x, y, time, code
     """The same where each class of radii has a grid of its own; what is far in its own class may be near in another."""
     skip = _partner_to_skip(m, rules, i, now, x, y, True)
     count = gather_near(m, grid, rules, i, x, y, skip)
-    if word(m.disks, i * WORDS + MET) == SEVERAL:
-        return _contacts_of_list(m, rules, i, now, floor, x, y, True, count, time, code, shared)
-    return _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, True)
+    return _earliest_of_list(m, rules, i, now, floor, x, y, True, count, time, code, shared)
 
 
 @inline
 def _contacts_on_levels_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared):
     count = gather_near(m, grid, rules, i, x, y, NOBODY)
-    return _contacts_of_list(m, rules, i, now, floor, x, y, True, count, time, code, shared)
+    return _contacts_of_list(m, rules, i, now, floor, x, y, True, 0, count, time, code, shared)
 
 
 @inline
@@ -226,44 +280,68 @@ def _partner_to_skip(m, rules, i, now, x, y, edge):
 
 
 @inline
-def _earliest_of_list(m, rules, i, now, floor, x, y, time, code, shared, count, edge):
+def _earliest_of_list(m, rules, i, now, floor, x, y, edge, end, time, code, shared):
     """The earliest contact with a disk of the list; where two of them may be seen across a boundary, `edge` says so."""
+    found = _eight(m, rules, i, now, floor, x, y, edge, 0)
+    return _or_among(m, rules, i, now, floor, x, y, edge, 0, end, found, time, code, shared)
+
+
+@inline
+def _eight(m, rules, i, now, floor, x, y, edge, first):
+    """(time, disk, many, doubted) of the disks near[first:first+8], as `contact_of_eight` tells them."""
     f = i * REALS
     x0, y0, u, w = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
     length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
-    periodic = rules.length_x is not None or rules.length_y is not None
     flight = x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, rules.tie_screen
-    first = doubts = 0
+    if (rules.length_x is not None or rules.length_y is not None) and edge:
+        return contact_of_eight(m.disks, m.near, first, *flight, 1.0, rules.gx, rules.gy)
+    return contact_of_eight(m.disks, m.near, first, *flight, 0, rules.gx, rules.gy)
+
+
+@inline
+def _or_among(m, rules, i, now, floor, x, y, edge, first, end, found, time, code, shared):
+    """The earliest of the given event and those with the disks of a list; found: what there is among the first eight."""
+    new, j, many, doubted = found
+    if (word(m.disks, i * WORDS + MET) == SEVERAL) | (first + 8 < end) | (doubted != 0):
+        return _or_among_many(m, rules, i, now, floor, x, y, edge, first, end, *found, time, code, shared)
+    return _or_sooner(rules, new, j, many, time, code, shared)
+
+
+@inline
+def _or_sooner(rules, new, j, many, time, code, shared):
+    """The earlier of two events; without branches, which could not be foreseen."""
+    sooner = new < time
+    also = may_tie(new, time, rules.tie_screen)
+    shared = (many if sooner else shared) | also
+    return new if sooner else time, j if sooner else code, shared
+
+
+@part
+def _or_among_many(m, rules, i, now, floor, x, y, edge, first, end, new, j, many, doubted, time, code, shared):
+    """The same where there are more than eight, or some that lanes cannot tell about, or where it has just met several."""
+    if word(m.disks, i * WORDS + MET) == SEVERAL:
+        return _contacts_of_list(m, rules, i, now, floor, x, y, edge, first, end, time, code, shared)
+    doubts = 0
     while True:
-        if periodic and edge:
-            new, j, many, doubted = contact_of_eight(m.disks, m.near, first, *flight, 1.0, rules.gx, rules.gy)
-        else:
-            new, j, many, doubted = contact_of_eight(m.disks, m.near, first, *flight, 0, rules.gx, rules.gy)
-        sooner = new < time  # no branches: they could not be foreseen
-        also = may_tie(new, time, rules.tie_screen)
-        shared = (many if sooner else shared) | also
-        code = j if sooner else code
-        time = new if sooner else time
-        lane = first
-        while doubted:  # rare; a call here would cost the registers
-            if doubted & 1:
-                store(m.near, doubts, word(m.near, lane))
+        time, code, shared = _or_sooner(rules, new, j, many, time, code, shared)
+        for lane in range(8):
+            if doubted >> lane & 1:
+                store(m.near, doubts, word(m.near, first + lane))
                 doubts += 1
-            doubted >>= 1
-            lane += 1
         first += 8
-        if first >= count:
+        if first >= end:
             break
+        new, j, many, doubted = _eight(m, rules, i, now, floor, x, y, edge, first)
     if doubts:
-        return _contacts_of_list(m, rules, i, now, floor, x, y, edge, doubts, time, code, shared)
+        return _contacts_of_list(m, rules, i, now, floor, x, y, edge, 0, doubts, time, code, shared)
     return time, code, shared
 
 
 @part
-def _contacts_of_list(m, rules, i, now, floor, x, y, edge, count, time, code, shared):
+def _contacts_of_list(m, rules, i, now, floor, x, y, edge, begin, end, time, code, shared):
     """The same one by one: for pairs about which the lanes cannot tell, and where there are no lanes."""
-    for k in range(count):
+    for k in range(begin, end):
         j = word(m.near, k)
         time, code, shared = _or_with_nearest(m, rules, i, j, now, floor, x, y, edge, time, code, shared)
     return time, code, shared
