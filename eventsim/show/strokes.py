@@ -25,6 +25,10 @@ BANDS, STRONGEST = 12, 0.85
 """Shades in which a trail fades, and the opacity of the newest."""
 
 
+MOST_WAYS = 100_000
+"""Ways in a trail: where there are more, nobody sees the oldest among them, and they would have to be held and drawn."""
+
+
 def arrows(tail: Floats, along: Floats) -> Path:
     """Return arrows from `tail` (N, 2) along `along` (N, 2) as one path."""
     tip = tail + along
@@ -63,6 +67,8 @@ class Trails:
             self._pieces.clear()
         elif self._before is not None:
             self._pieces.append(self._pieces_between(self._before, frame.recent, frame.state.time))
+            while sum(map(len, self._pieces)) > MOST_WAYS and len(self._pieces) > 1:
+                self._pieces.popleft()
         self._before = frame.moment
         pieces = list(self._pieces)
         size = -(-self._longest // BANDS)

@@ -11,6 +11,7 @@ import eventsim as es
 from eventsim.errors import EventsimError
 from eventsim.replay.passage import Passage
 from eventsim.replay.replay import Replay
+from eventsim.show import strokes
 from eventsim.show.animate import Film, animate
 from eventsim.show.colouring import Colouring, colouring_of
 from eventsim.show.frames import frames_at
@@ -318,3 +319,17 @@ def test_a_bar_of_masses_tells_disks_that_have_no_place_on_it():
     key = colouring_of("mass", disks, overview_of(run.log)).key
     assert (key.low, key.high) == (1.0, 3.0)
     assert [label for label, _ in key.apart] == ["mass inf"]
+
+
+def test_a_trail_of_more_ways_than_can_be_seen_reaches_back_less_far(broken, monkeypatch):
+    """Those of a log of 1e7 rows took half a gigabyte."""
+
+    def longest():
+        passage = Passage(broken)
+        trails = strokes.Trails(passage, 12)
+        frames = frames_at(passage, np.linspace(*passage.span, 40), 1.0)
+        return max(sum(len(path.vertices) // 2 for path, _ in trails.follow(frame)) for frame in frames)
+
+    assert longest() > 200
+    monkeypatch.setattr(strokes, "MOST_WAYS", 150)
+    assert 100 < longest() <= 150
