@@ -83,7 +83,7 @@ def shown_span(span: tuple[float, float], begin: float | None, end: float | None
     return first, last
 
 
-MOST_RECENT = 100_000
+MOST_RECENT = 20_000
 """Rows between two frames whose ways can be told apart by nobody; and they would have to be held."""
 
 

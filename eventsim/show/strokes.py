@@ -25,7 +25,7 @@ BANDS, STRONGEST = 12, 0.85
 """Shades in which a trail fades, and the opacity of the newest."""
 
 
-MOST_WAYS = 100_000
+MOST_WAYS = 20_000
 """Ways in a trail: where there are more, nobody sees the oldest among them, and they would have to be held and drawn."""
 
 
