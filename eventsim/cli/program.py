@@ -143,8 +143,15 @@ class Program(click.Group):
 
 def _decimal_point(message: str) -> str:
     """What to write where a number was refused for its decimal comma; else nothing."""
-    found = re.search(r"'([-+]?\d*),(\d+)' is not a valid float", message)
-    return f" A number has a decimal point, not a comma: {found[1] or 0}.{found[2]}" if found else ""
+    found = re.search(r"'([-+]?\d*),(\d+)' is not a valid (float|integer)", message)
+    if found is None:
+        return ""
+    if found[3] == "integer":
+        return f" A whole number has no marks between thousands: {found[1]}{found[2]}" if len(found[2]) == 3 else ""
+    from eventsim.scene.remedies import two_ways  # only who errs pays for it
+
+    ways = two_ways(f"{found[1]},{found[2]}".lstrip("-+"))
+    return f" A number has a decimal point, not a comma: {ways or f'{found[1] or 0}.{found[2]}'}"
 
 
 def _message(error: EventsimError) -> str:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from eventsim.errors import SceneError
 from eventsim.scene import schema
-from eventsim.scene.remedies import Remedy, example_of, remedy
+from eventsim.scene.remedies import Remedy, example_of, read_both, remedy, two_ways, with_points
 
 LONGEST = 1 << 23
 """Letters of a file whose lines are looked for."""
@@ -31,6 +31,7 @@ MET = re.compile(r"(?:across|out of) \w+ (?P<name>.+?): ")
 ANCHORS = {"disk": "position", "wall": "name"}
 """Tables that a sentence is about, and the key at which it points to one."""
 
+LIST = re.compile(r"\[(?:[^\[\]]|\[[^\[\]]*\])*\]")
 JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\],:]|[^\s{}\[\],:"]+')
 
 
@@ -42,7 +43,7 @@ class Place(NamedTuple):
     value: int
 
 
-def quoted(line: str, column: int, why: str, write: str, label: str = "", example: bool = False) -> str:
+def quoted(line: str, column: int, why: str, write: str, label: str = "", example: bool = False, other: str = "") -> str:
     """The lines that follow the sentence of a problem.
 
     Args:
@@ -52,6 +53,7 @@ def quoted(line: str, column: int, why: str, write: str, label: str = "", exampl
         write: what would be right, one or more lines; empty: nothing.
         label: what the line is called, as in "line 3".
         example: whether `write` only shows the form.
+        other: what would be right if the line was meant otherwise; empty: nothing.
     """
     if len(line) > WIDEST:
         first = min(max(column - WIDEST // 2, 0), len(line) - WIDEST)
@@ -61,6 +63,8 @@ def quoted(line: str, column: int, why: str, write: str, label: str = "", exampl
     shown = [f"{label}:".ljust(width) + line.strip(), (" " * (width + column - inset) + f"^ {why}").rstrip()]
     for number, right in enumerate(write.splitlines() if len(write) <= WIDEST else ()):
         shown.append(("" if number else "as in:" if example else "write:").ljust(width) + right.strip())
+    if other and len(other) <= WIDEST:
+        shown.append("or:".ljust(width) + other.strip())
     return "".join(f"\n    {row}" for row in shown)
 
 
@@ -179,8 +183,9 @@ def _quotes(
         setting = typed[path]
         name, _, value = setting.partition("=")
         told = _remedy(table, key, {**_table(data, table), (key or table): _read(value)})
-        write = told.write.replace(f"{key or table} = ", f"{name}=")
-        yield quoted(setting, len(name) + 1, told.why, write, "typed", told.example)
+        told = _by_text(told, key or table, value.strip())
+        write, other = (line.replace(f"{key or table} = ", f"{name}=") for line in (told.write, told.other))
+        yield quoted(setting, len(name) + 1, told.why, write, "typed", told.example, other)
         return
     missing = problem[match.start() :].partition(" is missing")[1] and path not in places
     here = _table(data, table) if missing else {}
@@ -199,6 +204,8 @@ def _quotes(
         yield quoted(lines[place.line - 1], place.key, lacks, form(example), f"line {place.line}", True)
         return
     told = _remedy(table, key, _table(data, table) if key else data)
+    listed = LIST.match(lines[place.line - 1], place.value)
+    told = _by_text(told, key or table, "" if listed is None else listed[0])
     unknown = "unknown key" in problem
     header = places.get(table) if key else None
     write = told.write
@@ -209,7 +216,7 @@ def _quotes(
     bare, written = _bare(write), _bare(lines[place.line - 1])
     if bare == written or (bare.startswith('"') and bare in written):  # what was written is of the right form
         write = ""
-    yield quoted(lines[place.line - 1], column, told.why, write, f"line {place.line}", told.example)
+    yield quoted(lines[place.line - 1], column, told.why, write, f"line {place.line}", told.example, form(told.other))
 
 
 def _quotes_of_tables(
@@ -269,6 +276,18 @@ def _remedy(table: str, key: str | None, here: Mapping[str, Any]) -> Remedy:
         double = key in schema.TABLE_LISTS
         return Remedy("", f"[[{key}]]" if double else f"[{key}]")
     return remedy(name, key, here, _known(name, here), schema.SCALARS) or Remedy("", "")
+
+
+def _by_text(told: Remedy, key: str, value: str) -> Remedy:
+    """What is known about a list, or what its text tells: which of its commas are those of numbers."""
+    right = with_points(key, value)
+    if right is None:
+        return told
+    point, none = read_both(value)
+    why, line = "a number has a decimal point, not a comma", f"{key} = {right}"
+    if point == none:
+        return Remedy(why, line)
+    return Remedy(f"{why}: {two_ways(value)}", line, other=f"{key} = {with_points(key, none) or none}")
 
 
 def _known(name: str, here: Mapping[str, Any]) -> tuple[str, ...]:

@@ -142,11 +142,13 @@ class Remedy(NamedTuple):
     """Why a key or value will not do, and the lines that would; no lines where it is best left out.
 
     example: whether these are of some other scene, as nobody knows what was meant.
+    other: the line that would do if the same was meant otherwise.
     """
 
     why: str
     write: str
     example: bool = False
+    other: str = ""
 
 
 def remedy(
@@ -214,7 +216,9 @@ def meant(word: str) -> str:
 def _line(why: str, table: str, key: str, value: Any) -> Remedy:
     """A line with a key, its value mended where that is needed."""
     mended = None if _fits(key, value) else _of_value(table, key, value)
-    return Remedy(why, f"{key} = {written(value)}") if mended is None else mended._replace(why=why)
+    if mended is None:
+        return Remedy(why, f"{key} = {written(value)}")
+    return mended._replace(why=f"{why}; {mended.why}" if mended.other else why)
 
 
 def _is_round(value: Any) -> bool:
@@ -344,13 +348,60 @@ def _of_value(table: str, key: str, value: Any) -> Remedy | None:
         return Remedy("more than 1 would make energy", f"{key} = 1.0")
     elif key == "restitution" and _is_number(value) and LEAST_PER_CENT <= value <= 100.0:
         return Remedy("it is a part of 1, not per cent", f"{key} = {written(value / 100)}")
+    elif isinstance(value, str) and OPEN_COMMA.fullmatch(value.strip()) and key not in WHOLES:
+        point, none = read_both(value.strip())
+        return Remedy(two_ways(value), f"{key} = {point}", other=f"{key} = {none}")
     elif isinstance(value, str):
-        mended = number_in(value)
+        mended = number_in(re.sub(r"(?<=\d),(?=\d{3})", "", value) if key in WHOLES else value)
     elif isinstance(value, list) and len(value) == 1 and _is_number(value[0]):
         mended = value[0]
     if key in WHOLES and isinstance(mended, float):
         mended = round(mended)
     return example if mended is None else Remedy("", f"{key} = {written(mended)}")
+
+
+OPEN_COMMA = re.compile(r"(?<![\w.,])([1-9]\d{0,2}),(\d{3})(?![\d.]|,\d)")
+"""A comma that may be meant as the point of a number, or as a mark between thousands."""
+
+MANY_COMMAS = re.compile(r"(?<![\w.,])[1-9]\d{0,2}(?:,\d{3}){2,}(?![\d,])")
+"""Commas that can only be marks between thousands."""
+
+
+def pointed(text: str) -> str:
+    """A text whose numbers have a decimal point where they had a comma, and no marks between thousands."""
+    text = MANY_COMMAS.sub(lambda number: number[0].replace(",", ""), text)
+    return re.sub(r"(?<![\d.])(?<!\d,)(\d+),(\d+)(?![\d.]|,\d)", r"\1.\2", text)
+
+
+def read_both(text: str) -> tuple[str, str]:
+    """A text with a point in the place of each comma that may part thousands, and with nothing there."""
+    return OPEN_COMMA.sub(r"\1.\2", text), OPEN_COMMA.sub(r"\1\2", text)
+
+
+def two_ways(text: str) -> str:
+    """Which two numbers such a comma may mean; empty where there is none."""
+    found = OPEN_COMMA.search(text)
+    return "" if found is None else f"{found[1]}.{found[2]}, or {found[1]}{found[2]} if the comma separates thousands"
+
+
+COUNTS = {**dict.fromkeys(PAIRS, 2), "region": 4}
+"""How many numbers stand in the list of a key."""
+
+
+def with_points(key: str, value: str) -> str | None:
+    """The text of a list, written with decimal commas, with points; None where that is no list of the right length."""
+
+    def row(match: re.Match[str]) -> str:
+        parts = re.split(r",\s+|\s*;\s*|\s+", match[1].strip())
+        return f"[{', '.join(map(pointed, parts))}]"
+
+    if key not in (*COUNTS, "points") or (key == "points") != value.startswith("[["):
+        return None
+    right = re.sub(r"\[([^\[\]]*)\]", row, value)
+    rows = re.findall(r"\[([^\[\]]*)\]", right)
+    lists = [[number_in(part) for part in each.split(", ")] for each in rows]
+    whole = all(len(each) == COUNTS.get(key, 2) and None not in each for each in lists)
+    return right if lists and whole and right != value else None
 
 
 def _pair(key: str, value: Any) -> list[Any] | None:

@@ -12,7 +12,21 @@ from itertools import islice
 from typing import NamedTuple
 
 from eventsim.scene.quoting import HEADER, quoted
-from eventsim.scene.remedies import EXAMPLES, LISTS, PAIRS, TEXTS, WHOLES, meant, written
+from eventsim.scene.remedies import (
+    COUNTS,
+    EXAMPLES,
+    LISTS,
+    MANY_COMMAS,
+    OPEN_COMMA,
+    PAIRS,
+    TEXTS,
+    WHOLES,
+    meant,
+    pointed,
+    two_ways,
+    with_points,
+    written,
+)
 
 LONGEST = 1 << 20
 """Letters of a file that is read again with a line mended."""
@@ -46,29 +60,37 @@ def _fraction(match: re.Match[str]) -> str:
     return written(one * other) if match[2] == "*" else written(one / other) if other else match[0]
 
 
-def _pointed(text: str) -> str:
-    """A text whose numbers have a decimal point where they had a comma."""
-    return re.sub(r"(?<![\d.,])(\d+),(\d+)(?![\d.,])", r"\1.\2", text)
-
-
 def _comma(line: str, key: str) -> str:
     head, equals, value = line.partition("=")
     if key in WHOLES:
-        return head + equals + re.sub(r"(?<=\d)[,'](?=\d{3})", "", value)
+        return line
     if key in PAIRS and "[" not in value and "(" not in value:
         return line
-    return head + equals + _pointed(value)
+    listed = re.search(r"\[.*\]", value) if key in COUNTS or key == "points" else None
+    if listed is not None:
+        right = with_points(key, listed[0])
+        return line if right is None else head + equals + value.replace(listed[0], right)
+    return head + equals + pointed(value)
+
+
+def _thousands(line: str, key: str) -> str:
+    head, equals, value = line.partition("=")
+    marks = r"(?<=\d)[,'](?=\d{3}(?!\d))" if key in WHOLES else r"(?<=\d)'(?=\d{3}(?!\d))"
+    return head + equals + MANY_COMMAS.sub(lambda number: number[0].replace(",", ""), re.sub(marks, "", value))
 
 
 def _semicolon(line: str, key: str) -> str:
     between = r"(?<=[\d\]])\s*;\s*(?=[-+.\d\[])"
-    return re.sub(between, ", ", _pointed(line)) if re.search(between, line) else line
+    return re.sub(between, ", ", pointed(line)) if re.search(between, line) else line
 
 
 def _pair(line: str, key: str) -> str:
     number = r"[-+]?[\d.][\d.eE+-]*"
     if key == "gravity" and (match := re.search(r"=\s*-?(\d+,\d+)\s*(?=#|$)", line)):  # one number, with a decimal comma
-        return line[: match.start()] + f"= [0.0, -{_pointed(match[1])}]" + line[match.end() :]
+        return line[: match.start()] + f"= [0.0, -{pointed(match[1])}]" + line[match.end() :]
+    if key in PAIRS and (match := re.search(rf"=\s*({number},\d+,\s+{number}(,\d+)?|{number},\s+{number},\d+)\s*(?=#|$)", line)):
+        right = with_points(key, f"[{match[1]}]")  # two numbers, with decimal commas
+        return line if right is None else line[: match.start()] + f"= {right}" + line[match.end() :]
     return re.sub(rf"(=\s*)({number})\s*[,;x]\s*({number})(?=\s*(#|$))", r"\1[\2, \3]", line) if key in PAIRS else line
 
 
@@ -107,6 +129,7 @@ SLIPS = (
     Slip("lists stand in square brackets", _sub(r"\(([^()]*)\)", r"[\1]")),
     Slip("lists stand in square brackets", _sub(r"\{([^{}=]*)\}", r"[\1]")),
     Slip("two numbers stand in square brackets", _pair),
+    Slip("a number has no marks between thousands", _thousands),
     Slip("a number has a decimal point, not a comma", _comma),
     Slip("a comma stands between two numbers, and a point in each", _semicolon),
     Slip("a comma stands between two numbers", _sub(r"(?<=\d)[ \t]+(?=[-+.]?\d)", ", ")),
@@ -136,10 +159,14 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
     line = min(int(match[2]) if match[2] else len(lines), len(lines))
     column = int(match[3]) - 1 if match[2] else len(lines[line - 1])
     if len(text) <= LONGEST:
+        if (single := _single_before(lines, line)) is not None:
+            right = f"[{lines[single - 1].strip()}]"
+            return f"tables of a list stand in double brackets, all of them (at line {single})" + _shown(lines, single, right)
         for here in _lines_before(lines, line):
             for why, right in _mended(lines, here):
                 if _reads_on(lines, here, right, line):
-                    return f"{why} (at line {_alike(lines, here, right)})" + _shown(lines, here, right)
+                    told = f"{why}: {two_ways(lines[here - 1])}" if _otherwise(lines[here - 1], right) else why
+                    return f"{told} (at line {_alike(lines, here, right)})" + _shown(lines, here, right)
         for here in _lines_before(lines, line):
             if HEADER.match(lines[here - 1]) is not None and _reads_on(lines, here, "", line):
                 why = "this table was begun before: put its keys there, and leave this line out"
@@ -159,6 +186,16 @@ WORDS = {
     "Invalid statement": "this is neither a key with a value, nor a table, nor a comment, which begins with #",
 }
 """What the reader of TOML says, and what is meant."""
+
+
+def _single_before(lines: list[str], line: int) -> int | None:
+    """The first line with a table in single brackets, where the text can be read no further since others have double ones."""
+    header = HEADER.match(lines[line - 1])
+    if header is None or header[1] != "[[":
+        return None
+    name = header[2]
+    found = next((k for k in range(1, line) if lines[k - 1].strip() == f"[{name}]"), None)
+    return found if found is not None and _reads_on(lines, found, f"[[{name}]]", line) else None
 
 
 def _in_words(told: str) -> str:
@@ -223,4 +260,13 @@ def _shown(lines: list[str], number: int, right: str) -> str:
     """A line, a caret where it departs from what is right, and that."""
     line = lines[number - 1].rstrip()
     same = next((k for k, (a, b) in enumerate(zip(line, right, strict=False)) if a != b), min(len(line), len(right)))
-    return quoted(line, same if "\n" not in right else 0, "", right, f"line {number}")
+    column = same if "\n" not in right else 0
+    return quoted(line, column, "", right, f"line {number}", other=_otherwise(line, right))
+
+
+def _otherwise(line: str, right: str) -> str:
+    """What is right if commas of a line part thousands; empty where what is right has no point in their place."""
+    other = right
+    for found in OPEN_COMMA.finditer(line):
+        other = other.replace(f"{found[1]}.{found[2]}", f"{found[1]}{found[2]}")
+    return other if other != right else ""

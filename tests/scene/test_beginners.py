@@ -402,3 +402,68 @@ def test_a_mistake_in_json_is_told_like_one_in_toml(tmp_path, right, wrong, line
             if shown.startswith(f"line {line}:"):
                 found.append((shown[caret.index("^") :].startswith(at), re.sub("^(write|as in): +", "", rows[-1])))
     assert (True, write or rows[-1]) in found, problems
+
+
+@pytest.mark.parametrize(
+    ("wrong", "point", "none"),
+    [
+        ("until = 1,000", "until = 1.000", "until = 1000"),
+        ("time = 12,500", "time = 12.500", "time = 12500"),
+        ('until = "1,000"', "until = 1.000", "until = 1000"),
+        ("gravity = [1,500, -2]", "gravity = [1.500, -2]", "gravity = [1500, -2]"),
+        ("gravity = [1,500, 2,250]", "gravity = [1.500, 2.250]", "gravity = [1500, 2250]"),
+        ("gravity = 1,500", "gravity = [0.0, -1.500]", "gravity = [0.0, -1500]"),
+    ],
+)
+def test_a_comma_that_may_part_thousands_is_answered_with_both_numbers(tmp_path, wrong, point, none):
+    (tmp_path / "scene.toml").write_text(f"{wrong}\n{OPEN}{ONE}")
+    (problem,) = told(tmp_path / "scene.toml")
+    assert "if the comma separates thousands" in problem
+    rows = [row.split(":", 1) for row in problem.split("\n    ")[1:]]
+    assert [row[1].strip() for row in rows if row[0] == "write"] == [point]
+    assert [row[1].strip() for row in rows if row[0] == "or"] == [none]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("until = 1,000,000", "until = 1000000"),
+        ("until = 0,125", "until = 0.125"),
+        ("until = 1,0000", "until = 1.0000"),
+        ("events = 1,000", "events = 1000"),
+        ('events = "1,000"', "events = 1000"),
+        ("gravity = [1,5, 2]", "gravity = [1.5, 2]"),
+        ("gravity = [0,05, 2]", "gravity = [0.05, 2]"),
+        ("gravity = [1, 2,5]", "gravity = [1, 2.5]"),
+        ("gravity = 1,5, 2", "gravity = [1.5, 2]"),
+    ],
+)
+def test_a_comma_that_means_one_thing_is_answered_with_one_line(tmp_path, wrong, right):
+    (tmp_path / "scene.toml").write_text(f"{wrong}\n{OPEN}{ONE}")
+    (problem,) = told(tmp_path / "scene.toml")
+    assert problem.endswith(f"write:  {right}")
+
+
+def test_three_numbers_without_a_blank_are_not_taken_for_two(tmp_path):
+    (tmp_path / "scene.toml").write_text(f"gravity = [1,2,3]\n{OPEN}{ONE}")
+    assert "as in:  gravity = [0.0, -9.81]" in told(tmp_path / "scene.toml")[0]
+
+
+def test_lists_with_decimal_commas_are_answered_in_json_and_in_settings(tmp_path):
+    (tmp_path / "scene.json").write_text(JSON.replace("[0.5, 0.5]", "[0,5, 1]"))
+    assert '"position": [0.5, 1]' in told(tmp_path / "scene.json")[0].split("write:")[1]
+    (tmp_path / "scene.toml").write_text(OPEN + ONE)
+    assert "write: disk.0.position=[1.5, 2]" in told(tmp_path / "scene.toml", "disk.0.position=[1,5, 2]")[0]
+
+
+def test_points_with_decimal_commas_are_answered(tmp_path):
+    (tmp_path / "scene.toml").write_text(OPEN + ONE + '[[wall]]\nkind = "polygon"\npoints = [[0,5, 1], [2, 1], [1, 2]]\n')
+    assert "write:  points = [[0.5, 1], [2, 1], [1, 2]]" in told(tmp_path / "scene.toml")[0]
+
+
+@pytest.mark.parametrize("name", ["disk", "gas", "wall"])
+def test_a_table_in_single_brackets_before_others_in_double_ones_is_the_one_that_is_told(tmp_path, name):
+    (tmp_path / "scene.toml").write_text(f"{OPEN}[{name}]\nradius = 1\n\n[[{name}]]\nradius = 1\n")
+    (problem,) = told(tmp_path / "scene.toml")
+    assert "(at line 3)" in problem
+    assert problem.endswith(f"write:  [[{name}]]")
