@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from eventsim.measure.ensemble import LAST_DIGITS, ensemble_of
-from eventsim.measure.records import FEW, FEWEST_CONTACTS, LINE, ON_A_LINE, TOO_FEW
+from eventsim.measure.records import FEW, FEWEST_CONTACTS, LINE, NEVER_MET, ON_A_LINE, TOO_FEW
 from eventsim.scene import Scene
 from eventsim.scene.contact_law import law_of_scene
 
@@ -32,7 +32,7 @@ def gas_of(scene: Scene) -> dict[str, Any]:
         "area": ensemble.area,
         "noTemperature": ensemble.no_temperature,
         "noPressure": ensemble.no_pressure,
-        "onALine": {"share": ON_A_LINE, "why": LINE},
+        "onALine": {"share": ON_A_LINE, "why": LINE, "never": NEVER_MET},
         "few": {"disks": FEW, "contacts": FEWEST_CONTACTS, "why": TOO_FEW},
         "lastDigits": LAST_DIGITS,
         "maxwell": ensemble.simple and ensemble.n >= FEW,

@@ -9,6 +9,8 @@ from eventsim.measure.blocking import block_average, errors_apart
 from eventsim.measure.equilibration import DRIFT, doubts, strangers, transient
 from eventsim.measure.measures import Measures
 from eventsim.measure.quantities import quantities_of
+from eventsim.measure.quantities.species import legend as species_legend
+from eventsim.measure.quantities.walls import legend as walls_legend
 from eventsim.measure.records import FEWEST_CONTACTS, Records
 from eventsim.measure.series import series_of
 from eventsim.measure.speeds import speed_histograms
@@ -40,6 +42,7 @@ def measures_of(records: Records) -> Measures:
         series=series_of(records),
         profile=records.profile,
         by_name={quantity.name: quantity for quantity in quantities},
+        legend=(*species_legend(records), *walls_legend(records)),
     )
 
 

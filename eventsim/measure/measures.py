@@ -98,6 +98,7 @@ class Measures(NamesMeant):
         correlations: mean squared displacement and velocity autocorrelation.
         series: energy, temperature, pressure, collision rate along the run.
         profile: along an axis, where that was asked for.
+        legend: what names of quantities mean, sentences: the species, the sides of walls.
     """
 
     disks: int
@@ -116,6 +117,7 @@ class Measures(NamesMeant):
     series: TimeSeries
     profile: Profile | None
     by_name: dict[str, Measure] = field(repr=False)
+    legend: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"Measures({len(self.quantities)} quantities of {self.disks} disks over {self.duration:g} units of time)"
@@ -154,8 +156,8 @@ class Measures(NamesMeant):
         return tuple(self.by_name)
 
     def table(self) -> str:
-        """The quantities as aligned lines: measured, theory, difference, where the theory comes from, doubts."""
-        return table_text(self.quantities)
+        """The quantities as aligned lines: measured, theory, difference, where the theory comes from, doubts; the legend."""
+        return "\n".join([table_text(self.quantities), *(f"  {line}" for line in self.legend)])
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, for JSON."""

@@ -40,8 +40,11 @@ ON_A_LINE = 1e-18
 """Share of the squared energy that the determinant of the mean v v^T has for motion along one line: rounding, squared."""
 
 
-LINE = "the disks move along one line and do not mix"
+LINE = "the disks move along one direction only and do not mix"
 """Why they have no temperature then."""
+
+NEVER_MET = "the disks never met each other"
+"""The same of those that move so beside each other."""
 
 TOO_FEW = "too few to share the energy"
 """The same of contacts."""
@@ -243,11 +246,11 @@ class Records:
 
     @cached_property
     def on_a_line(self) -> str | None:
-        """A clause where all disks moved along one line, from the first to the last."""
+        """A clause where all disks moved along one direction, from the first to the last."""
         xx, xy, yy = (float(self.channel(k).sum()) for k in (sums.XX, sums.XY, sums.YY))
         trace = xx + yy
         if self.ensemble.n and trace > 0.0 and (xx / trace) * (yy / trace) - (xy / trace) ** 2 <= ON_A_LINE:
-            return LINE
+            return LINE if self.pairs else NEVER_MET
         return None
 
     @cached_property

@@ -49,10 +49,14 @@ def _shared_doubts(quantities: Sequence[Measure]) -> dict[str, int]:
 NONE_SEEN, EXACT = "none in this run", "(exact)"
 
 
+OF = {"collision_rate": "per disk", "wall_contact_rate": "of all disks"}
+"""Whose contacts a rate counts."""
+
+
 def _row(one: Measure, shared: dict[str, int]) -> tuple[str, str, str, str, str]:
     digits = _digits(one.value, one.error)
     theory = "" if one.theory is None else f"{one.theory:.{digits}g}"
-    words = "  ".join(text for text in (one.source, _remark(one, shared)) if text)
+    words = "  ".join(text for text in (OF.get(one.name), one.source, _remark(one, shared)) if text)
     return one.name, value_with_error(one), theory, _difference(one), words
 
 

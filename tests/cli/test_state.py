@@ -28,6 +28,12 @@ def test_a_decimal_comma_is_answered_with_the_point(eventsim, log_file):
     assert "A number has a decimal point, not a comma: 0.5" in " ".join(result.stderr.split())
 
 
+def test_a_comma_that_may_part_thousands_is_answered_with_both_numbers(eventsim, log_file):
+    told = " ".join(eventsim("state", log_file, "--at", "1,000").stderr.split())
+    assert "1.000, or 1000 if the comma separates thousands" in told
+    assert "between thousands: 1000" in " ".join(eventsim("run", "break", "--events", "1,000").stderr.split())
+
+
 def test_one_at_takes_several_times(eventsim, log_file):
     rows = rows_of(eventsim("state", log_file, "--at", 0.5, "1e0", 1.25).stdout)
     assert [(row["time"], row["disk"]) for row in rows] == [

@@ -215,9 +215,9 @@ def test_rows_far_apart_are_measured_as_those_close_by():
     ("name", "why"),
     [
         ("galperin", "open plane"),
-        ("newton-cradle", "one line"),
-        ("two-disks", "one line"),
-        ("corridor", "one line"),
+        ("newton-cradle", "one direction"),
+        ("two-disks", "one direction"),
+        ("corridor", "one direction"),
         ("bounce", "take energy"),
         ("corner", "with nobody"),
         ("obstacle", "obstacles"),
@@ -272,6 +272,40 @@ def test_measures_have_keys_and_a_table():
     assert len(repr(measures)) < 100
     with pytest.raises(KeyError, match="there are temperature"):
         measures["heat"]
+
+
+def two_lanes(other_y):
+    """Two disks that fly towards each other, on one line or beside each other."""
+    disks = es.Disks([[1.0, 0.5], [3.0, other_y]], [[1, 0], [-1, 0]], 0.1)
+    return es.simulate(es.Scene(disks, es.Box((4.0, 2.0))), until=40.0, engine="reference", measure=True).measures
+
+
+def test_disks_that_never_met_are_told_so_and_not_that_they_move_along_one_direction():
+    assert two_lanes(1.5)["temperature"].doubt == "the disks never met each other"
+    assert "along one direction" in two_lanes(0.5)["temperature"].doubt
+
+
+def test_the_table_tells_who_the_species_are_and_whose_contacts_a_rate_counts():
+    places, velocities = [[0.25, 0.25], [0.25, 0.75], [0.75, 0.5]], [[1, 0.3], [0.2, -1], [0.3, 0.5]]
+    disks = es.Disks(places, velocities, [0.05, 0.05, 0.1], [0.5, 0.5, 2.0])
+    measures = es.simulate(es.Scene(disks, es.Box((1.0, 1.0))), events=300, engine="reference", measure=True).measures
+    rows = measures.table().splitlines()
+    assert "  species 0: 2 disks, r 0.05, m 0.5" in rows
+    assert "  species 1: 1 disk, r 0.1, m 2" in rows
+    assert [row.split()[-2:] for row in rows if row.startswith("  collision_rate ")] == [["per", "disk"]]
+    assert [row.split()[-3:] for row in rows if row.startswith("  wall_contact_rate")] == [["of", "all", "disks"]]
+    assert "species" not in two_lanes(0.5).table()
+
+
+@pytest.mark.parametrize(("height", "told"), [(1.0, False), (0.5, True)])
+def test_the_table_tells_where_the_sides_of_a_wall_are_not_all_of_it(height, told):
+    disks = es.Disks([[0.25, 0.25], [0.25, 0.75], [0.75, 0.5]], [[1, 0.3], [0.2, -1], [0.3, 0.5]], 0.05)
+    scene = es.Scene(disks, es.Box((1.0, 1.0)), walls=[es.Segment((0.5, 0.0), (0.5, height), name="middle")])
+    measures = es.simulate(scene, events=2000, engine="reference", measure=True).measures
+    assert "  left and right of a wall: as seen from its start to its end" in measures.table().splitlines()
+    assert ("the ends of middle take a share" in measures.table()) == told
+    sides = measures["force_middle_left"].value + measures["force_middle_right"].value
+    assert (measures["force_middle"].value > 1.0001 * sides) == told
 
 
 # --- pages

@@ -125,7 +125,7 @@ class Readouts {
   _noTemperature(gas, { count, xx, xy, yy }, contacts) {
     if (gas.noTemperature) return gas.noTemperature;
     const trace = xx + yy;
-    if (trace > 0 && (xx / trace) * (yy / trace) - (xy / trace) ** 2 <= gas.onALine.share) return gas.onALine.why;
+    if (trace > 0 && (xx / trace) * (yy / trace) - (xy / trace) ** 2 <= gas.onALine.share) return contacts ? gas.onALine.why : gas.onALine.never;
     if (count < gas.few.disks && 2 * contacts < gas.few.contacts * count) return `${contacts} contacts between disks: ${gas.few.why}`;
     return null;
   }

@@ -11,6 +11,7 @@ from eventsim.measure.expected import MIXTURE, mixture_of
 from eventsim.measure.measures import Measure
 from eventsim.measure.quantities.speeds import expected_speed, with_drift
 from eventsim.measure.records import Records
+from eventsim.scene.names import plural
 
 
 def measures(records: Records) -> Iterator[Measure]:
@@ -45,6 +46,17 @@ def measures(records: Records) -> Iterator[Measure]:
             met = records.met(kind, other) / species.number
             name = f"collision_rate_{called}_{ensemble.called[other]}"
             yield average(records, name, met, records.time, "1 / time", _expected(expected.get(other, math.nan)))
+
+
+def legend(records: Records) -> Iterator[str]:
+    """Yield who each species is, where quantities are told of several."""
+    ensemble = records.ensemble
+    if ensemble.kinds < 2:
+        return
+    for called, one in zip(ensemble.called, ensemble.species, strict=False):
+        yield f"species {called}: {plural(one.number, 'disk')}, r {one.radius:.6g}, m {one.mass:.6g}"
+    one, other = ensemble.called[:2]
+    yield f"collision_rate_{one}_{other}: contacts of a disk of species {one} with disks of species {other}"
 
 
 def _expected(rate: float) -> Expected | None:
