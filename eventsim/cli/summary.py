@@ -10,6 +10,7 @@ import numpy as np
 
 from eventsim import __version__
 from eventsim.cli.words import aligned, scene_line, short, title
+from eventsim.record.events import State
 from eventsim.scene.names import plural
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
         ("engine", _engine(run)),
         ("time", f"{short(run.start_time)} to {short(run.time)}"),
         ("events", _events(run)),
-        ("energy", _energy(residuals.energy)),
+        ("energy", _energy(run)),
         ("momentum", _momentum(residuals.momentum)),
         *(() if residuals.angular_momentum is None else [("rotation", _rotation(residuals.angular_momentum))]),
         ("overlap", _overlap(residuals.max_overlap)),
@@ -155,10 +156,17 @@ def _engine(run: Outcome) -> str:
     return f"{name}: {_seconds(run.elapsed_s)} simulating{''.join(worth)}"
 
 
-def _energy(change: float | None) -> str:
-    if change is None:
+def _energy(run: Outcome) -> str:
+    change = run.residuals.energy
+    if change is not None:
+        return f"changed by {change:.1e} of itself" if change else "conserved to the last bit"
+    scene = run.scene
+    falls = scene.gravity is not None and any(g and p for g, p in zip(scene.gravity, scene.domain.periodic, strict=True))
+    if falls:  # over periods, which states do not count
         return "not conserved in this scene"
-    return f"changed by {change:.1e} of itself" if change else "conserved to the last bit"
+    start = State(run.start_time, scene.disks.position, scene.disks.velocity, scene, scene.disks.spin).energy
+    what = ", kinetic and potential" if scene.gravity is not None else ""
+    return f"not conserved in this scene: {short(start)} -> {short(run.state.energy)}{what}"
 
 
 def _momentum(left: float) -> str:

@@ -55,8 +55,8 @@ def legend(records: Records) -> Iterator[str]:
         return
     for called, one in zip(ensemble.called, ensemble.species, strict=False):
         yield f"species {called}: {plural(one.number, 'disk')}, r {one.radius:.6g}, m {one.mass:.6g}"
-    one, other = ensemble.called[:2]
-    yield f"collision_rate_{one}_{other}: contacts of a disk of species {one} with disks of species {other}"
+    first, second = ensemble.called[:2]
+    yield f"collision_rate_{first}_{second}: contacts of a disk of species {first} with disks of species {second}"
 
 
 def _expected(rate: float) -> Expected | None:
