@@ -38,16 +38,25 @@ POINTS = (
 
 def page(asked: str, name: str | None, needs: Needs, origins: Origins | None = None) -> str:
     """Return the whole page that `eventsim check` prints."""
-    return f"{title(asked, name)}: a valid scene\n{aligned(list(explanation(needs, origins)))}"
+    stop = "" if _stops(needs) else "; eventsim run needs --until T or --events N, as the scene has no stop"
+    return f"{title(asked, name)}: a valid scene{stop}\n{aligned(list(explanation(needs, origins)))}"
 
 
 def explanation(needs: Needs, origins: Origins | None = None) -> Iterator[tuple[str, str]]:
-    """Yield (topic, words), in the order in which a scene file is read; then the machinery.  origins: of a file."""
+    """Yield (topic, words): what may surprise, the scene in the order in which its file is read, the machinery.
+
+    origins: of a file.
+    """
+    if needs.near_ties:
+        yield "warning", _near_ties(needs.near_ties)
+    if origins is not None and origins.twins:
+        yield "seeds", "; ".join(map(_twins, origins.twins))
+    surprising = not needs.law.keeps_energy()
+    if surprising:
+        yield "contacts", _contacts(needs)
     yield "disks", _disks(needs)
     if origins is not None and len(origins.shares) > 1:
         yield "numbers", _numbers(origins)
-    if origins is not None and origins.twins:
-        yield "seeds", "; ".join(map(_twins, origins.twins))
     yield "motion", _motion(needs)
     yield "domain", _domain(needs)
     if needs.walls:
@@ -55,15 +64,14 @@ def explanation(needs: Needs, origins: Origins | None = None) -> Iterator[tuple[
     if needs.table is not None:
         yield "table", _table(needs.table)
     yield "flights", _flights(needs)
-    yield "contacts", _contacts(needs)
+    if not surprising:
+        yield "contacts", _contacts(needs)
     if needs.touching_pairs or needs.touching_notes:
         yield "start", _start(needs)
-    if needs.near_ties:
-        yield "warning", _near_ties(needs.near_ties)
+    yield "stop", _stop(needs)
     yield "search", _search(needs)
     yield "clock", _clock(needs)
     yield "engine", _engine(needs)
-    yield "stop", _stop(needs)
 
 
 def _disks(needs: Needs) -> str:
@@ -226,6 +234,10 @@ def _clock(needs: Needs) -> str:
 
 def _engine(needs: Needs) -> str:
     return f"{needs.engine} (what auto chooses here)"
+
+
+def _stops(needs: Needs) -> bool:
+    return needs.until is not None or needs.events is not None
 
 
 def _stop(needs: Needs) -> str:

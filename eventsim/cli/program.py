@@ -23,7 +23,7 @@ from eventsim.cli.output import (
     write_what_is_known,
 )
 from eventsim.cli.signals import terminable
-from eventsim.errors import EventsimError, LogWarning, SceneError, did_you_mean
+from eventsim.errors import EventsimError, LogWarning, SceneError
 
 VERBS = {
     "run": "Simulate a scene from event to event; print a summary, keep a log.",
@@ -95,8 +95,9 @@ class Program(click.Group):
             complete_files(verb)
             return verb
         if not cmd_name.startswith("-"):
-            near = did_you_mean(cmd_name, VERBS)
-            ctx.fail(f"there is no verb {cmd_name!r}{near}; eventsim --help lists them")
+            from eventsim.cli.guesses import verb_hint  # only who errs pays for it
+
+            ctx.fail(f"there is no verb {cmd_name!r}{verb_hint(cmd_name, tuple(VERBS))}")
         return None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -123,10 +124,19 @@ class Program(click.Group):
         except EventsimError as error:
             raise Failure(_message(error)) from error
         except click.BadParameter as error:
-            hint = _decimal_point(error.message)
+            from eventsim.cli.guesses import kind_hint  # only who errs pays for it
+
+            hint = _decimal_point(error.message) or kind_hint(error.message)
             if not hint:
                 raise
             raise click.BadParameter(error.message + hint, error.ctx, error.param, error.param_hint) from error
+        except click.NoSuchOption as error:
+            from eventsim.cli.guesses import option_hint  # only who errs pays for it
+
+            meant = option_hint(error.option_name, error.ctx)
+            if meant is None:
+                raise
+            raise click.UsageError(meant, error.ctx) from error
         except BrokenPipeError:
             # The reader had enough (| head): nothing may be written to the pipe any more, not even at exit.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

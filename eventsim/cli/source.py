@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -143,7 +144,7 @@ def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scen
     """Return a built-in scene: settings that name one of its parameters first, then keys of the scene."""
     from eventsim.scene.files import apply_overrides, scene_from_dict, scene_to_dict
     from eventsim.scene.gallery import describe, gallery
-    from eventsim.scene.schema import SCENE
+    from eventsim.scene.schema import SCENE_KEYS
 
     allowed = describe(name).parameters
     parameters = {}
@@ -161,7 +162,8 @@ def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scen
         return scene
     for setting in overrides:
         key = setting.partition("=")[0].strip()
-        near = did_you_mean(key.lower(), allowed)
-        if near and "." not in key and key not in SCENE.schema:
-            raise SceneError(f"{name}: {key}: unknown key{near}; its own are {', '.join(allowed)}")
+        if re.split(r"[.\[]", key)[0] not in SCENE_KEYS:
+            near = did_you_mean(key.lower(), allowed) or did_you_mean(key.lower(), SCENE_KEYS)
+            own = f"its own are {', '.join(allowed)}" if allowed else "it has none of its own"
+            raise SceneError(f"{name}: {key}: unknown key{near}; {own}; those of every scene are {', '.join(SCENE_KEYS)}")
     return scene_from_dict(apply_overrides(scene_to_dict(scene), overrides), source=name)
