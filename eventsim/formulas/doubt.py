@@ -31,6 +31,9 @@ AT_ONCE = 2.0**-48
 ROUNDED = 2.0**-52
 """What rounding may do to the speed across a slanted wall, as a part of the components that it is calculated from."""
 
+NO_SPEED = 8.0
+"""A speed across a wall, or along it, of no more than so many roundings of its terms is none."""
+
 FLOORS = 32.0
 """A series is cut so many times above the speed that rounding may keep up, which is ROUNDED / (1 - e): the errors of all the
 bounces before are then a few per cent of the last one."""

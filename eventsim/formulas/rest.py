@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from eventsim.formulas.crossing import crossing_delay
-from eventsim.formulas.doubt import AT_ONCE, FLOORS, LEAST_LOSS, ROUNDED, TOUCHING
+from eventsim.formulas.doubt import AT_ONCE, FLOORS, LEAST_LOSS, NO_SPEED, ROUNDED, TOUCHING
 from eventsim.formulas.real import NEVER, Real, is_float, sqrt
 from eventsim.formulas.slide import end_delay, slide_delay
 from eventsim.formulas.walls.face import Face, flight_side, hangs_below, is_met, slope
@@ -117,7 +117,7 @@ def rest_delay(
     gap, rate, fall: of its distance from contact, in terms of the wall's normal.  scale: the coordinates that the gap was
     calculated from.  t: the clock at the beginning of the flight.  since: the time from the contact with the wall until then,
     NOT_LAST if something else was met since.  rounds: whether rounding moves a disk that touches the wall.  blur: what it may
-    do to the rate, 0 where that is one component.
+    do to the rate, 0 where that is one component; what comes no faster does not come.
 
     It rests at its Zeno time where the next bounce is over at the same instant of the clock, or so slow that rounding may keep it
     up; earlier if until then it would fall through the wall by more than the last bits of its place (a share of the whole series
@@ -141,6 +141,8 @@ def rest_delay(
             return delay if delay > 0.0 else 0.0
         if not since < 0.0:
             return NEVER
+    if blur > 0.0 and abs(rate) <= NO_SPEED * blur:
+        return 0.0
     noise, bounce = (-8.0 * fall) * gap, rate * rate
     if bounce > noise and bounce > -noise:
         return NEVER

@@ -222,6 +222,20 @@ def test_random_pits_end_in_order_and_replay_to_the_same_bits(seed):
     assert rows.tobytes() == run.log.rows[: len(rows)].tobytes()
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("rise", [0.03 * 29 - 1.2, 0.03 * 35 - 1.2, 0.21])
+def test_an_elastic_disk_that_touches_a_slope_and_moves_along_it_slides_also_where_its_gap_is_rounded_to_nothing(engine, rise):
+    """Then no speed across the slope is that of a fall from the gap; but this one is the rounding of the velocity."""
+    length, radius = math.hypot(1.0, rise), 0.07
+    disk = es.Disks([(0.4 - radius * rise / length, 0.4 * rise + radius / length)], [(1.3 / length, 1.3 * rise / length)], radius)
+    slope = es.Segment((0.0, 0.0), (1.0, rise))
+    run = es.simulate(es.Scene(disk, es.Open(), [slope], gravity=(0.0, -1.0)), until=0.05, engine=engine, log=True)
+    assert kinds(run) == ["rest"]
+    assert run.log.time[0] == 0.0
+    speed = 1.3 - 0.05 * rise / length
+    assert run.state.velocity[0] == pytest.approx((speed / length, speed * rise / length), rel=1e-13)
+
+
 @pytest.mark.skipif(not has_compiler(), reason="needs numba")
 @pytest.mark.kernels
 def test_engines_agree_on_what_comes_to_rest():
