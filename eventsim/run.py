@@ -33,6 +33,8 @@ class EventLog(log.EventLog):
     `log[3]` is one event, `log[3:8]` are some, `log.to_pandas()` is a data frame.
     Places in columns (`log.xa`, and in files) count from `log.corner`, the domain's lower-left corner; in `log[3]` and in data
     frames they are on the scene's axes: `log[3].xa` is `log.xa[3] + log.corner[0]`, wrapped where the domain is periodic.
+    `log.impulse` is the magnitude of the whole momentum exchanged: where surfaces grip, or a wall heats, more than its normal
+    part, which makes the pressure (`force_` and `shear_` of `measure()`).
     path: the file that it was read from, None where it comes from a run.
 
     `log.measure()` measures it, `log.plot("speeds")` draws a figure, `log.animate("a.gif")` a movie.

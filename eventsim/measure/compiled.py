@@ -26,7 +26,7 @@ VERY_FEW_ROWS = 1 << 11
 class Kernels(NamedTuple):
     """`sums.take`, `sums.finish` and `sums.hold_all`."""
 
-    take: Callable[[sums.Block, int, sums.Plan, sums.Sums, Floats | None], int]
+    take: Callable[..., int]
     finish: Callable[[float, sums.Plan, sums.Sums], bool]
     hold_all: Callable[[sums.Plan, sums.Sums, float], float]
 
@@ -44,9 +44,14 @@ def _viewed(arrays: Any) -> Any:
     return type(arrays)(*(memoryview(cast(Any, item)) if isinstance(item, np.ndarray) else item for item in arrays))
 
 
+def _view(array: Floats | None) -> Any:
+    """The same of an array that may be missing."""
+    return None if array is None else memoryview(cast(Any, array))
+
+
 PLAIN = Kernels(
-    lambda block, first, plan, held, told: sums.take(
-        _viewed(block), first, plan, _viewed(held), None if told is None else memoryview(cast(Any, told))  # type: ignore[arg-type]
+    lambda block, first, plan, held, told=None, facing=None: sums.take(
+        _viewed(block), first, plan, _viewed(held), _view(told), _view(facing)
     ),
     lambda until, plan, held: sums.finish(until, plan, _viewed(held)),
     lambda plan, held, time: sums.hold_all(plan, _viewed(held), time),
@@ -62,6 +67,7 @@ def _compiled() -> Kernels:
     for part in (
         sums.first_pair,
         sums.first_wall,
+        sums.first_shear,
         sums.first_speed,
         sums.reach,
         sums.turn,
@@ -72,6 +78,7 @@ def _compiled() -> Kernels:
         sums.leave,
         sums.fly,
         sums.meet,
+        sums.normal_part,
         sums.spin,
     ):
         register_jitable(**ALONE, forceinline=True)(part)

@@ -23,6 +23,7 @@ from eventsim.measure.gathered import measures_of
 from eventsim.measure.groups import Groups
 from eventsim.measure.measures import Measures
 from eventsim.measure.profile import Profiler
+from eventsim.measure.pull import Pull
 from eventsim.measure.records import Records
 from eventsim.measure.speeds import FASTEST
 from eventsim.measure.walls import described_walls
@@ -102,7 +103,10 @@ class Meter:
             self._correlated = np.searchsorted(movers, watched)
             watched = movers
         walls = len(stage.wall_names) if len(stage.wall_names) <= MOST_WALLS else 0
-        self._plan = sums.Plan(len(ensemble.species), walls, *(length or 0.0 for length in stage.period))
+        self._pull = Pull(scene, stage)
+        shears = walls if self._pull.walls.any() else 0
+        along_x, along_y = stage.period
+        self._plan = sums.Plan(len(ensemble.species), walls, along_x or 0.0, along_y or 0.0, shears)
         self._sums = _sums(scene, stage, ensemble, self._plan, watched)
         self._sums.numbers[sums.ORIGIN] = self.discard or 0.0
         self._groups = Groups(ensemble.counted)
@@ -181,8 +185,8 @@ class Meter:
         self._make_room(self._time)
         block = sums.Block(time, *(rows[name] for name in sums.Block._fields[1:]))
         told = np.stack([rows[name] for name in SPINS], axis=1) if has_spins(rows) else None
-        done = 0
-        while (done := kernel.take(block, done, self._plan, self._sums, told)) < len(rows):
+        done, facing = 0, self._pull.directions(rows)
+        while (done := kernel.take(block, done, self._plan, self._sums, told, facing)) < len(rows):
             self._drain(coarsen=True)
         self._drain()
 

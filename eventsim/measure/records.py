@@ -145,8 +145,12 @@ class Records:
         return sum((self.met(kind, other) for other in self.ensemble.partners), np.zeros_like(self.time))
 
     def wall(self, place: int, side: int) -> Floats:
-        """Impulse given to one side of a wall."""
+        """Momentum across a wall that is given to one side of it."""
         return self.channel(sums.first_wall(self.plan) + sums.SIDES * place + side)
+
+    def shear(self, place: int, side: int) -> Floats:
+        """Momentum along a wall, in its direction, that is given to one side of it."""
+        return self.channel(sums.first_shear(self.plan) + sums.SIDES * place + side)
 
     def turning_at(self, time: Floats) -> Floats:
         """Energy of the common rotation in a round container, L^2 / 2 I, at times since the start, (K,)."""

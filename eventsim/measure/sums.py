@@ -27,9 +27,9 @@ PAIR, WALL, REST, KICK = 0, 1, 2, 3
 MOST_BINS = 2048
 VIRIAL, PAIRS, WALL_VIRIAL, ROTATION, SAMPLES, ENERGY, XX, XY, YY, TURNING = range(10)
 GENERAL = 10
-"""Channels of a bin.  Sums of reach x impulse, and number of contacts, between disks that carry energy; sum of lever x impulse at
-walls; energy of the common rotation, summed over samples, and the number of these; of disks that carry energy, the integrals over
-time of the energy, and of m v_x^2, m v_x v_y, m v_y^2; and that of the energy of their spins."""
+"""Channels of a bin.  Sums of reach x impulse along the normal, and number of contacts, between disks that carry energy; sum of
+lever x impulse across walls at these; energy of the common rotation, summed over samples, and the number of these; of disks that
+carry energy, the integrals over time of the energy, and of m v_x^2, m v_x v_y, m v_y^2; and that of the energy of their spins."""
 
 PATH, SPEED2, HITS = 0, 1, 2
 PER_SPECIES = 3
@@ -99,12 +99,16 @@ class Block(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """Where things go: numbers of species and of walls with channels of their own; periods, 0 where there is none."""
+    """Where things go: numbers of species and of walls with channels of their own; periods, 0 where there is none.
+
+    shears: as many as walls where some of these pull along themselves, else 0.
+    """
 
     kinds: int
     walls: int
     period_x: float
     period_y: float
+    shears: int = 0
 
 
 class Sums(NamedTuple):
@@ -141,13 +145,18 @@ def first_pair(plan: Plan) -> int:
 
 
 def first_wall(plan: Plan) -> int:
-    """Channels from here on: impulse given to each side of each wall."""
+    """Channels from here on: momentum across the wall that is given to each side of each wall."""
     return first_pair(plan) + plan.kinds * plan.kinds
+
+
+def first_shear(plan: Plan) -> int:
+    """Channels from here on: momentum along the wall that is given to each side of each wall."""
+    return first_wall(plan) + SIDES * plan.walls
 
 
 def first_speed(plan: Plan) -> int:
     """Channels from here on: time at speeds, species by species."""
-    return first_wall(plan) + SIDES * plan.walls
+    return first_shear(plan) + SIDES * plan.shears
 
 
 def merge(sums: Sums) -> None:
@@ -452,8 +461,17 @@ def spin(sums: Sums, i: int, time: float, spun: float) -> None:
     numbers[SPUN] += change
 
 
+def normal_part(sums: Sums, a: int, impulse: float, spun: float) -> float:
+    """The part along the normal of the momentum that rough disks exchange; the other part turns disk a, to the rate `spun`."""
+    spins, radius = sums.spins, sums.disks[a, RADIUS]
+    if not radius > 0.0:
+        return impulse
+    along = spins[a, 1] * (spun - spins[a, 0]) / radius
+    return math.sqrt(max(impulse * impulse - along * along, 0.0))
+
+
 def meet(plan: Plan, sums: Sums, a: int, b: int, time: float, impulse: float) -> None:
-    """Count a contact of two disks."""
+    """Count a contact of two disks; impulse: the momentum that they exchange along the normal."""
     disks, bins, numbers, counts = sums.disks, sums.bins, sums.numbers, sums.counts
     counted, place = time >= numbers[ORIGIN], counts[PLACE]
     if counted:
@@ -473,24 +491,29 @@ def meet(plan: Plan, sums: Sums, a: int, b: int, time: float, impulse: float) ->
             mark(sums, time)
 
 
-def strike(plan: Plan, sums: Sums, a: int, wall: int, side: int, impulse: float) -> None:
-    """Add the impulse that a disk gives to a wall."""
+def strike(plan: Plan, sums: Sums, a: int, wall: int, side: int, impulse: float, along: float) -> None:
+    """Add the momentum across a wall that a disk gives to it, and the one along it."""
     disks, bins, place = sums.disks, sums.bins, sums.counts[PLACE]
     if disks[a, MASS] > 0.0 and impulse > 0.0:
         lever = sums.walls[wall, LEVER] - sums.walls[wall, INSET] * disks[a, RADIUS]
         bins[place, WALL_VIRIAL] += lever * impulse
         if plan.walls > 0:
             bins[place, first_wall(plan) + SIDES * wall + side] += impulse
+            if plan.shears > 0:
+                bins[place, first_shear(plan) + SIDES * wall + side] += along
 
 
 def expect(disks: Floats, i: int) -> None:
     """Disk i is needed soon: machine code fetches it, plain Python does nothing."""
 
 
-def take(block: Block, first: int, plan: Plan, sums: Sums, told: Floats | None = None) -> int:
+def take(
+    block: Block, first: int, plan: Plan, sums: Sums, told: Floats | None = None, facing: Floats | None = None
+) -> int:
     """Take up rows from `first` on; return the number of the next row: all are taken, or the buffer of samples is full.
 
-    told: (R, 2) the spins of their disks; None where these have none.
+    told: (R, 2) the spins of their disks; None where these have none.  facing: (R, 2) the unit vector along the wall where it may
+    pull along itself, 0 in rows whose impulse is all across it; None where no wall pulls.
     """
     disks, numbers = sums.disks, sums.numbers
     for row in range(first, len(block.time)):
@@ -504,22 +527,30 @@ def take(block: Block, first: int, plan: Plan, sums: Sums, told: Floats | None =
         numbers[ACTION] += numbers[HEAT] * (time - numbers[SEEN])
         numbers[SEEN] = time
         kind, a, b, wall = int(block.kind[row]), int(block.a[row]), int(block.b[row]), int(block.wall[row])
-        vx, vy = block.vxa[row], block.vya[row]
+        vx, vy, impulse, along = block.vxa[row], block.vya[row], block.impulse[row], 0.0
+        if facing is not None and kind == WALL and (facing[row, 0] != 0.0 or facing[row, 1] != 0.0):
+            lag = time - disks[a, TIME]
+            dx = disks[a, MASS] * (vx - (disks[a, VX] + lag * disks[a, GX]))
+            dy = disks[a, MASS] * (vy - (disks[a, VY] + lag * disks[a, GY]))
+            impulse = abs(facing[row, 0] * dy - facing[row, 1] * dx)
+            along = -(facing[row, 0] * dx + facing[row, 1] * dy)
         change = leave(plan, sums, a, time, vx, vy)
         if b >= 0:
             change += leave(plan, sums, b, time, block.vxb[row], block.vyb[row])
         numbers[HEAT] += change
         if told is not None:
+            if kind == PAIR and disks[a, MASS] > 0.0 and disks[b, MASS] > 0.0:
+                impulse = normal_part(sums, a, impulse, told[row, 0])
             spin(sums, a, time, told[row, 0])
             if b >= 0:
                 spin(sums, b, time, told[row, 1])
         if kind == PAIR:
-            meet(plan, sums, a, b, time, block.impulse[row])
+            meet(plan, sums, a, b, time, impulse)
         elif kind != KICK:
-            numbers[FORCE] += sums.walls[wall, INSET] * disks[a, RADIUS] * block.impulse[row]
+            numbers[FORCE] += sums.walls[wall, INSET] * disks[a, RADIUS] * impulse
             if time >= numbers[ORIGIN]:
                 side = side_of(plan, sums, wall, disks[a, RADIUS], block.xa[row], block.ya[row], vx, vy)
-                strike(plan, sums, a, wall, side, block.impulse[row])
+                strike(plan, sums, a, wall, side, impulse, along)
                 # a disk without energy gives no impulse; a disk that reaches the end of its wall meets nothing
                 if kind == WALL and (block.impulse[row] > 0.0 or not disks[a, MASS] > 0.0):
                     sums.bins[sums.counts[PLACE], GENERAL + PER_SPECIES * int(disks[a, SPECIES]) + HITS] += 1.0

@@ -23,6 +23,8 @@ def collision_rate(stage: Stage, rows: Rows, duration: float) -> float:
 def virial_pressure(stage: Stage, rows: Rows, energy: float, duration: float) -> float:
     """Z = 1 + sum of reach times impulse over the pair contacts / (2 E t), E the kinetic energy at the start (= N kT in 2D).
 
+    Of smooth disks, whose impulses are along the normal; stepped engines know no others.
+
     Source: J. J. Erpenbeck, W. W. Wood, in Modern Theoretical Chemistry 6B (1977); nan without energy.
     """
     pairs = rows[rows["kind"] == Kind.PAIR]

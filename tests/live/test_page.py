@@ -144,6 +144,24 @@ def test_read_outs_are_what_measure_says(page, tmp_path, name):
     assert "V is all of the box" in page.js("return live.readouts.values.get('p V / N kT').title")
 
 
+def test_the_pressure_at_sides_that_grip_is_of_the_momentum_across_them(page, tmp_path):
+    page.open("count=40&speed=100&packing=0.2&roughness=0.8&seed=3")
+    moment = 0.9 * page.js("return live.player.duration")
+    taken = page.js("return live.player.tally.impulse(live.player.world.eventsUntil(arguments[0]))", moment)
+    log = es.load_log(page.fetch("log-file", tmp_path / "log.csv"))
+    velocity, mass, across, whole = log.scene.disks.velocity.copy(), log.scene.disks.mass, 0.0, 0.0
+    for event in log:
+        if event.kind == "wall" and event.time <= moment:
+            axis = 0 if event.wall in {"left", "right"} else 1
+            across += mass[event.a] * abs((event.vxa, event.vya)[axis] - velocity[event.a, axis])
+            whole += event.impulse
+        velocity[event.a] = event.vxa, event.vya
+        if event.kind == "pair":
+            velocity[event.b] = event.vxb, event.vyb
+    assert taken == pytest.approx(across, rel=1e-9)
+    assert across < 0.99 * whole
+
+
 @pytest.mark.parametrize(
     ("scene", "why"),
     [("gallery=two-disks", "along one line"), ("count=2&speed=100&packing=0.05&seed=3", "too few to share the energy")],

@@ -58,13 +58,23 @@ class Tally {
     this.met = new Column();
   }
 
-  append(rows) {
+  /* rows: those that the world took up last. */
+  append(rows, world) {
     const heavy = (i) => this.mass[i] > 0 && this.mass[i] < Infinity;
     for (let k = 0; k < rows.a.length; k++) {
       const count = this.taken.length;
-      this.taken.push(this.impulse(count) + (rows.kind[k] === 1 && rows.wall[k] < this.borders ? rows.impulse[k] : 0));
+      this.taken.push(this.impulse(count) + (rows.kind[k] === 1 && rows.wall[k] < this.borders ? this._across(rows, k, world, count) : 0));
       this.met.push(this.contacts(count) + (rows.kind[k] === 0 && heavy(rows.a[k]) && heavy(rows.b[k]) ? 1 : 0));
     }
+  }
+
+  /* The momentum across a side of the domain in a row: all that is exchanged, but where walls grip. */
+  _across(rows, k, world, event) {
+    if (!rows.spin_a) return rows.impulse[k];
+    const disk = rows.a[k], anchor = world.event.anchor.values[event], before = world.before(disk, anchor);
+    const upright = this.borders === 4 && rows.wall[k] < 2; // left and right
+    const change = upright ? rows.vxa[k] - before[0] : rows.vya[k] - before[1];
+    return this.mass[disk] < Infinity && change ? this.mass[disk] * Math.abs(change) : rows.impulse[k];
   }
 
   cut(count) { for (const column of [this.taken, this.met]) column.length = Math.min(column.length, count); }

@@ -46,7 +46,10 @@ FAMILIES = (
     Family(
         "collision_rate (contacts of a disk with others per time), wall_contact_rate (of all disks)", rates.measures
     ),
-    Family("force_WALL (impacts, and the weight of disks at rest), force_WALL_SIDE, pressure_WALL", walls.measures),
+    Family(
+        "force_WALL (across it: impacts, and the weight of disks at rest), force_WALL_SIDE, pressure_WALL, shear_WALL (along it)",
+        walls.measures,
+    ),
     Family("mean_free_time, mean_free_path; of tracers beside a gas: tracer_...", paths.measures),
     Family("mean_speed", speeds.measures),
     Family(

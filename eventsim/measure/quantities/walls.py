@@ -1,4 +1,4 @@
-"""Walls: the mean force on each, and the pressure on each of its sides."""
+"""Walls: the mean force across each, the pressure on each of its sides, and the force along those that pull."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from eventsim.measure.entries import Expected, average
 from eventsim.measure.expected import CLOSED, two_in_a_box
 from eventsim.measure.measures import Measure
+from eventsim.measure.pull import Pull
 from eventsim.measure.records import Records
 from eventsim.measure.sums import END, SIDES
 from eventsim.measure.walls import sides_of
@@ -19,18 +20,22 @@ MOST_NAMES = 3
 """Of walls in one sentence."""
 
 FORCE, PRESSURE = "mass length / time^2", "energy / length^2"
+ALONG = "of the disks on the wall, along it: + is towards +x, +y, from start to end, counter-clockwise"
 
 
 def measures(records: Records) -> Iterator[Measure]:
-    """Yield momentum per time of each wall (and the weight of disks at rest on it); per length and side where there is a gas."""
+    """Yield momentum across each wall per time (and the weight of disks at rest on it); per length and side where there is a gas.
+
+    Of walls that grip or heat also the momentum along them that disks give them.
+    """
     ensemble = records.ensemble
     if not ensemble.n or not records.plan.walls:
         return
     closed = two_in_a_box(records)
     pressed = records.no_temperature is None and ensemble.n > 1
-    for place, (name, (length, sides)) in enumerate(
-        zip(records.wall_names, sides_of(ensemble.scene, stage_of(ensemble.scene)), strict=True)
-    ):
+    stage = stage_of(ensemble.scene)
+    pulls = Pull(ensemble.scene, stage).walls
+    for place, (name, (length, sides)) in enumerate(zip(records.wall_names, sides_of(ensemble.scene, stage), strict=True)):
         impulse = [records.wall(place, side) for side in range(SIDES)]
         theory = Expected(closed[f"force_{name}"], 0.0, CLOSED) if f"force_{name}" in closed else None
         yield average(records, f"force_{name}", sum(impulse, np.zeros_like(records.time)), records.time, FORCE, theory)
@@ -39,6 +44,11 @@ def measures(records: Records) -> Iterator[Measure]:
         if both:
             for side in hit:
                 yield average(records, f"force_{name}_{sides[side]}", impulse[side], records.time, FORCE)
+        if pulls[place]:
+            given = [records.shear(place, side) for side in range(SIDES)]
+            yield average(records, f"shear_{name}", sum(given, np.zeros_like(records.time)), records.time, FORCE, note=ALONG)
+            for side in hit if both else ():
+                yield average(records, f"shear_{name}_{sides[side]}", given[side], records.time, FORCE, note=ALONG)
         if pressed and length > 0.0:
             for side in hit or [0]:
                 called = f"pressure_{name}_{sides[side]}" if both else f"pressure_{name}"

@@ -140,7 +140,7 @@ class World {
     for (let event = first; event <= last; event++) {
       if (kind.values[event] === WALL) walls.add(this.wallNames[wall.values[event]] || "a wall");
       [a.values[event], b.values[event]].filter((disk) => disk >= 0).forEach((disk, k) => {
-        const after = anchor.values[event] + k, at = this.anchor, before = sides.has(disk) ? sides.get(disk).before : this._before(disk, after);
+        const after = anchor.values[event] + k, at = this.anchor, before = sides.has(disk) ? sides.get(disk).before : this.before(disk, after);
         sides.set(disk, { disk, x: at.x.values[after], y: at.y.values[after], before, after: [at.vx.values[after], at.vy.values[after]] });
       });
     }
@@ -148,7 +148,7 @@ class World {
   }
 
   /* The velocity with which a disk came to an anchor. */
-  _before(disk, k) {
+  before(disk, k) {
     const list = this.anchorsOf[disk], { epoch, remainder } = this.anchor, from = list[firstOf(list.length, (place) => list[place] >= k) - 1];
     const lag = (epoch.values[k] - epoch.values[from]) * this.epochLength + (remainder.values[k] - remainder.values[from]);
     return [this._velocity("x", from, lag), this._velocity("y", from, lag)];
