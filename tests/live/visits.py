@@ -3,7 +3,8 @@
     python -m tests.live.visits [--minutes M] [--seed S]
 
 Each visit opens a world of its own, with disks, forces and sometimes an engine beside it, watches, throws a disk and leaves.  The
-first WARM visits let the server import and compile what it needs; what it holds then it may hold in the end, and `MORE` MB.
+first WARM visits let the server import and compile what it needs, and its threads take their share of memory; what it holds then
+it may hold in the end, and `MORE` MB.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import aiohttp
 
 from tests.live.running import Client, live_server, menu
 
-WARM = 40
+WARM = 200
 MORE = 30
 
 
