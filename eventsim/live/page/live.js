@@ -32,7 +32,7 @@ class LivePlayer extends Player {
   take(track, rows, horizon, ended) {
     if (track === 0) {
       this.world.append(rows);
-      this.tally.append(rows, this.world);
+      this.tally.append(rows);
       this.ended = ended;
     } else {
       this.comparison.other.append(rows);

@@ -49,39 +49,49 @@ function hasHeight(world) {
 }
 
 class Tally {
-  /* The momentum that the boundary has taken up until each event, and the contacts between disks of finite positive mass.
-     borders: the first walls are those of the domain. */
-  constructor(borders, mass) {
+  /* Until each event, of disks of finite positive mass: the momentum that the boundary has taken up, the contacts between them, and
+     the kinetic energy that events gave them.  borders: the first walls are those of the domain. */
+  constructor(borders, world) {
     this.borders = borders;
-    this.mass = mass;
+    this.world = world;
     this.taken = new Column();
     this.met = new Column();
+    this.given = new Column();
   }
 
-  /* rows: those that the world took up last. */
-  append(rows, world) {
-    const heavy = (i) => this.mass[i] > 0 && this.mass[i] < Infinity;
+  /* Take up rows that the world has taken up. */
+  append(rows) {
+    const { mass } = this.world.disks, heavy = (i) => i >= 0 && mass[i] > 0 && mass[i] < Infinity;
     for (let k = 0; k < rows.a.length; k++) {
-      const count = this.taken.length;
-      this.taken.push(this.impulse(count) + (rows.kind[k] === 1 && rows.wall[k] < this.borders ? this._across(rows, k, world, count) : 0));
+      const count = this.taken.length, gain = (i, side) => (heavy(i) ? this._gain(i, count, side) : 0);
+      this.taken.push(this.impulse(count) + (rows.kind[k] === 1 && rows.wall[k] < this.borders ? this._across(rows, k, count) : 0));
       this.met.push(this.contacts(count) + (rows.kind[k] === 0 && heavy(rows.a[k]) && heavy(rows.b[k]) ? 1 : 0));
+      this.given.push(this.energy(count) + gain(rows.a[k], 0) + gain(rows.b[k], 1));
     }
   }
 
   /* The momentum across a side of the domain in a row: all that is exchanged, but where walls grip. */
-  _across(rows, k, world, event) {
+  _across(rows, k, event) {
     if (!rows.spin_a) return rows.impulse[k];
-    const disk = rows.a[k], anchor = world.event.anchor.values[event], before = world.before(disk, anchor);
+    const disk = rows.a[k], { mass } = this.world.disks, { before, after } = this.world.change(disk, event, 0);
     const upright = this.borders === 4 && rows.wall[k] < 2; // left and right
-    const change = upright ? rows.vxa[k] - before[0] : rows.vya[k] - before[1];
-    return this.mass[disk] < Infinity && change ? this.mass[disk] * Math.abs(change) : rows.impulse[k];
+    const change = upright ? after[0] - before[0] : after[1] - before[1];
+    return mass[disk] < Infinity && change ? mass[disk] * Math.abs(change) : rows.impulse[k];
   }
 
-  cut(count) { for (const column of [this.taken, this.met]) column.length = Math.min(column.length, count); }
+  cut(count) { for (const column of [this.taken, this.met, this.given]) column.length = Math.min(column.length, count); }
 
   impulse(count) { return count ? this.taken.values[count - 1] : 0; }
 
   contacts(count) { return count ? this.met.values[count - 1] : 0; }
+
+  energy(count) { return count ? this.given.values[count - 1] : 0; }
+
+  /* The kinetic energy that an event gave to one of its disks. */
+  _gain(i, event, side) {
+    const gain = this.world.change(i, event, side);
+    return 0.5 * this.world.disks.mass[i] * (gain.after[0] ** 2 + gain.after[1] ** 2 - gain.before[0] ** 2 - gain.before[1] ** 2);
+  }
 }
 
 const WHOLE_AREA = "V is all of the box; Z of eventsim measure counts where centres can be, and is smaller by about 2 r / L";
@@ -94,6 +104,7 @@ class Readouts {
     for (const name of ["events / s", "energy", "momentum", "temperature", "pressure", "p V / N kT"]) {
       const term = document.createElement("dt"), value = document.createElement("dd");
       term.textContent = name;
+      if (name === "p V / N kT") term.title = WHOLE_AREA;
       this.values.set(name, value);
       if (name === "energy") this.energyTerm = term;
       list.append(term, value);
@@ -128,6 +139,8 @@ class Readouts {
     this.values.get("p V / N kT").title = noPressure || WHOLE_AREA;
     this.energy = found.energy;
     this.temperature = known ? temperature : null;
+    // So much of what an event gives the curves rise by, and between events they are flat; null where they are not.
+    this.steps = { energy: hasHeight(world) || !world.gravity ? 1 : null, temperature: world.gravity ? null : 2 / gas.freedoms };
     this._drawSpeeds(world, state, temperature || (found.count ? found.kinetic / found.count : 0), gas.maxwell, view.dark ? stage.palettes.dark : stage.palettes.light);
   }
 

@@ -147,6 +147,12 @@ class World {
     return { events: [first, last], time: times.values[last], walls: [...walls], sides: [...sides.values()] };
   }
 
+  /* The velocities of a disk before and after an event in which it is the first (side 0) or the second (1). */
+  change(disk, event, side) {
+    const after = this.event.anchor.values[event] + side, { vx, vy } = this.anchor;
+    return { before: this.before(disk, after), after: [vx.values[after], vy.values[after]] };
+  }
+
   /* The velocity with which a disk came to an anchor. */
   before(disk, k) {
     const list = this.anchorsOf[disk], { epoch, remainder } = this.anchor, from = list[firstOf(list.length, (place) => list[place] >= k) - 1];
