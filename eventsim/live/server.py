@@ -61,6 +61,8 @@ PAGE = {"/": ("live/page", "live.html", "text/html")} | {
 }
 """What is served under which name: folder, file and type."""
 
+NOT_HERE = "404: nothing is here: open the whole address that eventsim live has printed, with all that follows the port"
+
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src 'self'; "
     "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
@@ -194,7 +196,12 @@ async def refuse_foreigners(request: web.Request, handler: Handler) -> web.Strea
         raise web.HTTPForbidden(
             text="this server is for its own page on this machine; a page from elsewhere is refused"
         )
-    return await handler(request)
+    try:
+        return await handler(request)
+    except web.HTTPNotFound as missing:
+        if missing.text != web.HTTPNotFound().text:  # why is told already
+            raise
+        raise web.HTTPNotFound(text=NOT_HERE) from None
 
 
 async def serve(given: Scene | None, port: int, ready: Callable[[str], None], host: str = HOST) -> None:

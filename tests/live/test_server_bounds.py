@@ -210,6 +210,7 @@ def test_the_address_has_a_token_and_ctrl_c_ends_the_server_whatever_it_computes
             for path in ("/", "/socket", "/live.js"):
                 async with session.get(host + path) as answer:
                     assert answer.status == 404
+                    assert "open the whole address that eventsim live has printed" in await answer.text()
             socket = await session.ws_connect(address + "socket")
             await socket.send_str(json.dumps({"type": "open", "rate": None, "scene": "text", "text": text}))
             await asyncio.sleep(0.5)
