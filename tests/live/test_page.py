@@ -102,9 +102,12 @@ def test_the_window_is_the_world(page):
 
 def test_a_built_in_scene_with_its_parameters(page, tmp_path):
     page.open()
+    edition = page.js("return live.edition")
     page.js(
         "live.menu.field('scene').value = 'periodic-fluid'; live.menu.field('scene').dispatchEvent(new Event('change'))"
     )
+    page.wait(f"live.edition > {edition} && live.link.pending === 0 && live.player.duration > 0")  # it is shown at once
+    assert "gallery=periodic-fluid" in page.driver.current_url
     page.fill(**{"parameter.n": 64, "parameter.packing_fraction": 0.3})
     assert page.js("return live.player.world.count") == 64
     assert "gallery=periodic-fluid" in page.driver.current_url

@@ -1,7 +1,10 @@
 """What a teacher needs of the page, in a real browser: real time, undo, keys, read-outs in view, colours, links that are gone."""
 
+import numpy as np
 import pytest
 
+import eventsim as es
+from eventsim.replay.replay import Replay
 from tests.live.driven import SIZES, Page
 from tests.show.browser import said
 
@@ -17,6 +20,10 @@ def page(request, chromium, address):
     yield Page(chromium, address)
     chromium.set_window_size(1280, 800)
     assert said(chromium) == []
+
+
+RIGHT = "\ue014"
+"""The right arrow, as WebDriver calls it."""
 
 
 def key_on_page(page, name):
@@ -159,3 +166,134 @@ def test_on_a_phone_the_picture_and_its_buttons_fit_the_width(page, size):
     box = page.js("const b = live.part('canvas').getBoundingClientRect(); return [b.width, b.height, innerHeight]")
     assert box[0] > 0.8 * min(size[0], width[1]) * 0.9
     assert box[1] > 0.4 * box[2]
+
+
+def press_key(page, key):
+    """Press a real key, wherever the keyboard is."""
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    ActionChains(page.driver).send_keys(key).perform()
+
+
+@pytest.mark.parametrize("part", ["init", "reset", "fold", "forward", "play"])
+def test_the_space_bar_plays_and_pauses_whatever_button_was_pressed(page, part):
+    page.open("count=5&speed=100&packing=0.05&seed=3")
+    page.press(part)
+    page.wait("live.link.pending === 0 && live.player.duration > 0")
+    if part == "play":
+        press_key(page, " ")  # it was pressed by hand
+        assert page.js("return !live.player.playing")
+    edition = page.js("return live.edition")
+    press_key(page, " ")
+    assert page.js("return live.player.playing")
+    press_key(page, " ")
+    assert page.js("return !live.player.playing")
+    assert page.js("return live.edition") == edition
+    count = page.js("return live.player.world.eventsUntil(live.player.view.time)")
+    press_key(page, RIGHT)
+    page.wait(f"live.player.world.eventsUntil(live.player.view.time) > {count}")
+
+
+def test_a_space_in_a_field_is_a_space(page):
+    page.open("count=5&speed=100&packing=0.05&seed=3")
+    page.js("live.menu.field('count').focus()")
+    press_key(page, " ")
+    assert page.js("return !live.player.playing")
+
+
+def test_a_scene_that_is_chosen_is_shown_at_once_and_other_changes_are_marked(page):
+    from selenium.webdriver.support.select import Select
+
+    page.open("count=5&speed=100&packing=0.05&seed=3")
+    edition = page.js("return live.edition")
+    Select(page.driver.find_element("name", "scene")).select_by_value("galperin")
+    page.wait(f"live.edition > {edition} && live.player.duration > 0")
+    assert page.js("return live.player.world.count") == 2
+    changed = "return live.menu.form.classList.contains('changed')"
+    assert not page.js(changed)
+    page.driver.find_element("name", "parameter.mass_ratio").send_keys("0")
+    assert page.js(changed)
+    page.press("init")
+    assert not page.js(changed)
+
+
+@pytest.mark.parametrize("played", [False, True])
+def test_energy_steps_at_contacts_and_is_level_between_them(page, tmp_path, played):
+    page.open("count=6&speed=300&packing=0.2&seed=3&restitution=0.7&gravity=200")
+    page.wait("live.player.duration > 1.5")
+    if played:
+        page.press("play")
+        page.wait("live.player.view.time > 1.0")
+        page.press("play")
+    else:
+        for _ in range(8):
+            press_key(page, RIGHT)
+    curve = page.js(
+        "const { series, player, readouts } = live, { world, tally } = player;"
+        "return series.curve('energy', world, tally, readouts.steps.energy, 1e6)"
+    )
+    shown = page.time
+    log = es.load_log(page.fetch("log-file", tmp_path / "log.csv"))
+    assert len(set(log.time[log.time <= shown])) >= 8
+    scale = curve[0][1]
+    for (t, e), (later, other) in zip(curve, curve[1:], strict=False):  # no slant: it is level, or goes down at a contact
+        assert later == t or abs(other - e) <= 1e-9 * scale
+    down = np.array([t for (t, e), (later, other) in zip(curve, curve[1:], strict=False) if abs(other - e) > 1e-6 * scale and later == t])
+    assert len(down) >= 5
+    assert np.abs(down[:, None] - log.time[None, :]).min(axis=1).max() < 1e-9
+    replay = Replay(log)
+    for moment in np.linspace(0.0, shown, 40):
+        state = replay.state_at(moment)
+        energy = float((log.scene.disks.mass * (0.5 * (state.velocity**2).sum(axis=1) + 200.0 * state.position[:, 1])).sum())
+        told = [e for t, e in curve if t <= moment][-1]
+        assert told == pytest.approx(energy, abs=1e-6 * scale)
+
+
+def test_all_of_the_colours_of_a_few_disks_are_told(page):
+    page.open("count=6&masses=equal")
+    page.driver.set_window_size(1366, 768)
+    for colour in ("index", "species", "speed", "contacts"):
+        page.js("const c = live.part('colour'); c.value = arguments[0]; c.dispatchEvent(new Event('change'))", colour)
+        key = page.js(
+            "const k = live.part('key'); return [k.scrollWidth, k.clientWidth, Math.min(...[...k.children].map((i) => i.offsetWidth)), k.title]"
+        )
+        assert key[0] <= key[1], colour
+        assert key[2] >= 11
+        assert key[3]
+    left, width = page.js("const r = document.querySelector('.controls').getBoundingClientRect(); return [r.right, innerWidth]")
+    assert left <= width
+
+
+def test_a_throw_tells_its_speed_while_the_disk_is_dragged(page):
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    page.open("count=5&packing=0.05&speed=100&seed=3")
+    page.js("live.player.seek(0.5)")
+    x, y = page.js(
+        "const d = live.player.drawing, b = d.canvas.getBoundingClientRect(), s = live.player.world.state(0.5);"
+        "return [d._x(s.x[2]) / d.ratio + b.left, d._y(s.y[2]) / d.ratio + b.top]"
+    )
+    hand = ActionChains(page.driver)
+    pointer = hand.w3c_actions.pointer_action
+    pointer.move_to_location(int(x), int(y)).pointer_down()
+    pointer.move_to_location(int(x) + 15, int(y) - 20).move_to_location(int(x) + 30, int(y) - 40)
+    hand.perform()
+    assert not page.js("return live.part('tip').hidden")
+    assert "thrown at  50   (30, 40)" in page.js("return live.part('tip').textContent")
+    ActionChains(page.driver).w3c_actions.pointer_action.pointer_up()
+    ActionChains(page.driver).release().perform()
+    page.wait("live.player.state().vx[2] === 30 && live.player.state().vy[2] === 40")
+    assert "thrown" not in page.js("return live.part('tip').textContent")
+
+
+@pytest.mark.parametrize("size", [(1100, 760), (1366, 768), (1280, 800), (1920, 1080)])
+def test_the_picture_keeps_its_size_once_the_page_is_filled(page, size):
+    """A row of buttons that broke anew would change the size of the window, which is the world."""
+    page.driver.set_window_size(*size)
+    page.open("count=40&speed=300&packing=0.2&seed=5")
+    asked = page.js("return live.asked")
+    for rate in (1 / 64, 1, 64):
+        page.js("live.player.setSpeed(arguments[0])", rate)
+        for colour in ("index", "species", "speed", "contacts", "mass"):
+            page.js("const c = live.part('colour'); c.value = arguments[0]; c.dispatchEvent(new Event('change'))", colour)
+            assert page.js("return live.size()") == asked

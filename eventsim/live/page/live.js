@@ -13,7 +13,7 @@ class LivePlayer extends Player {
     this.gas = description.gas;
     super.open(world, { ...description, duration: description.usualSpeed, seconds: 1 });
     this.view.speed = factor * this.usualSpeed;
-    this.tally = new Tally(description.borders, this.world.disks.mass);
+    this.tally = new Tally(description.borders, this.world);
     this.horizons = [0];
     this.duration = 0;
     this.ended = null;
@@ -174,11 +174,28 @@ class LivePlayer extends Player {
     for (const name of ["scrub", "speed"]) this.part(name).addEventListener("change", () => this.app.controlled());
   }
 
+  /* While a disk is dragged it is the one of which is told. */
+  _hover(event) {
+    const { held, dragged } = this.hand;
+    if (!held || !dragged || held.disk < 0) { super._hover(event); return; }
+    this.pointer = { x: event.clientX, y: event.clientY };
+    this._mark(held.disk);
+  }
+
+  _words(i) {
+    const { held, dragged } = this.hand, number = (value) => Number(value.toPrecision(4));
+    if (!held || !dragged || held.tool !== "throw") return super._words(i);
+    const velocity = this.thrown(held);
+    return [...super._words(i), `thrown at  ${number(Math.hypot(...velocity))}   (${velocity.map(number).join(", ")})`];
+  }
+
+  /* The velocity that a drag gives: with it the disk would come as far in a second of playing. */
+  thrown({ dx, dy }) { return [dx / this.usualSpeed, dy / this.usualSpeed]; }
+
   _key(event) {
-    if (this.part("menu").contains(event.target)) return;
+    if (this.part("menu").contains(event.target) && event.target.tagName !== "BUTTON") return;
     const app = { u: () => this.app.undo(), f: () => this.app.full(), "?": () => this.app.keys(), Escape: () => this.app.keys(false) };
     if (event.key in app && !event.ctrlKey && !event.metaKey && !event.altKey) { app[event.key](); return; }
-    if (event.target.tagName === "BUTTON" && event.key === " ") return; // it presses the button
     super._key(event);
     this.app.controlled();
   }

@@ -19,6 +19,8 @@ class LiveView {
     this.resume = null;
     this.link = new Link((header, columns) => this._hear(header, columns), (replaced) => this._lost(replaced));
     this.menu.form.addEventListener("submit", (event) => { event.preventDefault(); this.init(); });
+    this.menu.form.addEventListener("input", () => this._changed(true));
+    this.menu.field("scene").addEventListener("change", () => this.init()); // a scene that is chosen is shown at once
     this.part("fold").addEventListener("click", () => this._fold(!root.classList.contains("folded")));
     for (const name of ["undo", "full", "help"]) this.part(name).addEventListener("click", () => (name === "help" ? this.keys() : this[name]()));
     this.part("file").addEventListener("change", () => this._read(this.part("file").files[0]));
@@ -85,7 +87,7 @@ class LiveView {
     this.readouts.show(player.world, player.stage, player.gas, player.tally, player.view);
     this.series.take(player.view.time, this.readouts.energy, this.readouts.temperature);
     this.series.draw(player.view.dark ? player.stage.palettes.dark : player.stage.palettes.light, player.view.time,
-                     this.readouts.energyName, player.start);
+                     this.readouts.energyName, player.start, player.world, player.tally, this.readouts.steps);
     const done = player.ended !== null && player.view.time >= player.duration;
     if (done !== this.done) { this.done = done; this._notice(done ? player.ended : null); }
     if (!player.comparison) return;
@@ -101,10 +103,10 @@ class LiveView {
   }
 
   /* A disk was dragged: thrown so that it would come as far in a second of playing, or put there; or a disk or a wall was drawn. */
-  dragged({ tool, disk, dx, dy, from, to, radius }) {
-    const { world, stage, view, usualSpeed } = this.player, now = world.state(view.time), time = view.time;
+  dragged(held) {
+    const { tool, disk, dx, dy, from, to, radius } = held, { world, stage, view } = this.player, now = world.state(view.time), time = view.time;
     const acts = {
-      throw: () => ({ disk, velocity: [dx / usualSpeed, dy / usualSpeed] }),
+      throw: () => ({ disk, velocity: this.player.thrown(held) }),
       move: () => ({ disk, position: [now.x[disk] + stage.corner[0] + dx, now.y[disk] + stage.corner[1] + dy] }),
       disk: () => ({ position: from, radius }),
       wall: () => ({ start: from, end: to }),
@@ -127,6 +129,7 @@ class LiveView {
 
   _open(message) {
     this.current = message;
+    this._changed(false);
     this.joined = false;
     this.acts = [];
     this._undoable();
@@ -199,7 +202,7 @@ class LiveView {
     this.done = false;
     this.edition = header.edition;
     this._compared(header.tracks > 1 || (header.rate !== null && header.notice === null));
-    if (this.player && header.why !== "resize") this.series.forget();
+    this.series.forget(); // time begins anew
     if (this.player) this.player.open(begin(), description);
     else this.player = new LivePlayer(this.root, begin(), description);
     this.player.resizable = header.resizable;
@@ -237,6 +240,12 @@ class LiveView {
   }
 
   /* The rest of the page. */
+
+  /* Whether the menu says another scene than the one that is shown: its button says so. */
+  _changed(yes) {
+    this.menu.form.classList.toggle("changed", yes);
+    this.part("init").title = yes ? "Begin with what the menu says now; the picture is of what it said before" : "Begin with this scene";
+  }
 
   _address(message) {
     this.address = Menu.address(message) || "";

@@ -152,7 +152,18 @@ class Player {
     on("canvas", "pointerleave", () => { this.pointer = null; this._mark(-1); });
     on("canvas", "click", () => this.toggle());
     window.addEventListener("keydown", (event) => this._key(event));
+    // A button that was pressed by hand has the keyboard then: the space bar plays, Enter presses it again.
+    window.addEventListener("keyup", (event) => { if (event.key === " " && event.target.tagName === "BUTTON") event.preventDefault(); });
+    this.root.querySelectorAll("select").forEach((list) => this._give_back(list));
     this._label();
+  }
+
+  /* A list gives the keyboard back once something is chosen from it by hand. */
+  _give_back(list) {
+    let hand = false;
+    list.addEventListener("pointerdown", () => { hand = true; });
+    list.addEventListener("keydown", () => { hand = false; });
+    list.addEventListener("change", () => { if (hand) list.blur(); });
   }
 
   /* Say what the colours mean: the ends of a scale, or a dot for each species. */
@@ -168,7 +179,7 @@ class Player {
       species: () => speciesNames.slice(0, 4).flatMap((name, k) => [dot(kinds[k % kinds.length], ""), name]),
     };
     this.part("key").replaceChildren(...keys[this.view.colour]());
-    this.part("key").title = this.view.colour === "species" ? speciesNames.join("; ") : "";
+    this.part("key").title = this.view.colour === "species" ? speciesNames.join("; ") : this.part("key").textContent;
   }
 
   _switch(name, value) {
@@ -233,19 +244,23 @@ class Player {
 
   /* Write what is known of the marked disk beside the pointer. */
   _tell() {
-    const i = this.view.marked, now = this.world.now, disks = this.world.disks, [cx, cy] = this.stage.corner;
-    const number = (value) => Number(value.toPrecision(6));
     const tip = this.part("tip"), box = this.root.getBoundingClientRect();
-    tip.textContent = [
-      `disk ${i}   radius ${number(disks.radius[i])}   mass ${number(disks.mass[i])}`,
-      `position  ${number(now.x[i] + cx)}, ${number(now.y[i] + cy)}`,
-      `velocity  ${number(now.vx[i])}, ${number(now.vy[i])}`,
-      `speed  ${number(Math.hypot(now.vx[i], now.vy[i]))}   contacts ${this.world.contactsUntil(i, this.view.time)}`,
-    ].join("\n");
+    tip.textContent = this._words(this.view.marked).join("\n");
     if (!this.pointer) return;
     const left = this.pointer.x - box.left, top = this.pointer.y - box.top;
     tip.style.left = `${left + 16 + tip.offsetWidth < box.width ? left + 16 : Math.max(left - 16 - tip.offsetWidth, 0)}px`;
     tip.style.top = `${Math.min(top + 12, box.height - tip.offsetHeight)}px`;
+  }
+
+  /* What is known of a disk at the time that is shown, a line each. */
+  _words(i) {
+    const now = this.world.now, disks = this.world.disks, [cx, cy] = this.stage.corner, number = (value) => Number(value.toPrecision(6));
+    return [
+      `disk ${i}   radius ${number(disks.radius[i])}   mass ${number(disks.mass[i])}`,
+      `position  ${number(now.x[i] + cx)}, ${number(now.y[i] + cy)}`,
+      `velocity  ${number(now.vx[i])}, ${number(now.vy[i])}`,
+      `speed  ${number(Math.hypot(now.vx[i], now.vy[i]))}   contacts ${this.world.contactsUntil(i, this.view.time)}`,
+    ];
   }
 }
 
