@@ -167,7 +167,7 @@ def test_the_pressure_at_sides_that_grip_is_of_the_momentum_across_them(page, tm
 
 @pytest.mark.parametrize(
     ("scene", "why"),
-    [("gallery=two-disks", "along one line"), ("count=2&speed=100&packing=0.05&seed=3", "too few to share the energy")],
+    [("gallery=two-disks", "along one direction only"), ("count=2&speed=100&packing=0.05&seed=3", "too few to share the energy")],
 )
 def test_two_disks_have_neither_temperature_nor_pressure(page, scene, why):
     page.open(scene)
