@@ -1,5 +1,7 @@
 """What a teacher needs of the page, in a real browser: real time, undo, keys, read-outs in view, colours, links that are gone."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -236,9 +238,9 @@ def test_energy_steps_at_contacts_and_is_level_between_them(page, tmp_path, play
     log = es.load_log(page.fetch("log-file", tmp_path / "log.csv"))
     assert len(set(log.time[log.time <= shown])) >= 8
     scale = curve[0][1]
-    for (t, e), (later, other) in zip(curve, curve[1:], strict=False):  # no slant: it is level, or goes down at a contact
+    for (t, e), (later, other) in pairwise(curve):  # no slant: it is level, or goes down at a contact
         assert later == t or abs(other - e) <= 1e-9 * scale
-    down = np.array([t for (t, e), (later, other) in zip(curve, curve[1:], strict=False) if abs(other - e) > 1e-6 * scale and later == t])
+    down = np.array([t for (t, e), (later, other) in pairwise(curve) if abs(other - e) > 1e-6 * scale and later == t])
     assert len(down) >= 5
     assert np.abs(down[:, None] - log.time[None, :]).min(axis=1).max() < 1e-9
     replay = Replay(log)
@@ -255,7 +257,8 @@ def test_all_of_the_colours_of_a_few_disks_are_told(page):
     for colour in ("index", "species", "speed", "contacts"):
         page.js("const c = live.part('colour'); c.value = arguments[0]; c.dispatchEvent(new Event('change'))", colour)
         key = page.js(
-            "const k = live.part('key'); return [k.scrollWidth, k.clientWidth, Math.min(...[...k.children].map((i) => i.offsetWidth)), k.title]"
+            "const k = live.part('key'), dots = [...k.children].map((i) => i.offsetWidth);"
+            "return [k.scrollWidth, k.clientWidth, Math.min(...dots), k.title]"
         )
         assert key[0] <= key[1], colour
         assert key[2] >= 11
