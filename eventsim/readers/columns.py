@@ -139,10 +139,10 @@ def numbers_of(column: Column, name: str, source: str) -> Floats:
             try:
                 float(value)
             except (ValueError, TypeError):
-                raise EventsimError(f"{source}: row {row}: {name} = {value!r}: must be a number{_hint(value)}") from None
+                raise EventsimError(f"{source}: row {row}: {name} = {value!r}: must be a number{decimal_comma(value)}") from None
         raise EventsimError(f"{source}: {name} must be numbers") from None
 
 
-def _hint(value: object) -> str:
+def decimal_comma(value: object) -> str:
     """What to say of a number with a decimal comma."""
     return ", with a decimal point" if isinstance(value, str) and re.fullmatch(r"[-+]?\d*,\d+(e[-+]?\d+)?", value) else ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import zipfile
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -13,6 +14,7 @@ import numpy as np
 from eventsim import suffixes
 from eventsim.errors import EventsimError, SceneError
 from eventsim.readers import read_start
+from eventsim.readers.columns import decimal_comma
 from eventsim.reading import NO_TEXT, Npz, as_floats, reading
 from eventsim.scene.cells import Indices
 from eventsim.scene.disks import USUAL, Disks
@@ -123,7 +125,9 @@ def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dic
     except UnicodeDecodeError:
         raise SceneError(f"{path}: {NO_TEXT}") from None
     number = [n for n, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
-    header = [name.strip() for name in next(csv.reader([lines[number[0] - 1]]))] if number else []
+    first = lines[number[0] - 1] if number else ""
+    between = next((mark for mark in ",;\t" if mark in first), ",")
+    header = [name.strip() for name in next(csv.reader([first], delimiter=between))] if number else []
     wanted = _wanted_columns(path, header, given)
     places = [header.index(name) for name in wanted]
     number = number[1:]
@@ -131,22 +135,23 @@ def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dic
     if not rows:
         raise SceneError(f"{path}: has a header but no disks")
     try:
-        table = np.loadtxt(rows, delimiter=",", usecols=places, comments=None, quotechar='"', ndmin=2)
+        table = np.loadtxt(rows, delimiter=between, usecols=places, comments=None, quotechar='"', ndmin=2)
     except ValueError:
-        raise SceneError(_bad_lines(path, rows, number, wanted, places)) from None
+        raise SceneError(_bad_lines(path, csv.reader(rows, delimiter=between), number, wanted, places)) from None
     columns: dict[str, Any] = dict(zip(wanted, table.T, strict=True))
     if SPECIES in header:
         place = header.index(SPECIES)
-        columns[SPECIES] = np.array([cells[place].strip() if place < len(cells) else "" for cells in csv.reader(rows)])
+        split = csv.reader(rows, delimiter=between)
+        columns[SPECIES] = np.array([cells[place].strip() if place < len(cells) else "" for cells in split])
     return columns, "line", np.array(number)
 
 
 def _bad_lines(
-    path: Path, rows: list[str], number: list[int], wanted: list[str], places: list[int]
+    path: Path, rows: Iterable[list[str]], number: list[int], wanted: list[str], places: list[int]
 ) -> list[str]:
     """What is wrong with the first lines that cannot be read."""
     problems: list[str] = []
-    for n, cells in zip(number, csv.reader(rows), strict=False):
+    for n, cells in zip(number, rows, strict=False):
         for name, place in zip(wanted, places, strict=True):
             if place >= len(cells):
                 problems.append(f"{path} line {n}: {name} is missing")
@@ -154,7 +159,7 @@ def _bad_lines(
             try:
                 float(cells[place])
             except ValueError:
-                problems.append(f"{path} line {n}: {name} = {cells[place]!r}: must be a number")
+                problems.append(f"{path} line {n}: {name} = {cells[place]!r}: must be a number{decimal_comma(cells[place])}")
         if len(problems) >= 5:
             return [*problems, f"{path}: the lines after line {n} were not looked at"]
     return problems or [f"{path}: cannot be read as comma-separated numbers"]

@@ -6,12 +6,13 @@ import json
 import re
 import tomllib
 from bisect import bisect_right
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from eventsim.errors import SceneError
 from eventsim.scene import schema
 from eventsim.scene.remedies import Remedy, example_of, read_both, remedy, two_ways, with_points
+from eventsim.scene.validate import NO_DISKS
 
 LONGEST = 1 << 23
 """Letters of a file whose lines are looked for."""
@@ -33,6 +34,11 @@ ANCHORS = {"disk": "position", "wall": "name"}
 
 LIST = re.compile(r"\[(?:[^\[\]]|\[[^\[\]]*\])*\]")
 JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\],:]|[^\s{}\[\],:"]+')
+
+
+NO_DISK = "\n    as in:  [[disk]]\n            position = [0.3, 0.8]\n            radius = 0.05"
+NO_DISK_IN_JSON = '\n    as in:  "disk": [{"position": [0.3, 0.8], "radius": 0.05}]'
+"""What is shown to who has written no disk."""
 
 
 class Place(NamedTuple):
@@ -142,9 +148,27 @@ def with_lines(
     places, lines = (places_in_json if is_json else places_in)(text), text.split("\n")
     form = _in_json if is_json else str
     typed = {re.sub(r"\.(\d+)", r"[\1]", setting.partition("=")[0].strip()): setting for setting in settings}
-    return SceneError(
-        _with_quotes(problem, list(_quotes(problem, places, lines, data, typed, form))) for problem in error.problems
-    )
+    told = [_with_quotes(problem, list(_quotes(problem, places, lines, data, typed, form))) for problem in error.problems]
+    return SceneError(_joined(told))
+
+
+ONE_KEY = re.compile(r"(?P<table>[\w.]+(?:\[\d+\])?)\.(?P<key>\w+)(?P<what>: unknown key| is missing)(?P<shown>\n.*)?", re.DOTALL)
+
+
+def _joined(problems: Iterable[str]) -> list[str]:
+    """The problems, those of keys of one table that the same lines mend as one."""
+    found: dict[object, list[str]] = {}
+    for place, problem in enumerate(problems):
+        match = ONE_KEY.fullmatch(problem)
+        shown, _, write = (match["shown"] or "").partition("\n    write:") if match else ("", "", "")
+        same = found.setdefault((match["table"], write.strip()) if match and write else place, [])
+        if match is None or not same:
+            same.append(problem)
+        elif not match["what"].startswith(" is") and (first := ONE_KEY.fullmatch(same[0])) is not None:
+            line, more = shown.split("\n")[1], f"{first['key']}, {match['key']}"
+            above, _, below = (first["shown"] or "").partition("\n    write:")
+            same[0] = f"{first['table']}.{more}: unknown key{above}\n{line}\n    write:{below}"
+    return [problem for same in found.values() for problem in same]
 
 
 def _in_json(write: str) -> str:
@@ -174,6 +198,8 @@ def _quotes(
 ) -> Iterator[str]:
     """What follows the sentence of one problem: nothing, or its quoted lines; form: that in which TOML is written there."""
     match = PATH.match(problem) or CHOICE.match(problem)
+    if problem == NO_DISKS:
+        yield NO_DISK_IN_JSON if form is _in_json else NO_DISK
     if match is None or TAKEN.match(problem):
         yield from _quotes_of_tables(problem, places, lines, data, typed)
         return
@@ -189,13 +215,16 @@ def _quotes(
         return
     missing = problem[match.start() :].partition(" is missing")[1] and path not in places
     here = _table(data, table) if missing else {}
-    for other in here:  # it may be there under another name
+    for other in (name for name in here if name != "kind"):  # it may be there under another name
         told = _remedy(table, other, here)
-        if key and told.write.startswith(f"{key} = ") and f"{table}.{other}" in places:
+        lines_of = told.write.splitlines()
+        mends = any(line.startswith((f"{key} = ", "kind = ")) for line in lines_of) and not told.example
+        if key and mends and f"{table}.{other}" in places:
             named = places[f"{table}.{other}"]
             yield quoted(lines[named.line - 1], named.key, told.why, form(told.write), f"line {named.line}", told.example)
             return
-    place = places.get(path) or places.get(table) or places.get(f"{table}[0]") or places.get(table.partition("[")[0])
+    place = places.get(path) or places.get(f"{path}[0]") or places.get(table) or places.get(f"{table}[0]")
+    place = place or places.get(table.partition("[")[0])
     if place is None:
         return
     if missing or "needs" in problem.split(":")[1][:8]:
@@ -212,6 +241,10 @@ def _quotes(
     if unknown and "above the first table" in told.why and header is not None:
         headers = [place.line for place in places.values() if HEADER.match(lines[place.line - 1])]
         write = f"{write}\n{lines[min(headers) - 1].strip()}" if headers else write
+    above = min((one.line for one in places.values() if HEADER.match(lines[one.line - 1])), default=place.line)
+    if key is None and told.write.startswith(f"{table} = ") and HEADER.match(lines[place.line - 1]) and form is str:
+        told = told._replace(why=f"{table} is a key of the scene: write it above the first table")
+        write = f"{write}\n{lines[above - 1].strip()}" if above < place.line else write
     column, write = place.key if unknown else place.value, form(write)
     bare, written = _bare(write), _bare(lines[place.line - 1])
     if bare == written or (bare.startswith('"') and bare in written):  # what was written is of the right form

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 from eventsim.scene import restitution, roughness
+from eventsim.scene.keyboard import plain
 
 EXAMPLES = {
     "name": 'name = "ramp"',
@@ -82,7 +83,7 @@ ALIASES: dict[str, dict[str, str]] = {
     "domain": {"kind": "type shape boundary boundaries", "size": "dimensions lengths box", "origin": "corner offset"},
     "disk": {
         "position": "pos place center centre xy location",
-        "velocity": "vel v speed_vector",
+        "velocity": "vel v speed speed_vector",
         "radius": "r rad",
         "mass": "m weight",
     },
@@ -128,6 +129,9 @@ NO_WALLS = {
     **dict.fromkeys((*POSTS, "disk", "disc"), ROUND_POST),
 }
 """Kinds of walls that there are not, and why."""
+
+FIXED = ("fixed", "static", "immovable", "immobile", "frozen", "pinned", "anchored", "kinematic", "obstacle")
+"""What people call disks that nothing deflects."""
 
 NEEDLESS = {
     **dict.fromkeys(
@@ -180,6 +184,19 @@ def _remedy(
     word = re.sub(r"[^a-z]+$", "", key.lower().replace("-", "_"))
     if word in NEEDLESS:
         return Remedy(NEEDLESS[word], "")
+    if table in ("disk", "gas") and word.removeprefix("is_") in FIXED and isinstance(value, bool):
+        return Remedy("nothing deflects a disk of mass inf", "mass = inf" if value else "")
+    if table == "gas" and word == "velocity" and isinstance(value, list) and len(value) == 2 and all(map(_is_number, value)):
+        return Remedy("its disks have one speed, in all directions, or a temperature", f"speed = {math.hypot(*value):.6g}")
+    if table == "wall" and key == "points" and here.get("kind") == "segment" and isinstance(value, list):
+        if len(value) == 2:
+            ends = zip(("start", "end"), value, strict=True)
+            return Remedy("a segment has a start and an end", "\n".join(f"{name} = {written(place)}" for name, place in ends))
+        return Remedy("a segment has a start and an end; through points goes a polyline", 'kind = "polyline"')
+    if table and isinstance(value, Mapping | list) and (key in LISTS or (value and isinstance(value, list) and word in TABLES)):
+        own_header = TABLES[word]
+        if isinstance(value, Mapping) or all(isinstance(one, Mapping) for one in value):
+            return Remedy(f"{own_header} is a table of the scene, and in no other one", own_header)
     own = next((f(here) for keys, f in COMBINED.get(table, {}).items() if key in keys and _numbers(here, keys)), None)
     if own is not None:
         return own
@@ -246,6 +263,8 @@ def written(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(written, value)) + "]"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {written(entry)}" for key, entry in value.items()) + "}"
     return f'"{value}"' if isinstance(value, str) else repr(value)
 
 
@@ -315,6 +334,12 @@ COMBINED: dict[str, dict[tuple[str, ...], Callable[[Mapping[str, Any]], Remedy]]
 """Keys that together say what one key says here."""
 
 
+def combined(here: Mapping[str, Any]) -> str | None:
+    """The line that says what such keys together mean, in whatever table; None where they mean nothing together."""
+    rules = (rule for table in COMBINED.values() for rule in table.items())
+    return next((told(here).write for keys, told in rules if set(keys) == here.keys() and _numbers(here, keys)), None)
+
+
 def example_of(table: str, key: str) -> str:
     """A line that shows the form of a key of a table; empty for a key that nobody knows."""
     return 'kind = "segment"' if (table, key) == ("wall", "kind") else EXAMPLES.get(key, "")
@@ -348,6 +373,11 @@ def _of_value(table: str, key: str, value: Any) -> Remedy | None:
         return Remedy("more than 1 would make energy", f"{key} = 1.0")
     elif key == "restitution" and _is_number(value) and LEAST_PER_CENT <= value <= 100.0:
         return Remedy("it is a part of 1, not per cent", f"{key} = {written(value / 100)}")
+    elif key == "radius" and table == "gas" and isinstance(value, list) and len(value) > 1 and all(map(_is_number, value)):
+        law = "uniform" if len(value) == 2 else "values"
+        return Remedy("radii are drawn by a law", f"radius = {{{law} = {written(value)}}}")
+    elif key == "mass" and isinstance(value, str) and re.fullmatch(r"(?i)\W*(?:infinit[ey]|inf|\u221e|oo)\W*", value):
+        mended = math.inf
     elif isinstance(value, str) and OPEN_COMMA.fullmatch(value.strip()) and key not in WHOLES:
         point, none = read_both(value.strip())
         return Remedy(two_ways(value), f"{key} = {point}", other=f"{key} = {none}")
@@ -432,7 +462,7 @@ NUMBER = re.compile(r"([-+]?)(\d*)(?:[.,](\d*))?([eE][-+]?\d+)?\s*([*/]\s*\d+\.?
 
 def number_in(text: str) -> float | int | None:
     """The number that somebody means by a text: with a decimal comma, no digit before the point, a unit, a fraction."""
-    found = NUMBER.fullmatch(text.strip())
+    found = NUMBER.fullmatch(plain(text).strip())
     if found is None or not (found[2] or found[3]):
         return None
     sign, whole, part, power, rest = (group or "" for group in found.groups())

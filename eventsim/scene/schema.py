@@ -298,5 +298,16 @@ def report_unknown(table: Mapping[Any, object], known: list[str], prefix: str, p
 
 def shown(value: object) -> str:
     """A value as a message quotes it."""
-    written = {True: "true", False: "false"}[value] if isinstance(value, bool) else repr(value)
+    written = repr(value) if isinstance(value, str) else _toml(value)
     return written if len(written) <= 60 else written[:57] + "..."
+
+
+def _toml(value: object) -> str:
+    """A value as a scene file writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_toml(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    return f'"{value}"' if isinstance(value, str) else repr(value)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from itertools import islice
 from typing import NamedTuple
 
+from eventsim.scene.keyboard import with_plain_signs, without_foreign_blanks
 from eventsim.scene.quoting import HEADER, quoted
 from eventsim.scene.remedies import (
     COUNTS,
@@ -21,6 +22,7 @@ from eventsim.scene.remedies import (
     PAIRS,
     TEXTS,
     WHOLES,
+    combined,
     meant,
     pointed,
     two_ways,
@@ -41,6 +43,9 @@ PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", 
 VALUE = r"(?<![\w.])"
 POWER = r"(?:(\d+(?:\.\d+)?)\s*\*\s*)?10(?:\^|\*\*)([-+]?\d+)"
 UNIT = r"(=\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?|\])\s*[A-Za-zµ°][\w/²^*-]*\s*(?=#|$)"
+COMPUTED = re.compile(r"=.*(?:\b(?:cos|sin|tan|sqrt|exp|log|math\.\w+|np\.\w+)\b|\d\s*[-+*/^]\s*[(\d]|\d\s*[*/^]|\)\s*[-+*/^])")
+"""A value that is to be worked out."""
+
 UNIT_IN_LIST = r"(?<=\d)\s*(?![eE][-+]?\d)[A-Za-zµ°][\w/²^*-]*(?=\s*[,\]])"
 
 
@@ -114,14 +119,38 @@ def _worded(line: str, key: str) -> str:
     return line
 
 
+def _several(line: str, key: str) -> str:
+    """Each key with its value in a line of its own; two that are one key here as that."""
+    value = r"\[[^\[\]]*\]|\"[^\"]*\"|[^\s,;=\[\]\"#]+"
+    pair = rf"(\w+)\s*=\s*({value})"
+    if re.fullmatch(rf"\s*{pair}(?:\s*[,;]\s*|\s+){pair}(?:(?:\s*[,;]\s*|\s+){pair})*\s*[,;]?\s*(#.*)?", line) is None:
+        return line
+    found = dict(re.findall(pair, line.partition("#")[0]))
+    try:
+        told = combined({name: tomllib.loads(f"value = {text}")["value"] for name, text in found.items()})
+    except ValueError:
+        return line
+    return told or "\n".join(f"{name} = {text}" for name, text in found.items())
+
+
+def _header(line: str, key: str) -> str:
+    found = re.fullmatch(r"\s*(\w+)\s*\]{1,2}\s*", line)
+    return line if found is None else f"[[{found[1]}]]" if found[1] in LISTS else f"[{found[1]}]"
+
+
 SLIPS = (
+    Slip("write the blank of the keyboard, and nothing unseen", lambda line, key: without_foreign_blanks(line)),
+    Slip("write the signs of the keyboard, as its minus -", lambda line, key: with_plain_signs(line)),
     Slip("quotation marks are straight", _sub("[“”„‟«»]", '"')),
     Slip("a comment begins with #", _sub(r"\s*(//|%%|--).*$", "")),
     Slip("a line ends without a mark", _sub(r"[;,]\s*$", "")),
+    Slip("a scene is no program: leave this line out", _sub(r"^\s*(?:import|from|print|def|for|while|if|return)\b[^=]*$", "")),
+    Slip("a line holds one key and one value", _several),
     Slip(
         "tables of a list stand in double brackets",
         _sub(r"^\s*[\[({]{1,2}\s*(" + "|".join(LISTS) + r")\s*[\])}]{0,2}\s*$", r"[[\1]]"),
     ),
+    Slip("the name of a table stands in brackets", _header),
     Slip("the name of a table stands in brackets", _sub(r"^\s*\[\s*(\w+)\s*$", r"[\1]")),
     Slip("a key is followed by =", _sub(r"^(\s*\w+)\s*(?::=|==|=>|:)\s*", r"\1 = ")),
     Slip("a key is followed by =", _sub(r"^(\s*\w+)\s+(?=[-+.\d\[\"(])", r"\1 = ")),
@@ -143,7 +172,7 @@ SLIPS = (
     Slip("units are your own: a number stands alone, in the unit of all others", _sub(UNIT, r"\1")),
     Slip("units are your own: a number stands alone, in the unit of all others", _sub(UNIT_IN_LIST, "")),
     Slip("true and false are written small", _sub(r"\b(True|False)\b", lambda m: m[1].lower())),
-    Slip("infinity is written inf", _sub(r"\b(?:infinity|Infinity|Inf|INF|oo|math\.inf|np\.inf)\b", "inf")),
+    Slip("infinity is written inf", _sub(r"\b(?:infinity|Infinity|infinite|Infinite|Inf|INF|oo|math\.inf|np\.inf)\b", "inf")),
     Slip("a text stands in quotation marks", _worded),
     Slip("what is opened is closed", _closed),
 )  # fmt: skip
@@ -156,6 +185,8 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
     lines = text.split("\n")
     if match is None or not lines:
         return str(error)
+    if text.lstrip().startswith("{"):
+        return "this is JSON: let the file's name end in .json"
     line = min(int(match[2]) if match[2] else len(lines), len(lines))
     column = int(match[3]) - 1 if match[2] else len(lines[line - 1])
     if len(text) <= LONGEST:
@@ -171,9 +202,10 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
             if HEADER.match(lines[here - 1]) is not None and _reads_on(lines, here, "", line):
                 why = "this table was begun before: put its keys there, and leave this line out"
                 return f"{why} (at line {here})" + _shown(lines, here, "")
+    told = "a file does not compute: write the number itself" if COMPUTED.search(lines[line - 1]) else _in_words(match[1])
     key = _key_of(lines[line - 1])
     example = "" if not key or key not in EXAMPLES else EXAMPLES[key]
-    return f"{_in_words(match[1])} (at line {line}, column {column + 1})" + quoted(
+    return f"{told} (at line {line}, column {column + 1})" + quoted(
         lines[line - 1], column, "", example, f"line {line}", True
     )
 

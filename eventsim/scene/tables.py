@@ -47,7 +47,7 @@ def read_scene(data: Mapping[str, Any], base_dir: Path, seed: int | None, runs: 
         scene = found.scene(disks)
     except SceneError as error:
         # Disks may be missing because their gas has not been placed, or because their tables have problems.
-        waiting = bool(gases or problems)
+        waiting = bool(gases or [problem for problem in problems if not problem.startswith("domain is missing")])
         problems += [p for p in error.problems if not (waiting and (p == NO_DISKS or NO_SPECIES in p))]
     if problems:
         raise SceneError(problems)

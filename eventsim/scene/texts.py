@@ -41,12 +41,9 @@ def _tables_of(text: str, suffix: str) -> dict[str, Any]:
     try:
         return json.loads(text, object_pairs_hook=_once) if suffix == ".json" else tomllib.loads(text)
     except json.JSONDecodeError as error:
-        from eventsim.scene.quoting import quoted
+        from eventsim.scene import json_slips
 
-        place = f"(at line {error.lineno}, column {error.colno})"
-        line = text.split("\n")[error.lineno - 1]
-        told = f"is not valid JSON: {error.msg} {place}"
-        raise SceneError(told + quoted(line, error.colno - 1, "", "", f"line {error.lineno}")) from None
+        raise SceneError(f"is not valid JSON: {json_slips.problem_of(text, error)}") from None
     except tomllib.TOMLDecodeError as error:
         from eventsim.scene.slips import problem_of
 
@@ -72,7 +69,8 @@ def _text(path: Path) -> str:
         data = file.read()
     try:
         wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
-        return data.decode("utf-16" if wide else "utf-8-sig").replace("\r\n", "\n")
+        text = data.decode("utf-16" if wide else "utf-8-sig").replace("\r\n", "\n")
+        return text if "\n" in text else text.replace("\r", "\n")  # as old Macs end lines
     except UnicodeDecodeError:
         raise SceneError(f"{path}: {NO_TEXT}") from None
 

@@ -270,7 +270,7 @@ def test_a_single_problem_more_is_written_out(tmp_path):
     ("name", "text", "words"),
     [
         ("gone.toml", None, "no such file"),
-        ("bad.json", '{"until": 3,\n"domain": }', "not valid JSON: Expecting value (at line 2, column 11)"),
+        ("bad.json", '{"until": 3,\n"domain": }', "not valid JSON: a value is wanted here"),
         ("list.json", "[1, 2]", "JSON object"),
         ("nan.json", '{"domain": {"kind": "open"}, "disk": [{"position": [NaN, 0], "radius": 1}]}', "finite"),
     ],

@@ -1,5 +1,6 @@
 """Mistakes that beginners make in a scene file: each is answered with its line, a caret, and the line that would be right."""
 
+import json
 import re
 from itertools import pairwise
 
@@ -126,7 +127,8 @@ def test_a_mistake_is_told_with_its_line_a_caret_and_the_right_line(tmp_path, li
         number = int(label.removeprefix("line "))
         assert shown.strip() == text.splitlines()[number - 1].strip()
         pointed = rows[0][rows[1].index("^") :]
-        found.append((pointed, [re.sub("^(write|as in):", "", row).strip() for row in rows[2:]]))
+        write = [row for row in rows[2:] if not row.startswith("line ")]  # another line that is mended with it
+        found.append((pointed, [re.sub("^(write|as in):", "", row).strip() for row in write]))
     wanted = [] if right is None else right.split("\n")
     assert any(pointed.startswith(at) and (at or not pointed) and write == wanted for pointed, write in found), problems
 
@@ -387,7 +389,7 @@ JSON = """\
         ('0.1, "position"', '0.1, "mass": "2 kg", "position"', 5, '"2 kg"', '"mass": 2.0'),
         ("[1.5, 0.5]", "[1.5]", 5, '"position":', '"position": [0.3, 0.8]'),
         ('{"velocity"', '[{"velocity"', 7, "}", None),
-        ("2.0,\n", "2.0\n", 2, '"domain"', None),
+        ("2.0,\n", "2.0\n", 1, "", '{"until": 2.0,'),
         ("[1.5, 0.5]", "[0.6, 0.5]", 5, '"position":', None),
     ],
 )
@@ -467,3 +469,124 @@ def test_a_table_in_single_brackets_before_others_in_double_ones_is_the_one_that
     (problem,) = told(tmp_path / "scene.toml")
     assert "(at line 3)" in problem
     assert problem.endswith(f"write:  [[{name}]]")
+
+
+SOME = "[[gas]]\ncount = 5\nseed = 1\nregion = [5, 5, 9, 9]\n"
+SEGMENT = '[[wall]]\nkind = "segment"\n'
+
+FURTHER = [
+    # what is added to a scene, what is said, what is proposed
+    (ONE.replace("0.05", "0.05\nfixed = true"), "nothing deflects a disk of mass inf", "mass = inf"),
+    (ONE + "mass = infinite\n", "infinity is written inf", "mass = inf"),
+    (ONE + 'mass = "infinite"\n', "must be a number", "mass = inf"),
+    (ONE + "mass = \u221e\n", "signs of the keyboard", "mass = inf"),
+    (ONE + "speed = [2, 0]\n", "the key is velocity", "velocity = [2, 0]"),
+    (ONE.replace("0.3", "\u22120.3"), "as its minus -", "position = [-0.3, 0.8]"),
+    (ONE.replace("radius =", "radius\u00a0="), "the blank of the keyboard", "radius = 0.05"),
+    (ONE.replace("radius", "\u200bradius"), "nothing unseen", "radius = 0.05"),
+    (ONE.replace("0.05", "\uff10.05"), "signs of the keyboard", "radius = 0.05"),
+    (ONE + "velocity = [2*cos(30), 0]\n", "a file does not compute: write the number itself", None),
+    (ONE + "mass = sqrt(2)\n", "a file does not compute", None),
+    (ONE + "mass = 3 + 4\n", "a file does not compute", None),
+    (ONE + "import math\n", "a scene is no program: leave this line out", None),
+    (ONE.replace("[[disk]]", "disk]]"), "the name of a table stands in brackets", "[[disk]]"),
+    (ONE.replace("[[disk]]", "[[domain.disk]]"), "[[disk]] is a table of the scene", "[[disk]]"),
+    (ONE.replace("position = [0.3, 0.8]", "x = 1, y = 2"), "a line holds one key and one value", "position = [1, 2]"),
+    (ONE.replace("[0.3, 0.8]\n", "[0.3, 0.8], "), "one key and one value", "position = [0.3, 0.8] radius = 0.05"),
+    (ONE + SOME + "radius = [0.1, 0.2]\n", "radii are drawn by a law", "radius = {uniform = [0.1, 0.2]}"),
+    (ONE + SOME + "radius = 0.1\nvelocity = [3.0, 4.0]\n", "one speed, in all directions", "speed = 5"),
+    (ONE + SEGMENT + "points = [[4, 4], [5, 5]]\n", "has a start and an end", "start = [4, 4] end = [5, 5]"),
+    (ONE + SEGMENT + "points = [[4, 4], [5, 5], [6, 5]]\n", "goes a polyline", 'kind = "polyline"'),
+    ("[gravity]\nx = 0\ny = -9.81\n" + ONE, "write it above the first table", "gravity = [0, -9.81] [domain]"),
+    ("", "a scene needs at least one disk", "[[disk]] position = [0.3, 0.8] radius = 0.05"),
+]
+
+
+@pytest.mark.parametrize(("added", "said", "right"), FURTHER)
+def test_a_slip_is_one_problem_with_what_is_right(tmp_path, added, said, right):
+    (tmp_path / "scene.toml").write_text(OPEN + added, encoding="utf-8")
+    problem = told(tmp_path / "scene.toml")[0]
+    assert said in problem
+    assert "{'" not in problem
+    write = [row for row in re.split("write:|as in:", problem)[1:] if row]
+    if right is None:
+        assert "write:" not in problem
+    else:
+        assert " ".join(write[0].split()) == right
+    assert len(told(tmp_path / "scene.toml")) == 1 or "domain.disk" in problem
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (JSON.replace('"', "'"), "double quotation marks"),
+        (JSON.replace("}]\n", "},]\n"), "nothing follows a last comma"),
+        (JSON.replace("0.1},", "0.1,},"), "nothing follows a last comma"),
+        (JSON.replace("2.0,\n", "2.0, // seconds\n"), "JSON has no comments"),
+        (JSON.replace('"until"', "until"), "a key stands in double quotation marks"),
+        (JSON.replace("0.1}", ".1}", 1), "a digit before its point"),
+        (JSON.replace("0.5, 0.5", "\u22120.5,\u00a00.5"), "other blanks and signs"),
+        (JSON.replace('"until": 2.0', '"until": 2.0, "mass": inf'), 'infinity is written "inf"'),
+    ],
+)
+def test_slips_in_json_are_mended_and_what_is_proposed_is_json(tmp_path, wrong, said):
+    (tmp_path / "scene.json").write_text(wrong, encoding="utf-8")
+    (problem,) = told(tmp_path / "scene.json")
+    assert said in problem
+    number, right = re.search(r"\(at line (\d+)\)", problem)[1], problem.split("write:")[1].strip()
+    lines = wrong.splitlines()
+    assert lines[int(number) - 1].strip() != right
+    if "quotation" not in said:  # there all lines are wrong
+        lines[int(number) - 1] = right
+        json.loads("\n".join(lines))
+
+
+def test_a_text_in_json_may_hold_what_elsewhere_is_a_slip(tmp_path):
+    text = JSON.replace('"until"', '"name": "it\'s // no # comment, }",\n"until"').replace("0.1}", "0.1,}", 1)
+    (tmp_path / "scene.json").write_text(text)
+    (problem,) = told(tmp_path / "scene.json")
+    assert "nothing follows a last comma" in problem
+    assert "comments" not in problem
+
+
+def test_a_file_of_the_other_format_is_told_its_name(tmp_path):
+    (tmp_path / "scene.toml").write_text(JSON)
+    assert "this is JSON: let the file's name end in .json" in told(tmp_path / "scene.toml")[0]
+    (tmp_path / "scene.json").write_text("# mine\n" + SCENE)
+    assert "this is TOML: let the file's name end in .toml" in told(tmp_path / "scene.json")[0]
+
+
+def test_line_ends_of_old_macs_are_read(tmp_path):
+    (tmp_path / "scene.toml").write_bytes((OPEN + ONE).replace("\n", "\r").encode())
+    assert len(load_scene(tmp_path / "scene.toml").disks) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        (OPEN + ONE.replace("position = [0.3, 0.8]", "x = 0.3\ny = 0.8"), 1),
+        (OPEN + ONE + "vx = 1\nvy = 2\n", 1),
+        (OPEN + ONE.replace("radius = 0.05", "diameter = 0.1"), 1),
+        (OPEN.replace('"open"', '"box"\nwidth = 2\nheight = 1') + ONE, 1),
+        (OPEN + ONE + SEGMENT + "from = [4, 4]\nto = [5, 5]\n", 2),
+        (OPEN + ONE.replace("radius = 0.05", "diameter = 0.1") + ONE.replace("radius = 0.05", "diameter = 0.1"), 2),
+    ],
+)
+def test_one_mistake_is_one_problem(tmp_path, text, count):
+    (tmp_path / "scene.toml").write_text(text)
+    problems = told(tmp_path / "scene.toml")
+    assert len(problems) == count
+    keys = re.findall(r"(?m)^(x|y|vx|vy|diameter|width|height|from|to) =", text)
+    shown = re.findall(r"line \d+: +(\w+) =", "\n".join(problems))
+    assert sorted(shown) == sorted(keys)
+
+
+def test_a_table_of_disks_may_have_semicolons(tmp_path):
+    (tmp_path / "scene.toml").write_text(OPEN + '[[disks_file]]\npath = "disks.csv"\n')
+    for between in ";\t":
+        (tmp_path / "disks.csv").write_text("x,y,radius,species\n0,0,1,a\n3,3,1,b\n".replace(",", between))
+        disks = load_scene(tmp_path / "scene.toml").disks
+        assert disks.position.tolist() == [[0, 0], [3, 3]]
+        assert list(disks.species) == ["a", "b"]
+    (tmp_path / "disks.csv").write_text("x;y;radius\n0,5;0;1\n")
+    assert "x = '0,5': must be a number, with a decimal point" in told(tmp_path / "scene.toml")[0]
