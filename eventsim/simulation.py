@@ -25,9 +25,10 @@ from eventsim.record.files import read_log
 from eventsim.record.provenance import Ending
 from eventsim.run import EventLog, Run
 from eventsim.runner.checkpoint import Checkpoint, interval, load_checkpoint, place_for
+from eventsim.runner.checkpoint_writer import USUALLY
 from eventsim.runner.keeping import Keeping
 from eventsim.runner.loop import run_scene
-from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions, demand_place_of_log, stop_of
+from eventsim.runner.options import Interrupt, Notice, OnEvent, Progress, RunOptions, demand_place_of_log, stop_of
 from eventsim.runner.outcome import diagnosed, provenance_of, state_of
 from eventsim.runner.recording import MemorySink
 from eventsim.scene import Scene
@@ -61,8 +62,9 @@ def simulate(
     trust: bool | None = None,
     command: str | None = None,
     checkpoint: str | PathLike[str] | None = None,
-    every: int | str = "60s",
+    every: int | str | None = None,
     interrupt: Interrupt | None = None,
+    notice: Notice | None = None,
     **options: Any,
 ) -> Run:
     """Simulate a scene until a time on its clock or for a number of events, whichever comes first.
@@ -86,8 +88,9 @@ def simulate(
             and at the beginning of a log.
         command: what the log says that wrote it; None: nothing.
         checkpoint: a file that `resume` can go on from, replaced while the run goes on, and at the end.
-        every: how often: after so many events (1000000) or so much time ("90s", "5min", "2h").
+        every: how often: after so many events (1000000) or so much time ("90s", "5min", "2h"); None: every minute.
         interrupt: ends the run between two events once another thread asks it to (`Interrupt().ask()`).
+        notice: called as notice(sentence), once, where contacts come ever faster: `run.pace` tells afterwards.
         **options: the engine's own, such as check=True.
 
     Returns:
@@ -110,9 +113,13 @@ def simulate(
         on_event=on_event,
         command=command,
         interrupt=interrupt,
+        notice=notice,
     )
+    _demand_checkpoint(every, checkpoint)
+    if profile is not None and measure is False:
+        raise EventsimError(f"profile = {profile!r} is a part of what is measured: give measure=True, too")
     if checkpoint is not None:
-        wanted.checkpoint, wanted.every = place_for(checkpoint), interval(every)
+        wanted.checkpoint, wanted.every = place_for(checkpoint), USUALLY if every is None else interval(every)
         if measure is not False:
             raise EventsimError("measures are not in a checkpoint: keep a log, and measure that")
     meter = line = None
@@ -151,6 +158,12 @@ IN_STEPS = dict.fromkeys(("until", "events"), "it has no stop: advance_to(time) 
 """The same of a `Simulation`."""
 
 
+def _demand_checkpoint(every: object, checkpoint: object) -> None:
+    """Raise EventsimError where it is said how often a checkpoint is written, and not where."""
+    if every is not None and checkpoint is None:
+        raise EventsimError(f"every = {every!r} says how often a checkpoint is written: give checkpoint=PATH, too")
+
+
 def _options(engine: Engine, given: dict[str, Any], known: tuple[str, ...], elsewhere: dict[str, str]) -> Options:
     """The engine's options among keywords; EventsimError for others, with what may have been meant."""
     for name in given:
@@ -172,14 +185,15 @@ def resume(
     every: int | str | None = None,
     scene: Scene | None = None,
     interrupt: Interrupt | None = None,
+    notice: Notice | None = None,
 ) -> Run:
     """Go on with a run from its checkpoint `path`: the log it joins is that of an uninterrupted run, bit for bit.
 
     until, events: replace both parts of the stop that the run had; events count from its beginning.  engine: another one.
     log: where its log is now, if it was moved; rows behind the checkpoint are written anew.  digest: refused where there is no
-    log.  progress, on_event, interrupt: as in `simulate`, of what comes now.  checkpoint, every: where and how often the next
-    checkpoints are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of another scene;
-    a law of contacts of your own is taken from here.
+    log.  progress, on_event, interrupt, notice: as in `simulate`, of what comes now.  checkpoint, every: where and how often
+    the next checkpoints are written; left out, to `path`, as often as before.  scene: refuse the checkpoint where it is of
+    another scene; a law of contacts of your own is taken from here.
 
     Returns a Run, whose counters and times include what was before.  Raises CheckpointError for a file that is no checkpoint,
     of another version or of another scene, or that is past the stop, LogError where its log is lost.
@@ -206,6 +220,7 @@ def resume(
         every=saved.every if every is None else interval(every),
         resumed=saved,
         interrupt=interrupt,
+        notice=notice,
     )
     chosen = engine_named(provenance.engine if engine is None else engine)
     return Run.of(run_scene(chosen, provenance.scene if scene is None else scene, stop, wanted))
@@ -267,7 +282,7 @@ class Simulation(NamesMeant):
         log: bool | str | PathLike[str] = True,
         measure: bool | float = False,
         checkpoint: str | PathLike[str] | None = None,
-        every: int | str = "60s",
+        every: int | str | None = None,
         **options: Any,
     ) -> None:
         chosen = engine_named(engine)
@@ -287,12 +302,13 @@ class Simulation(NamesMeant):
         self._broken_off = False
         self._ended: tuple[str, str] | None = None  # why it cannot go on: a word, a sentence
         demand_place_of_log(log)
+        _demand_checkpoint(every, checkpoint)
         if log is False:
             raise EventsimError("a simulation that is stepped through keeps its log: log=True, or a path")
         if checkpoint is not None and isinstance(log, bool):
             raise EventsimError("a log in memory does not outlive its run: with a checkpoint the log needs a file")
         if not isinstance(log, bool):
-            self._keeping = Keeping(self._provenance, log, checkpoint, interval(every))
+            self._keeping = Keeping(self._provenance, log, checkpoint, USUALLY if every is None else interval(every))
 
     def __repr__(self) -> str:
         return f"Simulation({self.scene.called}: {self.counters.events:,} events to t = {self.time!r})"

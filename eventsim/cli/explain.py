@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from eventsim.cli.words import aligned, point, short, title
 from eventsim.engines.reference.cells import ENOUGH_DISKS
 from eventsim.scene.names import plural
+from eventsim.scene.settling import Settling, settling
 from eventsim.scene.walls import SHAPES
 
 if TYPE_CHECKING:
@@ -54,6 +55,9 @@ def explanation(needs: Needs, origins: Origins | None = None) -> Iterator[tuple[
     surprising = not needs.law.keeps_energy()
     if surprising:
         yield "contacts", _contacts(needs)
+    lands = needs.walls or needs.immovable or needs.domain in ("box", "channel")
+    if needs.gravity is not None and needs.contact_duration is not None and lands and needs.disks > needs.immovable:
+        yield "rest", _rest(settling(needs.disks - needs.immovable, needs.radii[0], needs.gravity), needs.contact_duration)
     yield "disks", _disks(needs)
     if origins is not None and len(origins.shares) > 1:
         yield "numbers", _numbers(origins)
@@ -169,6 +173,13 @@ def _contacts(needs: Needs) -> str:
         kept = "energy is conserved; the run says in the end how far rounding changed it"
     text = f"{law.words(short)}{law.rough_words(short)}{'; ' if needs.obstacles else ': '}{kept}"
     return f"{text}; masses so uneven that velocities carry what their rounding leaves" if needs.low_parts else text
+
+
+def _rest(told: Settling, duration: float) -> str:
+    cost = f"none with a contact_duration: a disk left on a floor or in a pile {told.cost(duration)}, if all are"
+    cost += ", and rows of a log"
+    is_short = told.duration is not None and duration < told.duration
+    return f"{cost}; {told.rule()}" if is_short else cost
 
 
 def _start(needs: Needs) -> str:

@@ -170,6 +170,9 @@ def command(
         wanted["trust"] = True
     with ProgressBar(quiet=quiet) as progress, interruptible() as interrupt:
         wanted |= {"progress": progress, "interrupt": interrupt}
+        if not quiet:
+            kept = ", and the log is kept" if files.log is not None or resume else ""
+            wanted["notice"] = lambda told: say(f"note: {told}. Ctrl-C ends the run{kept}", err=True)
         if chosen is None or resume:
             run = simulation.resume(str(resume), scene=chosen, **wanted)
         else:

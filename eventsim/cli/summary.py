@@ -69,6 +69,8 @@ def summary_text(asked: str, run: Run, files: Files, horizon: Horizon | None = N
     ]
     if counters.pair_contacts == 0:
         rows = [row for row in rows if row[0] != "overlap"]
+    if run.pace is not None:
+        rows.append(("pace", run.pace))
     if run.trust is not None:
         rows.append(("trust", trust_words(run.trust)))
     if horizon is not None:

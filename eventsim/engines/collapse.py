@@ -17,6 +17,7 @@ import numpy as np
 from eventsim.engines.endless import is_endless
 from eventsim.formulas.doubt import AT_ONCE, kept_up_instant
 from eventsim.record.events import Floats, Kind, Rows
+from eventsim.scene.settling import remedy_of
 from eventsim.scene.stage import Stage
 
 TAIL = 1024
@@ -124,7 +125,7 @@ def _called(disks: list[int], stage: Stage, kept_up: bool) -> tuple[str, str]:
     """
     if kept_up and stage.mass is not None and np.any(np.isinf(stage.mass[disks]) | (stage.mass[disks] == 0.0)):
         return "contacts without end", SQUEEZED
-    return "inelastic collapse", stage.law.remedy()
+    return "inelastic collapse", remedy_of(stage)
 
 
 def diagnosis_of_sunk(rows: Rows, stage: Stage, time: float) -> tuple[str, str] | None:

@@ -13,8 +13,9 @@ from eventsim.errors import EventsimError
 from eventsim.formulas.clock import MOST_EPOCHS, clock_time
 from eventsim.record.events import Rows, blank_rows, joined, unchangeable
 from eventsim.runner.checkpoint_writer import CheckpointWriter
-from eventsim.runner.options import Interrupt, OnEvent, Progress, RunOptions
+from eventsim.runner.options import Interrupt, Notice, OnEvent, Progress, RunOptions
 from eventsim.runner.outcome import Outcome, diagnosed, provenance_of, state_of
+from eventsim.runner.pace import Pace
 from eventsim.runner.recording import Recording
 from eventsim.runner.residuals import residuals_of
 from eventsim.scene import Scene
@@ -63,7 +64,8 @@ def run_session(session: Session, engine: Engine, scene: Scene, stop: Stop, want
             recording.go_on(wanted)
         if wanted.checkpoint is not None:
             checkpoints = CheckpointWriter(wanted.checkpoint, wanted.every, provenance, stop, recording.file)
-        loop = Loop(session, stop, recording, checkpoints, interrupt, wanted.on_event, wanted.progress)
+        pace = Pace(session, stop)
+        loop = Loop(session, stop, recording, checkpoints, interrupt, pace, wanted.on_event, wanted.progress, wanted.notice)
         if resumed is not None:
             loop.elapsed, loop.last_rows, loop.saving = resumed.elapsed_s, resumed.last_rows, resumed.write_s
         stopped, reason = diagnosed(session, loop.run(), loop.last_rows)
@@ -94,6 +96,7 @@ def run_session(session: Session, engine: Engine, scene: Scene, stop: Stop, want
         log_path=None if recording.file is None else recording.file.path,
         recorded=None if recording.memory is None else recording.memory.recorded(),
         trajectory=session.trajectory,
+        pace=pace.told,
     )
 
 
@@ -137,8 +140,10 @@ class Loop:
     recording: Recording
     checkpoints: CheckpointWriter | None
     interrupt: Interrupt
+    pace: Pace
     on_event: OnEvent | None = None
     progress: Progress | None = None
+    notice: Notice | None = None
     elapsed: float = 0.0
     saving: float = 0.0
     last_rows: Rows = field(default_factory=lambda: blank_rows(0))
@@ -171,6 +176,8 @@ class Loop:
             self._save(stopped)
             if self.progress is not None:
                 _tell(self.progress, session, self.stop)
+            if (told := self.pace.look()) is not None and self.notice is not None:
+                self.notice(told)
             if stopped is not None:
                 return stopped
 

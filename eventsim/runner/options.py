@@ -20,6 +20,9 @@ from eventsim.scene.numbers import optional_number, optional_whole
 Progress: TypeAlias = Callable[[float | None, int, float], None]
 """Called now and then with the fraction done (None: unknown), the events so far and the time on the scene's clock."""
 
+Notice: TypeAlias = Callable[[str], None]
+"""Called with a sentence that somebody who waits should read."""
+
 OnEvent: TypeAlias = Callable[[Rows], None]
 """Called with each block of new rows (an array of ROW)."""
 
@@ -33,6 +36,7 @@ class RunOptions:
         compact: leave out of the log what replay computes.
         digest: compute the digest also where no log is kept.
         progress: called a few times a second.
+        notice: called, once at most, when contacts come ever faster.
         on_event: called with each block of rows, between two stints of the engine.
         takers: called with each block of rows beside the engine, in the writer's thread.
         command: the command line that asked for the run; it is told in the log.
@@ -45,6 +49,7 @@ class RunOptions:
     compact: bool = False
     digest: bool = False
     progress: Progress | None = None
+    notice: Notice | None = None
     on_event: OnEvent | None = None
     takers: list[OnEvent] = field(default_factory=list)
     command: str | None = None

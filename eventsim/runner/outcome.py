@@ -27,7 +27,8 @@ class Outcome:
     log_path: where the log was streamed to.  recorded: the log that was kept in memory.  stopped: `until`, `events`, `quiet` (no
     event ahead), `collapse`, `digits`, `law` (none tells what a contact does), `interrupted`.  reason: a sentence about that
     where there is more to say.  elapsed_s: simulating only; compile_s and write_s (waiting for rows to be written and measured)
-    apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its log.
+    apart, seconds.  trajectory: samples, of a stepped engine, whose motion does not follow from its log.  pace: a sentence where
+    contacts came ever faster.
     """
 
     scene: Scene
@@ -45,6 +46,7 @@ class Outcome:
     log_path: Path | None = None
     recorded: Recorded | None = None
     trajectory: Trajectory | None = None
+    pace: str | None = None
 
     @property
     def time(self) -> float:

@@ -13,6 +13,7 @@ from eventsim.formulas.rest import LEFT, STRUCK, SUPPORTED, held_by
 from eventsim.formulas.walls.face import slope
 from eventsim.record.events import Kind
 from eventsim.scene.corners import corners_of
+from eventsim.scene.settling import remedy_of
 from eventsim.scene.stage import Stage
 
 
@@ -21,7 +22,7 @@ class TwoSupportsError(Exception):
 
     def __init__(self, disk: int, walls: list[str], stage: Stage) -> None:
         # with a contact duration there is rest only of disks that lie on a wall at the start, however long it is
-        then = f"; {stage.law.remedy()}" if stage.law.duration is None else ", whatever the contact_duration"
+        then = f"; {remedy_of(stage)}" if stage.law.duration is None else ", whatever the contact_duration"
         super().__init__(
             f"disk {disk} comes to rest on two walls, {' and '.join(walls)}: only rest on one straight wall is modelled{then}"
         )

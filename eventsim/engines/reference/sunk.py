@@ -18,6 +18,7 @@ from eventsim.formulas.real import Real
 from eventsim.formulas.rest import SUPPORTED
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.formulas.walls.post import Post
+from eventsim.scene.settling import remedy_of
 from eventsim.scene.stage import Stage
 
 ALONG = 2.0**-20
@@ -166,7 +167,7 @@ class Sunk:
     def _sentence(self, event: Event, gap: float) -> str:
         wall = self._stage.wall_names[self._stage.surfaces[-1 - event.b].wall] if event.b < 0 else None
         who = named(disks_of(event)) if wall is None else f"disk {event.a} and {wall}"
-        remedy = SQUEEZED if self._is_squeezed(event) else self._stage.law.remedy()
+        remedy = SQUEEZED if self._is_squeezed(event) else remedy_of(self._stage)
         return (
             f"the gap of {who} has sunk to {gap:.2g}, the last bits of their places, behind contacts that take energy: which "
             f"contact comes next, and when, float64 cannot tell any more; {remedy}"

@@ -14,6 +14,7 @@ from eventsim.formulas.laws import Own, wrong_share
 from eventsim.formulas.real import Real
 from eventsim.formulas.simultaneous import SqueezedError
 from eventsim.scene.own_law import FAILS, told
+from eventsim.scene.settling import remedy_of
 from eventsim.scene.stage import Stage
 
 
@@ -29,7 +30,7 @@ def endless(state: ExactState, stage: Stage, i: int) -> tuple[str, str]:
     else:
         cause = (
             "follow one another faster than the clock can tell (inelastic collapse, or rest on another disk, on several walls or "
-            f"on a round one); {stage.law.remedy()}"
+            f"on a round one); {remedy_of(stage)}"
         )
     x, y = (float(at) for at in state.place(pile[0], state.now))  # engines come to the pile by different disks
     x, y = x + stage.corner[0], y + stage.corner[1]
