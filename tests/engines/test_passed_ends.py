@@ -109,3 +109,13 @@ def test_a_point_that_has_a_radius_does_not_fall_between_two_walls(engine, peak,
             start = 1.0 + off * radius - 2.0 * speed, 4.0
             run = run_of(start, (speed, 0.0), radius, engine, 2.1, walls=PEAKS[peak], gravity=(0.0, -1.0), restitution=0.5)
             assert run.log.time[:1].tolist() == pytest.approx([2.0], rel=1e-11)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("radius", [0.0, 2.0**-45, 2.0**-41])
+@pytest.mark.parametrize("far", [3.0, 8.0])
+def test_a_point_that_bounces_where_one_level_wall_goes_on_in_another_comes_to_rest_there(engine, radius, far):
+    floor = es.Polyline([(0.0, 2.0), (1.0, 2.0), (3.0, 2.0), (far, 1.0)])
+    run = run_of((1.0, 4.0), (0.0, 0.0), radius, engine, 9.0, walls=(floor,), gravity=(0.0, -1.0), restitution=0.5)
+    assert run.log.kind[-1] == 2
+    assert run.log.time[-1] == pytest.approx(6.0, rel=1e-11)

@@ -126,7 +126,9 @@ def passes_end(
     there = hand(x, y, vx, vy, gx, gy, end.x, end.y, u, w)
     if there == 0.0 and not post and end.bx == 0.0 and end.by == 0.0 and not end_of(ends, second, -side)[0]:
         # between others, which may hide it: it is not met by what comes from beyond its end, or goes there
-        return bool((u * end.ax + w * end.ay > 0.0) == short)
+        one, other = u * end.ax, w * end.ay
+        across = abs(one + other) <= FILTER * (abs(one) + abs(other))  # straight down: both that go on there are met
+        return bool(across or (one + other > 0.0) == short)
     if there == 0.0:
         return not post
     return bool((there > 0.0) == (wanted > 0.0))
