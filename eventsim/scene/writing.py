@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import secrets
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
@@ -20,6 +21,9 @@ from eventsim.scene.walls.wall import Wall, keys_of
 
 if TYPE_CHECKING:
     from eventsim.scene.scene import Scene
+
+LIST_BELOW = re.compile(r"\[\n((?: +[-+.\w]+,\n)+) *\]")
+"""A list of numbers, each in a line of its own."""
 
 DISKS_IN_PIECE = 256
 DISKS_BESIDE = "disks.npz"
@@ -99,7 +103,7 @@ def scene_to_toml(scene: Scene) -> str:
     for disk in data["disk"]:
         if disk.get("mass") == "inf":
             disk["mass"] = math.inf
-    return tomli_w.dumps(data)
+    return LIST_BELOW.sub(lambda rows: f"[{', '.join(rows[1].replace(',', '').split())}]", tomli_w.dumps(data))
 
 
 def _domain_table(domain: Domain) -> dict[str, Any]:

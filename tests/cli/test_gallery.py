@@ -1,6 +1,7 @@
 """`eventsim gallery`: list, tell, copy."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -39,6 +40,15 @@ def test_a_copy_is_the_same_scene_bit_for_bit(eventsim, tmp_path, name, suffix):
         assert np.array_equal(getattr(copied.disks, key), getattr(scene.disks, key))
     for key in ("domain", "walls", "gravity", "restitution", "contact_duration", "until", "events", "start_time"):
         assert getattr(copied, key) == getattr(scene, key)
+
+
+@pytest.mark.parametrize("name", ["two-disks", "stadium", "channel"])
+def test_a_copy_has_its_vectors_in_one_line(eventsim, tmp_path, name):
+    target = tmp_path / "copy.toml"
+    eventsim("gallery", name, "--copy", target)
+    text = target.read_text()
+    assert re.search(r"(?m)^position = \[[-\d.e]+, [-\d.e]+\]$", text)
+    assert not re.search(r"(?m)^ +[-\d.e]+,$", text)
 
 
 def test_a_copy_may_have_settings(eventsim, tmp_path):
