@@ -1,7 +1,7 @@
 """The kinds of figures, which can be told without a library to draw them."""
 
 TITLES = {
-    "trajectories": "the ways of the disks, contacts marked",
+    "trajectories": "the paths of the disks, contacts marked",
     "raster": "which disk had an event when, and how many there were",
     "speeds": "speed histogram, with Maxwell's curve",
     "msd": "mean squared displacement against time",

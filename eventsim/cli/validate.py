@@ -185,7 +185,7 @@ def _text(scene: str, comparison: Comparison, sentences: list[str]) -> str:
         f"{comparison.exact.elapsed:.2g} s per time unit; believed until t = {comparison.truth.horizon:.4g}",
     ]
     lines += ["", CONTACTS_HEAD, *_by_engine(comparison.lines, _contacts_row)]
-    lines += ["", MOTION_HEAD, *_by_engine(comparison.lines, _motion_row)]
+    lines += ["", MOTION_HEAD, *_by_engine(comparison.lines, _motion_row), "", *LEGEND]
     lines += ["", *comparison.left_out, *([""] if comparison.left_out else []), *sentences, ""]
     lines.append("; ".join(f"{label}: {told}" for label, told in comparison.settings.items()))
     lines.append(", ".join(f"{name} {number}" for name, number in versions().items()))
@@ -199,6 +199,14 @@ def _by_engine(lines: Sequence[Line], row: Callable[[Line], str]) -> Iterator[st
             yield ""
         yield from map(row, group)
 
+
+LEGEND = (
+    "radii/dt: what a typical disk flies in a step. found to spurious: % of the contacts ahead of exact states, on which the"
+    " engine is set; angle: of its deflections, degrees off; overlap: in reaches; stuck: time at a wall.",
+    "position: error after two contacts a disk, diameters; energy: relative change; rate, pressure: over the whole run,"
+    " beside event-driven (without contacts at its very end); s/time: CPU seconds per time unit.",
+)
+"""What the columns hold."""
 
 CONTACTS_HEAD = "engine           radii/dt  found missed doubled spurious  angle  overlap   stuck"
 

@@ -259,3 +259,16 @@ def test_one_event_is_called_one_event():
     figure = new_figure()
     trajectories.draw(figure, es.simulate(es.Scene(disks, es.Open()), until=20.0, log=True).log)
     assert ", 1 event (" in figure.axes[0].get_title(loc="left")
+
+
+def test_trajectories_mark_where_disks_began_and_say_which_are_drawn():
+    n = 40
+    disks = es.Disks([[0.3 + 0.2 * k, 0.5] for k in range(n)], [[0.0, 0.3 + 0.01 * k] for k in range(n)], 0.05)
+    figure = new_figure()
+    trajectories.draw(figure, es.simulate(es.Scene(disks, es.Box((9.0, 1.0))), until=5.0, log=True).log)
+    axes = figure.axes[0]
+    assert "the paths of disks 0, 2, 5, ..., 39 (16 of 40)" in axes.get_title(loc="left")
+    rings = next(one for one in axes.collections if one.get_zorder() == 3.5)
+    middles = [path.get_extents().get_points().mean(axis=0) for path in rings.get_paths()]
+    chosen = np.unique(np.linspace(0, n - 1, 16).astype(int))
+    assert np.allclose(middles, disks.position[chosen], atol=1e-12)

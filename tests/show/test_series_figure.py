@@ -9,7 +9,7 @@ from eventsim.measure import measure
 from eventsim.show.figures import msd, residuals, series
 from eventsim.show.figures.style import falls_by_decades, new_figure
 
-NONE = ["none: 1 contact between disks: too\nfew to share the energy"]
+NONE = "1 contact between disks: too few to share the energy"
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_the_energy_of_a_short_run_is_that_of_its_moments(ball):
 
 def test_means_are_steps_over_their_stretches(pucks):
     figure = drawn(series, pucks.log)
-    (steps,) = (patch for patch in figure.axes[2].patches if isinstance(patch, StepPatch))
+    (steps,) = (patch for patch in figure.axes[1].patches if isinstance(patch, StepPatch))
     values, edges, _ = steps.get_data()
     found = measure(pucks.log, discard=0.0).series
     assert edges.tolist() == [0.0, *found.time]
@@ -59,12 +59,15 @@ def test_means_are_steps_over_their_stretches(pucks):
 
 
 def test_a_figure_has_no_temperature_pressure_or_d_where_measure_has_none(pucks, ball):
-    _, warm, _, pressed = drawn(series, pucks.log).axes
-    assert words(warm) == words(pressed) == NONE
+    figure = drawn(series, pucks.log)
+    assert [axes.get_ylabel() for axes in figure.axes] == ["kinetic energy", "contacts of a disk\nwith others / time"]
+    assert f"no temperature and no pressure: {NONE}" in figure.get_suptitle()
     below = drawn(msd, pucks.log).axes[1]
     assert not below.lines[0].get_ydata().size
     assert words(below) == ["no D: 1 contact between disks: too few to share the energy"]
-    assert words(drawn(series, ball.log).axes[2]) == ["none: a disk has no others to meet"]
+    figure = drawn(series, ball.log)
+    assert len(figure.axes) == 1
+    assert "no collision rate: a disk has no others to meet" in figure.get_suptitle()
 
 
 @pytest.mark.parametrize(

@@ -161,6 +161,20 @@ def test_the_time_of_pymunk_is_that_of_a_loop_of_ones_own(scene, dt, until):
         assert nearest.least * nearest.value == pytest.approx(own * dt, rel=0.3)
 
 
+def test_a_contact_at_the_very_end_is_nobodys_mistake():
+    disks = es.Disks([[0.5, 0.5], [1.5, 0.5]], [[1.0, 0.0], [0.0, 0.0]], 0.1)
+    scene = es.Scene(disks, es.Box((2.0, 1.0)))
+    rows = es.simulate(scene, until=10.0, log=True).log
+    end = float(rows.time[rows.b >= 0][2])  # a pair meets just then
+    comparison = compare(scene, chosen_competitors(["stepped"]), [0.03], end)
+    (line,) = comparison.lines
+    assert comparison.exact.pair_contacts == line.pair_contacts + 1
+    assert (line.rate, line.ratio) == (0.0, 1.0)
+    whole = compare(scene, chosen_competitors(["stepped"]), [0.03], end + 0.5)
+    assert whole.lines[0].pair_contacts == whole.exact.pair_contacts == 3
+    assert whole.lines[0].ratio == 1.0
+
+
 def test_an_interrupt_leaves_what_was_reached():
     """The second step is not begun; before the first one is over there is nothing to tell."""
 

@@ -38,8 +38,12 @@ PRESSURE = "N kT / area + part of contacts, not hits on walls"
 """What the curve of the pressure is."""
 
 
+PANELS = ("energy", "temperature", "collision rate", "pressure")
+"""What they show, in their order."""
+
+
 def draw(figure: Figure, log: AnyLog) -> None:
-    """Draw four panels: energy against time and temperature against contacts above, rate and pressure against time below."""
+    """Draw energy against time and temperature against contacts above, rate and pressure against time below: those there are."""
     passage = passage_with_time(log)
     measures = measure(log, discard=0.0)
     series = measures.series
@@ -59,7 +63,25 @@ def draw(figure: Figure, log: AnyLog) -> None:
         panels[1, 1].set_title(PRESSURE, loc="left", fontsize=8, color=LIGHT.faint)
     who = plural(measures.disks, "disk") if measures.disks else plural(measures.tracers, "tracer")
     told = f"{name_of(log)}: {who} along the run" + (f"; {steps_words(series.ends)}" if any(steps) else "")
+    for why, names in _leave_out(figure, dict(zip(PANELS, panels.ravel().tolist(), strict=True))).items():
+        told += f"; no {' and no '.join(names)}: {why}"
     figure.suptitle(told, fontsize=11, x=0.02, ha="left", wrap=True)
+
+
+def _leave_out(figure: Figure, panels: dict[str, Axes]) -> dict[str, list[str]]:
+    """Take away panels without a curve, and give the others their room; what is said of each -> the names of those."""
+    empty = {name: axes for name, axes in panels.items() if not (axes.lines or axes.patches)}
+    if len(empty) == len(panels):
+        return {}
+    left_out: dict[str, list[str]] = {}
+    for name, axes in empty.items():
+        left_out.setdefault(axes.texts[0].get_text().removeprefix("none: ").replace("\n", " "), []).append(name)
+        figure.delaxes(axes)
+    kept = [axes for name, axes in panels.items() if name not in empty]
+    grid = figure.add_gridspec(1 if len(kept) < 3 else 2, min(len(kept), 2))
+    for place, axes in enumerate(kept):
+        axes.set_subplotspec(grid[divmod(place, grid.ncols)])
+    return left_out
 
 
 def steps_words(ends: Floats) -> str:

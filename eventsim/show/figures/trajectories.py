@@ -1,4 +1,4 @@
-"""Trajectories: the ways of the disks through the scene, their contacts marked."""
+"""Trajectories: the paths of the disks through the scene, their contacts marked."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from matplotlib.patches import Rectangle as Box
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from eventsim.record.events import Floats
 from eventsim.replay.flight_table import flights, together
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
@@ -37,7 +38,7 @@ FLAT, SLIM = 0.6, 1.2
 
 
 def draw(figure: Figure, log: AnyLog) -> None:
-    """Draw the ways of up to MOST_DISKS disks; dots are their events, circles the disks at the end."""
+    """Draw the paths of up to MOST_DISKS disks; dots are their events, rings the disks at the start, circles those at the end."""
     passage = passage_with_time(log)
     scene, n = log.scene, passage.stage.n
     disks = np.unique(np.linspace(0, n - 1, min(n, MOST_DISKS)).astype(np.int64))
@@ -67,7 +68,11 @@ def draw(figure: Figure, log: AnyLog) -> None:
     )
     last = passage.final() if until is None else next(passage.states([until]))
     at_end = last.position[disks]
-    circles = [Circle((x, y), r) for (x, y), r in zip(at_end.tolist(), scene.disks.radius[disks].tolist(), strict=True)]
+    at_start = scene.disks.position[disks]
+    rings, circles = (_circles(places, scene.disks.radius[disks]) for places in (at_start, at_end))
+    axes.add_collection(
+        PatchCollection(rings, facecolor="none", edgecolor=shades[disks], linewidth=0.9, linestyle="dashed", zorder=3.5)
+    )
     axes.add_collection(
         PatchCollection(circles, facecolor=shades[disks], edgecolor=LIGHT.edge, linewidth=0.6, alpha=0.9, zorder=4)
     )
@@ -76,12 +81,13 @@ def draw(figure: Figure, log: AnyLog) -> None:
     axes.add_collection(LineCollection(walls, colors=LIGHT.wall, linewidths=1.6), autolim=False)
     axes.add_collection(LineCollection(open_, colors=LIGHT.wall, linewidths=1.0, linestyles="dashed"), autolim=False)
     told = plural(events, "event") if until is None else f"until t = {until:.6g}: the first {events:,} events"
-    which = f"{len(disks)} of {n} disks" if len(disks) < n else "all disks" if n > 1 else "the disk"
+    some = f"disks {', '.join(map(str, disks[:3]))}, ..., {disks[-1]} ({len(disks)} of {n})"
+    which = some if len(disks) < n else "all disks" if n > 1 else "the disk"
     label(
         axes,
         f"x [{LENGTH}]",
         f"y [{LENGTH}]",
-        f"{name_of(log)}: the ways of {which}, {told} (dots)",
+        f"{name_of(log)}: the paths of {which}, {told} (dots); dashed: the start",
     )
     axes.grid(visible=False)
     width, height = sides_of(shown)
@@ -89,6 +95,10 @@ def draw(figure: Figure, log: AnyLog) -> None:
         _keep_one_tick(axes.yaxis, shown[1], shown[3])
     if width < SLIM:
         _keep_one_tick(axes.xaxis, shown[0], shown[2])
+
+
+def _circles(places: Floats, radii: Floats) -> list[Circle]:
+    return [Circle((x, y), r) for (x, y), r in zip(places.tolist(), radii.tolist(), strict=True)]
 
 
 def _drawn_until(log: AnyLog, disks: NDArray[np.int64]) -> tuple[float | None, int]:
