@@ -8,6 +8,7 @@ import shlex
 import sys
 import warnings
 from importlib import import_module
+from inspect import cleandoc
 
 import click
 
@@ -77,6 +78,14 @@ def complete_files(verb: click.Command) -> None:
             parameter.type = click.Path(readable=False)
 
 
+def tell_keys_last(verb: click.Command) -> None:
+    """Let the help of a verb tell its options before the keys of its JSON."""
+    text = cleandoc(verb.help or "")
+    keys = re.search(r"\n\n(?:\x08\n)?Keys of --json", text)
+    if keys is not None:
+        verb.help, verb.epilog = text[: keys.start()], text[keys.start() :].strip("\n")
+
+
 class Program(click.Group):
     """The verbs, each imported when it is called: `eventsim --help` loads none of them."""
 
@@ -93,6 +102,7 @@ class Program(click.Group):
             assert isinstance(verb, click.Command)
             verb.context_class = Context
             complete_files(verb)
+            tell_keys_last(verb)
             return verb
         if not cmd_name.startswith("-"):
             from eventsim.cli.guesses import verb_hint  # only who errs pays for it

@@ -89,3 +89,10 @@ def test_run_says_how_much_energy_was_lost(eventsim, tmp_path):
     disks = "".join(f"[[disk]]\nposition = [{x}, 0]\nvelocity = [{v}, 0]\nradius = 1\n" for x, v in ((0, 1), (4, -1)))
     path.write_text(f'until = 5\nrestitution = 0.5\n[domain]\nkind = "open"\n{disks}')
     assert "not conserved in this scene: 1 -> 0.25\n" in eventsim("run", path).stdout
+
+
+@pytest.mark.parametrize("verb", OURS)
+def test_help_tells_the_options_before_the_keys_of_json(eventsim, verb):
+    text = eventsim(verb, "--help").stdout
+    assert "Options:" in text
+    assert "Keys of --json" not in text.split("Options:")[0]
