@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 
@@ -39,6 +40,11 @@ class CollapseError(EventsimError):
 
 class CheckpointError(EventsimError):
     """A checkpoint cannot be read or written, or belongs to another scene or version."""
+
+
+def sentence_of(problem: str) -> str:
+    """A problem without the lines that are quoted below it."""
+    return re.split(r"\n    \S", problem, maxsplit=1)[0]
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

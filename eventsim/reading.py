@@ -10,8 +10,9 @@ import math
 import os
 import stat
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import IO, Any
 
@@ -32,11 +33,46 @@ MOST_HELD = 1 << 32
 NUMBERS = "iufUSO"
 """Kinds of arrays that hold numbers, or texts and objects that may be some."""
 
+NEAR = 0.7
+"""How much alike the name of a file that is meant is: the share of letters in common, of both."""
+
 WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 """Opening a pipe without it would wait for a writer."""
 
 NO_TEXT = "is not a text file in UTF-8: save it anew with this encoding"
 """What is said of a file that should hold text."""
+
+MOST_NAMES = 10_000
+"""Of a folder, among which one that is meant is looked for."""
+
+
+def no_text(data: bytes, error: UnicodeDecodeError) -> str:
+    """Say that bytes hold no text, from which line on, and how that line looks in Latin-1, if it looks like text there."""
+    number = data.count(b"\n", 0, error.start) + 1
+    begin = data.rfind(b"\n", 0, error.start) + 1
+    line = data[begin : error.start + LONGEST_REASON].split(b"\n")[0][:LONGEST_REASON].decode("latin-1").strip()
+    shown = f"\n    line {number}: {line}" if line.isprintable() else ""
+    return f"{NO_TEXT} (at line {number}){shown}"
+
+
+def near_file(path: Path, known: Collection[str] = ()) -> str:
+    """Return " (did you mean headon.toml?)" for a file that is not there, where one of a like name is beside it.
+
+    known: what such files end in; a name without an end may mean one of them.
+    """
+    from difflib import get_close_matches  # only who errs pays for it
+
+    try:
+        with os.scandir(path.parent) as entries:
+            names = [entry.name for entry in islice(entries, MOST_NAMES) if entry.is_file()]
+    except (OSError, ValueError):
+        return ""
+    end = path.suffix.lower()
+    alike = [name for name in names if Path(name).suffix.lower() == end] if end else []
+    alike += [name for name in names if Path(name).suffix.lower() in known]
+    by_name = {Path(name).stem if not end else name: name for name in alike}
+    near = get_close_matches(path.name, by_name, n=1, cutoff=NEAR)
+    return f" (did you mean {path.with_name(by_name[near[0]])}?)" if near else ""
 
 
 @contextmanager
@@ -76,7 +112,7 @@ def told_as(path: Path, error: type[EventsimError], what: str) -> Iterator[None]
     except EventsimError:
         raise
     except FileNotFoundError as problem:
-        raise error(f"{path}: no such file") from problem
+        raise error(f"{path}: no such file{near_file(path)}") from problem
     except OSError as problem:
         raise error(f"{path}: cannot be read ({problem.strerror or problem})") from problem
     except MemoryError as problem:

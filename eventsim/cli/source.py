@@ -13,6 +13,7 @@ from eventsim import suffixes
 from eventsim.cli.options import Verb, Whole
 from eventsim.cli.output import INTERRUPTED, say
 from eventsim.errors import SceneError, did_you_mean
+from eventsim.reading import near_file
 
 if TYPE_CHECKING:
     from eventsim.replay.log import AnyLog
@@ -134,15 +135,17 @@ def seeded_scene(scene: str, settings: Sequence[str], seed: int | None) -> Scene
         raise SceneError(f"{scene}: a scene file ends in {' or '.join(suffixes.SCENES)}")
     if files := [scene + suffix for suffix in suffixes.SCENES if Path(scene + suffix).exists()]:
         raise SceneError(f"{scene!r} is no built-in scene, but {files[0]} is here: write the name of the file with its end")
+    if Path(scene).suffix and (near := near_file(Path(scene), suffixes.SCENES)):
+        raise SceneError(f"{scene}: no such file{near}")
     raise SceneError(
         f"{scene!r} is neither a scene file ({', '.join(suffixes.SCENES)}) nor a built-in scene"
-        f"{did_you_mean(scene, names())}; eventsim gallery lists the built-in ones"
+        f"{did_you_mean(scene, names()) or near_file(Path(scene), suffixes.SCENES)}; eventsim gallery lists the built-in ones"
     )
 
 
 def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scene:
     """Return a built-in scene: settings that name one of its parameters first, then keys of the scene."""
-    from eventsim.scene.files import apply_overrides, scene_from_dict, scene_to_dict
+    from eventsim.scene.files import apply_overrides, begun_by, scene_from_dict, scene_to_dict
     from eventsim.scene.gallery import describe, gallery
     from eventsim.scene.schema import SCENE_KEYS
 
@@ -166,4 +169,8 @@ def built_in_scene(name: str, settings: Sequence[str], seed: int | None) -> Scen
             near = did_you_mean(key.lower(), allowed) or did_you_mean(key.lower(), SCENE_KEYS)
             own = f"its own are {', '.join(allowed)}" if allowed else "it has none of its own"
             raise SceneError(f"{name}: {key}: unknown key{near}; {own}; those of every scene are {', '.join(SCENE_KEYS)}")
-    return scene_from_dict(apply_overrides(scene_to_dict(scene), overrides), source=name)
+    data = scene_to_dict(scene)
+    try:
+        return scene_from_dict(apply_overrides(data, overrides), source=name)
+    except SceneError as error:
+        raise begun_by(error, data, overrides) from None

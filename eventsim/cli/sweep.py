@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,13 +11,16 @@ import click
 from eventsim import suffixes
 from eventsim.cli.options import Whole, complete_scene, drawable, json_option, quiet_option, writable
 from eventsim.cli.output import BAD_INPUT, INTERRUPTED, say, say_data
-from eventsim.errors import EventsimError
+from eventsim.errors import EventsimError, SceneError
 from eventsim.processes import cores
 
 if TYPE_CHECKING:
     from eventsim.scene import Scene
     from eventsim.sweep.task import Row
 
+
+NO_KEYS = ("unknown key", "setting '", "no such file", "neither a scene file")
+"""What is in a problem that other values do not mend."""
 
 SETTINGS_HELP = "Values of a key: KEY=A,B,C or KEY=START:STOP:COUNT. Given several times: every combination."
 
@@ -104,6 +107,7 @@ def command(
 
     began = perf_counter()
     grid = grid_of(settings)
+    _demand_keys(scene, grid)
     try:
         with dask_executor(dask) as executor, TaskBar(quiet=quiet) as progress:
             rows = sweep(
@@ -145,6 +149,15 @@ def command(
         )
     if failed == len(rows):
         click.get_current_context().exit(BAD_INPUT)
+
+
+def _demand_keys(scene: str, grid: Mapping[str, Sequence[str]]) -> None:
+    """Raise SceneError where settings name no keys of the scene: all runs would fail for it."""
+    try:
+        _scene(scene, tuple(f"{key}={values[0]}" for key, values in grid.items()), None)
+    except SceneError as error:
+        if slips := [problem for problem in error.problems if any(words in problem for words in NO_KEYS)]:
+            raise SceneError(slips) from None
 
 
 def _draw(rows: Sequence[Row], path: Path, x: str | None, y: str | None, name: str) -> None:

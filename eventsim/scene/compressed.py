@@ -15,7 +15,7 @@ from eventsim.scene.cells import Cells, Indices
 from eventsim.scene.disks import Disks, Floats, join
 from eventsim.scene.domain import Box, Channel, Domain, Periodic
 from eventsim.scene.fill import clear_of, place_gas
-from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity, with_radii
+from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity, too_many, with_radii
 from eventsim.scene.numbers import Point
 from eventsim.scene.walls import Wall
 
@@ -66,6 +66,9 @@ def place_compressed(
     radii = np.concatenate(each)
     if not radii.all():
         raise SceneError(f'{where}.arrangement = "compressed": a radius of 0 cannot grow; use "random"')
+    for gas, own in zip(gases, each, strict=True):
+        if (why := too_many(gas, region, float(own.max(initial=0.0)))) is not None:
+            raise SceneError(f"{where}: {why}")
     share = math.pi * float((radii**2).sum()) / (size[0] * size[1])
     start, scale = _start(gases, region, wraps, share, rngs)
     try:

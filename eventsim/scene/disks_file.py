@@ -15,7 +15,7 @@ from eventsim import suffixes
 from eventsim.errors import EventsimError, SceneError
 from eventsim.readers import read_start
 from eventsim.readers.columns import decimal_comma
-from eventsim.reading import NO_TEXT, Npz, as_floats, reading
+from eventsim.reading import Npz, as_floats, no_text, reading
 from eventsim.scene.cells import Indices
 from eventsim.scene.disks import USUAL, Disks
 from eventsim.scene.domain import Domain
@@ -120,10 +120,11 @@ def write_disks_file(path: Path, disks: Disks) -> None:
 
 def _read_csv(path: Path, file: IO[bytes], given: dict[str, float]) -> tuple[dict[str, Any], str, Indices]:
     """The columns by name, and the line of each row; lines that begin with # are comments."""
+    data = file.read()
     try:
-        lines = file.read().decode("utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: {NO_TEXT}") from None
+        lines = data.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{path}: {no_text(data, error)}") from None
     number = [n for n, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
     first = lines[number[0] - 1] if number else ""
     between = next((mark for mark in ",;\t" if mark in first), ",")

@@ -9,7 +9,7 @@ from typing import Any
 
 from eventsim.errors import SceneError
 from eventsim.scene.origins import Origins, origins_of
-from eventsim.scene.overrides import apply_overrides, is_shallow, settings_of
+from eventsim.scene.overrides import apply_overrides, begun_by, is_shallow, settings_of
 from eventsim.scene.scene import Scene
 from eventsim.scene.texts import tables_of_file, tables_of_toml, with_lines
 from eventsim.scene.writing import (
@@ -24,6 +24,7 @@ from eventsim.scene.writing import (
 
 __all__ = [
     "apply_overrides",
+    "begun_by",
     "draws_at_random",
     "listed_scene",
     "load_scene",
@@ -60,7 +61,7 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     try:
         return scene_from_dict(changed, path.parent, None, seed)
     except SceneError as error:
-        told = with_lines(error, text, data, settings, path.suffix.lower() == ".json")
+        told = with_lines(begun_by(error, data, settings), text, data, settings, path.suffix.lower() == ".json")
         raise SceneError(f"{path}: {problem}" for problem in told.problems) from None
 
 

@@ -13,7 +13,7 @@ from eventsim.errors import SceneError
 from eventsim.scene.cells import Cells
 from eventsim.scene.disks import Disks, Floats
 from eventsim.scene.domain import Domain
-from eventsim.scene.gas import Gas, Region, disk_radius, region_of, start_velocity, with_radii
+from eventsim.scene.gas import Gas, Region, disk_radius, most_disks, region_of, start_velocity, too_many, with_radii
 from eventsim.scene.insertion import insert_at_random, insert_sizes
 from eventsim.scene.lattice import Lattice
 from eventsim.scene.overlaps import period_of, touching_depth, wall_overlaps
@@ -104,6 +104,8 @@ class _Place:
     def at_random(self, rng: np.random.Generator) -> Floats:
         """Centres (count, 2) by random insertion."""
         count = self.gas.count
+        if (why := too_many(self.gas, self.region, self.radius)) is not None:
+            raise SceneError(f"{self.where}: {why}")
         if self.mass and self._packing_fraction() > HOPELESS and count > MANY:
             raise SceneError(self._too_dense(None))
         low, high = [], []
@@ -160,6 +162,8 @@ class _Place:
         if most >= count:
             found = "too many sites are blocked by walls or other disks"
         denser = "" if lattice.hexagonal else "; hexagonal is denser"
+        if self.mass and self.radius and count > (bound := most_disks(self.region, self.radius)):
+            denser = f"; no arrangement holds more than {bound}"
         raise SceneError(
             f"{self.where}: {count} disks of radius {self.radius:.6g} (packing fraction"
             f" {self._packing_fraction():.4g}) do not fit on a {self.gas.arrangement} lattice: {found}{denser}"

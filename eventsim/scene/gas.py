@@ -19,6 +19,8 @@ Region: TypeAlias = tuple[float, float, float, float]
 
 # Equal disks on a hexagonal lattice, touching: the densest packing there is.
 CLOSE_PACKING = math.pi / math.sqrt(12.0)
+# Of a packing fraction, which a sum of squares gives to some last bits.
+ROUNDING = 1e-9
 # More disks than this are a slip of the pen: their numbers alone would take gigabytes.
 MOST_DISKS = 50_000_000
 
@@ -100,6 +102,34 @@ def disk_radius(gas: Gas, region: Region) -> float:
         return gas.radius if isinstance(gas.radius, float) else 0.0
     x0, y0, x1, y1 = region
     return math.sqrt(gas.packing_fraction * (x1 - x0) * (y1 - y0) / (gas.count * math.pi))
+
+
+def most_disks(region: Region, radius: float) -> int:
+    """How many equal disks no arrangement in a rectangle exceeds."""
+    x0, y0, x1, y1 = region
+    return int(CLOSE_PACKING * (1.0 + ROUNDING) * (x1 - x0) * (y1 - y0) / (math.pi * radius**2))
+
+
+def too_many(gas: Gas, region: Region, radius: float) -> str | None:
+    """Why no arrangement holds a gas, and what one could hold at most; None where it may.
+
+    Disks in a rectangle, laid side by side with its copies, fill the plane: so they cover no more of it than the densest
+    packing does, if they are equal, and not all of it in any case.
+    """
+    if not gas.mass:
+        return None  # tracers may lie on each other
+    x0, y0, x1, y1 = region
+    area = (x1 - x0) * (y1 - y0)
+    squares = gas.count * radius**2 if gas.radii is None else float((gas.radii**2).sum())
+    share, most = math.pi * squares / area, CLOSE_PACKING if gas.radii is None else 1.0
+    if share <= most * (1.0 + ROUNDING):
+        return None
+    covers = f"cover {share:.4g} of their region, and no arrangement more than {most:.4g}"
+    if gas.radii is not None:
+        return f"{gas.count} disks of radii up to {radius:.6g} {covers}: give fewer or smaller ones, or more room"
+    widest = math.sqrt(most * area / (gas.count * math.pi))
+    fewer = f"at most {most_disks(region, radius)} disks of radius {radius:.6g} fit, or "
+    return f"{gas.count} disks of radius {radius:.6g} {covers}: {fewer}{gas.count} of radius {math.floor(widest * 1e6) / 1e6:.6g}"
 
 
 def gas_problems(gas: Gas, domain: Domain | None, where: str, *, seeded: bool) -> Iterator[str]:

@@ -42,6 +42,43 @@ def apply_overrides(data: Mapping[str, Any], overrides: Iterable[str] | None) ->
     return changed
 
 
+def begun_by(error: SceneError, data: Mapping[str, Any], overrides: Iterable[str] | None) -> SceneError:
+    """The same problems; those of a table that only settings have begun, and that lacks keys, in one sentence that says so.
+
+    Args:
+        error: of the scene with its settings.
+        data: the tables without them.
+        overrides: the settings.
+    """
+    problems = list(error.problems)
+    for setting in settings_of(overrides):
+        match = re.match(r"\s*(\w+)(?:\.|\[)(\d+)", setting)
+        listed = data.get(match[1], []) if match is not None else None
+        if match is None or not isinstance(listed, list) or int(match[2]) < len(listed):
+            continue
+        name, number = match[1], match[2]
+        lacks = [(k, found[1]) for k, one in enumerate(problems) if (found := re.search(_lacking(name, number), one)) is not None]
+        if not lacks:
+            continue
+        keys = " and ".join(key for _, key in lacks)
+        source = problems[lacks[0][0]].partition(f"{name}[{number}]")[0]
+        told = f"{source}setting {setting!r}: {_there(name, len(listed))}; this would begin another one, which lacks {keys}"
+        problems = [told if k == lacks[0][0] else one for k, one in enumerate(problems) if k not in [k for k, _ in lacks[1:]]]
+    return SceneError(problems)
+
+
+def _lacking(name: str, number: str) -> str:
+    """The pattern of a problem that says which key a table lacks."""
+    return rf"\b{name}\[{number}\]\.(\w+) is missing"
+
+
+def _there(name: str, count: int) -> str:
+    """Say what there is in a list."""
+    if count < 2:
+        return f"there is {name}.0 alone" if count else f"there is no {name}"
+    return f"there are {name}.0 {'and' if count == 2 else 'to'} {name}.{count - 1}"
+
+
 def settings_of(overrides: Iterable[str] | None) -> list[str]:
     """The settings that were given, one or several; SceneError for what holds none."""
     if overrides is None or isinstance(overrides, str):
@@ -84,9 +121,8 @@ def _set(table: dict[str, Any], steps: list[str], value: Any) -> None:
         fresh = value if last else ([] if steps[depth + 1].isdigit() else {})
         if isinstance(place, list):
             if not step.isdigit() or int(step) > len(place):
-                known = f"ends at {here}.{len(place) - 1}" if place else "is empty"
                 raise SceneError(
-                    f"there is no {here}.{step}: the list {here} {known} ({here}.{len(place)} would add to it)"
+                    f"there is no {here}.{step}: {_there(here, len(place))} ({here}.{len(place)} would add one)"
                 )
             index = int(step)
             if index == len(place):

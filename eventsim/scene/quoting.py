@@ -211,7 +211,8 @@ def _quotes(
         told = _remedy(table, key, {**_table(data, table), (key or table): _read(value)})
         told = _by_text(told, key or table, value.strip())
         write, other = (line.replace(f"{key or table} = ", f"{name}=") for line in (told.write, told.other))
-        yield quoted(setting, len(name) + 1, told.why, write, "typed", told.example, other)
+        column = 0 if "unknown key" in problem else len(name) + 1
+        yield quoted(setting, column, told.why, write, "typed", told.example, other)
         return
     missing = problem[match.start() :].partition(" is missing")[1] and path not in places
     here = _table(data, table) if missing else {}

@@ -86,6 +86,7 @@ ALIASES: dict[str, dict[str, str]] = {
         "velocity": "vel v speed speed_vector",
         "radius": "r rad",
         "mass": "m weight",
+        "species": "name label kind type",
     },
     "gas": {
         "count": "n number amount disks balls particles",
@@ -96,6 +97,7 @@ ALIASES: dict[str, dict[str, str]] = {
         "radius": "r rad",
         "mass": "m weight",
         "region": "area box",
+        "species": "name label kind type",
     },
     "wall": {
         "kind": "type shape",
@@ -179,6 +181,11 @@ def _remedy(
     value = here[key]
     if table == "wall" and (point := _of_arc(key, here)) is not None:
         return point
+    if table == "disk" and "angle" in here and _numbers(here, ("velocity", "angle")):
+        if key == "velocity":
+            return _polar(here)
+        if key == "angle" and "velocity" in here:
+            return Remedy("the components of the velocity tell its direction: leave this line out", "")
     if key in known:
         return _of_value(table, key, value)
     word = re.sub(r"[^a-z]+$", "", key.lower().replace("-", "_"))
@@ -294,8 +301,14 @@ def _around(center: Sequence[float], radius: float, turn: float) -> list[float]:
     return [round(middle + radius * way, 6) + 0.0 for middle, way in zip(center, (math.cos(turn), math.sin(turn)), strict=True)]
 
 
+def turned(length: float, angle: float, radians: bool) -> list[float]:
+    """The components of a vector of a length and a direction."""
+    return _around((0.0, 0.0), length, angle if radians else math.radians(angle))
+
+
 def _polar(here: Mapping[str, Any]) -> Remedy:
-    speed, angle = float(here.get("speed", 1.0)), float(here.get("angle", 0.0))
+    given = here.get("velocity", 1.0)
+    speed, angle = float(here.get("speed", given if _is_number(given) else 1.0)), float(here.get("angle", 0.0))
     (turn,), unit = _turns(angle)
     taken = f", the angle read as {unit}" if "angle" in here else ""
     return Remedy(f"a disk has a velocity [vx, vy]{taken}", f"velocity = {written(_around((0.0, 0.0), speed, turn))}")

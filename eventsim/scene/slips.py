@@ -25,6 +25,7 @@ from eventsim.scene.remedies import (
     combined,
     meant,
     pointed,
+    turned,
     two_ways,
     with_points,
     written,
@@ -47,6 +48,10 @@ COMPUTED = re.compile(r"=.*(?:\b(?:cos|sin|tan|sqrt|exp|log|math\.\w+|np\.\w+)\b
 """A value that is to be worked out."""
 
 UNIT_IN_LIST = r"(?<=\d)\s*(?![eE][-+]?\d)[A-Za-zµ°][\w/²^*-]*(?=\s*[,\]])"
+
+
+POLAR = r"\[\s*([-+]?[\d.]+)\s*[,;]\s*([-+]?[\d.]+)\s*(°|deg(?:rees)?|rad(?:ians)?)\s*\]"
+"""A speed and an angle with its unit, in a list."""
 
 
 class Slip(NamedTuple):
@@ -97,6 +102,12 @@ def _pair(line: str, key: str) -> str:
         right = with_points(key, f"[{match[1]}]")  # two numbers, with decimal commas
         return line if right is None else line[: match.start()] + f"= {right}" + line[match.end() :]
     return re.sub(rf"(=\s*)({number})\s*[,;x]\s*({number})(?=\s*(#|$))", r"\1[\2, \3]", line) if key in PAIRS else line
+
+
+def _components(line: str, key: str) -> str:
+    if key not in ("velocity", "gravity", "direction"):
+        return line
+    return re.sub(POLAR, lambda m: written(turned(float(m[1]), float(m[2]), m[3].startswith("rad"))), line)
 
 
 def _closed(line: str, key: str) -> str:
@@ -169,6 +180,7 @@ SLIPS = (
     Slip("it is a part of 1, not per cent", _sub(r"(\d+(?:\.\d+)?)\s*%", lambda m: written(float(m[1]) / 100.0))),
     Slip("a file does not compute", _sub(VALUE + r"(\d+(?:\.\d+)?)\s*([*/])\s*(\d+(?:\.\d+)?)", _fraction)),
     Slip("a power of ten is written with e", _sub(POWER, lambda m: f"{m[1] or 1}e{m[2]}")),
+    Slip("a vector has two components, no length and angle", _components),
     Slip("units are your own: a number stands alone, in the unit of all others", _sub(UNIT, r"\1")),
     Slip("units are your own: a number stands alone, in the unit of all others", _sub(UNIT_IN_LIST, "")),
     Slip("true and false are written small", _sub(r"\b(True|False)\b", lambda m: m[1].lower())),

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
-from eventsim.reading import NO_TEXT, reading
+from eventsim.reading import NO_TEXT, no_text, reading
 from eventsim.scene.overrides import is_shallow
 
 MOST_BYTES = 1 << 30
@@ -67,12 +67,12 @@ def _text(path: Path) -> str:
     """The text of a file; marks of byte order, as editors put before it, are no part of it."""
     with reading(path, SceneError, "is not a scene file", MOST_BYTES) as file:
         data = file.read()
+    wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         text = data.decode("utf-16" if wide else "utf-8-sig").replace("\r\n", "\n")
         return text if "\n" in text else text.replace("\r", "\n")  # as old Macs end lines
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: {NO_TEXT}") from None
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{path}: {NO_TEXT if wide else no_text(data, error)}") from None
 
 
 def _whole_tables_of(path: Path, text: str) -> dict[str, Any]:

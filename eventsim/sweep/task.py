@@ -12,7 +12,7 @@ from typing import TypeAlias
 from eventsim import __version__
 from eventsim.engines import engine_named
 from eventsim.engines.warming import SWITCH as WARM
-from eventsim.errors import EventsimError
+from eventsim.errors import EventsimError, SceneError, sentence_of
 from eventsim.measure import Meter
 from eventsim.measure.studies import STUDIES
 from eventsim.replay.log import EventLog
@@ -54,6 +54,8 @@ def row_of(plan: Plan, task: Task) -> Row:
     row, keys = first_cells(task), dict(task.settings)
     try:
         row |= {f"{key}_measured" if key in keys else key: value for key, value in _measured(plan, task).items()}
+    except SceneError as error:
+        row["failed"] = "; ".join(" ".join(sentence_of(problem).split()) for problem in error.problems)
     except EventsimError as error:
         row["failed"] = " ".join(str(error).split())
     except (ArithmeticError, LookupError, TypeError, ValueError, MemoryError) as error:

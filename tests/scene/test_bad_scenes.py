@@ -88,8 +88,8 @@ BAD = {
         [["gas[0]", "packing fraction 0.65", '"square" or "hexagonal"']],
     ),
     "gas too large for a lattice": (
-        BOX + '[[gas]]\ncount = 60\nradius = 0.5\narrangement = "square"\n',
-        [["gas[0]", "60 disks of radius 0.5", "do not fit", "room for 50", "hexagonal"]],
+        BOX + '[[gas]]\ncount = 55\nradius = 0.5\narrangement = "square"\n',
+        [["gas[0]", "55 disks of radius 0.5", "do not fit", "room for 50", "hexagonal"]],
     ),
     "gas outside": (
         BOX + GAS + "region = [8, 0, 12, 5]\n",

@@ -74,6 +74,10 @@ MISTAKES = [
     ("position = [0.3, 0.8]", "position = [0.3 m, 0.8 m]", " m, 0.8 m]", "position = [0.3, 0.8]"),
     ("position = [0.3, 0.8]", "position = [0.3, 0.8] m", " m", "position = [0.3, 0.8]"),
     ("velocity = [1.0, 0.0]", "velocity = {speed = 2.0, angle = 90}", "{speed", "velocity = [0.0, 2.0]"),
+    ("velocity = [1.0, 0.0]", "velocity = [1, 30°]", "1, 30°", "velocity = [0.866025, 0.5]"),
+    ("velocity = [1.0, 0.0]", "velocity = [2, 90 deg]", "2, 90 deg", "velocity = [0.0, 2.0]"),
+    ("velocity = [1.0, 0.0]", "velocity = 3\nangle = 30", "3", "velocity = [2.598076, 1.5]"),
+    ("velocity = [1.0, 0.0]", 'velocity = [1.0, 0.0]\nname = "A"', "name", 'species = "A"'),
     ('kind = "segment"', 'kind = "segmnt"', '"segmnt"', 'kind = "segment"'),
     ("mass = 2.0", "mass = 4/2", "4/2", "mass = 2.0"),
     ("mass = 2.0", "mass = 2.0;", ";", "mass = 2.0"),
@@ -590,3 +594,65 @@ def test_a_table_of_disks_may_have_semicolons(tmp_path):
         assert list(disks.species) == ["a", "b"]
     (tmp_path / "disks.csv").write_text("x;y;radius\n0,5;0;1\n")
     assert "x = '0,5': must be a number, with a decimal point" in told(tmp_path / "scene.toml")[0]
+
+
+def test_of_a_speed_and_its_angle_one_line_is_proposed(tmp_path):
+    path = tmp_path / "ramp.toml"
+    path.write_text(SCENE.replace("velocity = [1.0, 0.0]", "velocity = 3\nangle = 30"), encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    assert str(caught.value).count("write:") == 1
+    assert "leave this line out" in str(caught.value)
+
+
+@pytest.mark.parametrize("arrangement", ["random", "square", "hexagonal", "compressed"])
+def test_more_disks_than_any_arrangement_holds_are_told_their_bounds(tmp_path, arrangement):
+    path = tmp_path / "dense.toml"
+    gas = f'[[gas]]\ncount = 400\nradius = 0.05\nseed = 1\narrangement = "{arrangement}"\n'
+    path.write_text(f'[domain]\nkind = "box"\nsize = [2.0, 1.0]\n{gas}', encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    told = str(caught.value)
+    on_lattice, words = arrangement in ("square", "hexagonal"), "at most 230 disks of radius 0.05 fit, or 400 of radius 0.03799"
+    assert ("no arrangement holds more than 230" if on_lattice else words) in told  # pi / sqrt 12 of the area, no more
+    assert "denser" not in told
+    assert "use" not in told
+
+
+def test_the_densest_packing_itself_is_held(tmp_path):
+    """A period that just holds the hexagonal lattice."""
+    path = tmp_path / "crystal.toml"
+    gas = '[[gas]]\ncount = 4\nradius = 0.5\nseed = 1\narrangement = "hexagonal"\n'
+    path.write_text(f'[domain]\nkind = "periodic"\nsize = [2.0, {3.0**0.5 + 1e-12!r}]\n{gas}', encoding="utf-8")
+    assert len(load_scene(path).disks) == 4
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("disk.1.mass=1", "there is disk.0 alone; this would begin another one, which lacks position and radius"),
+        ("disk.4.mass=1", "there is no disk.4: there is disk.0 alone (disk.1 would add one)"),
+        ("gas.1.seed=1", "there is gas.0 alone; this would begin another one, which lacks count"),
+    ],
+)
+def test_a_setting_beyond_the_last_table_says_which_there_are(tmp_path, setting, words):
+    path = tmp_path / "ramp.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        load_scene(path, overrides=[setting])
+    assert words in str(caught.value)
+
+
+def test_a_disk_may_be_added_by_settings(tmp_path):
+    path = tmp_path / "ramp.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    added = load_scene(path, overrides=["disk.1.position=[1.5, 0.2]", "disk.1.radius=0.01"])
+    assert len(added.disks) == len(load_scene(path).disks) + 1
+
+
+def test_a_file_in_latin_1_tells_the_line(tmp_path):
+    path = tmp_path / "ramp.toml"
+    path.write_bytes(("until = 2.0\n# Kugelstoß\n" + SCENE).encode("latin-1"))
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    assert str(caught.value).endswith("save it anew with this encoding (at line 2)\n    line 2: # Kugelstoß")

@@ -177,8 +177,8 @@ def test_settings_change_keys_without_touching_the_original():
     [
         ("gas.0.count", "must be key=value"),
         ("=3", "must be key=value"),
-        ("gas.3.count=1", "there is no gas.3: the list gas ends at gas.0 \\(gas.1 would add to it"),
-        ("gas.x=1", "there is no gas.x: the list gas ends at gas.0"),
+        ("gas.3.count=1", "there is no gas.3: there is gas.0 alone \\(gas.1 would add one"),
+        ("gas.x=1", "there is no gas.x: there is gas.0 alone"),
         ("until.x=1", "until is 3, which has no key 'x'"),
     ],
 )

@@ -206,7 +206,7 @@ def test_disks_inside_a_wall_are_clear_of_it():
         ({"radius": 0.01, "inside": "line"}, "must be a closed wall, and it is a segment"),
         ({"radius": 0.01, "inside": "line", "region": [0, 0, 1, 1]}, "has both inside and region"),
         ({"radius": 0.01, "inside": "line", "arrangement": "compressed"}, "fills rectangles alone"),
-        ({"radius": {"uniform": [0.1, 0.2]}, "count": 40}, "do not fit at random"),
+        ({"radius": {"uniform": [0.1, 0.2]}, "count": 40}, "no arrangement more than 1"),
     ],
 )
 def test_a_rule_that_cannot_be_kept_is_told(gas, said):

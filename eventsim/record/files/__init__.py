@@ -12,7 +12,7 @@ from pathlib import Path
 
 from eventsim import suffixes
 from eventsim.errors import LogError
-from eventsim.reading import reading, told_as
+from eventsim.reading import near_file, reading, told_as
 from eventsim.record.events import Rows, joined
 from eventsim.record.files import csv, jsonl, npz
 from eventsim.record.files.atomic import demand_place
@@ -128,7 +128,7 @@ def open_log(path: Path, verify: bool = True) -> Opened:
     with told_as(path, LogError, "not a name of a file"):
         if not path.exists():
             written = part_of(path)
-            hint = f"; {written} is there, what a run has written so far" if written.exists() else ""
+            hint = f"; {written} is there, what a run has written so far" if written.exists() else near_file(path)
             raise LogError(f"{path}: no such file{hint}")
         if not growing:
             if not path.is_file():
