@@ -190,6 +190,11 @@ class Meter:
             self._drain(coarsen=True)
         self._drain()
 
+    @property
+    def kinetic_energies(self) -> tuple[float, float] | None:
+        """Kinetic energy at the start and after the rows so far; None under gravity, where it changes in flight."""
+        return None if self.scene.gravity is not None else (self.ensemble.start_energy, float(self._sums.numbers[sums.HEAT]))
+
     def _hold(self, kernel: Kernels) -> None:
         """Make rates and energy anew from the velocities: sums of changes lose digits where a gas has cooled."""
         numbers = self._sums.numbers

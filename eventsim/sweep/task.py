@@ -100,6 +100,8 @@ def _measured(plan: Plan, task: Task) -> Row:
         "equilibrated": measures.equilibrated,
         "doubts": "; ".join(measures.doubts) or None,
     }
+    if (energies := meter.kinetic_energies) is not None:  # of every run: kept or not
+        row |= zip(("energy_start", "energy_end"), energies, strict=True)
     for quantity in (*measures.quantities, *(quantity for one in found for quantity in one.quantities)):
         if math.isnan(quantity.value):  # it has no meaning in this run
             continue

@@ -100,7 +100,7 @@ def test_a_sweep_draws_any_measure_against_any_key(eventsim, tmp_path):
         " ".join(result.stderr.split())
     )
     assert result.stderr.rstrip().endswith("e.csv is whole")
-    bad = eventsim(*words, "--set", "packing_fraction=0.99", "--figure", tmp_path / "f.svg", "--json")
+    bad = eventsim(*words, "--set", "gravity=0.99", "--figure", tmp_path / "f.svg", "--json")
     assert (bad.exit_code, json.loads(bad.stdout)["figure"], (tmp_path / "f.svg").exists()) == (2, None, False)
     assert "give --figure FILE too" in eventsim(*words, "--y", "mean_free_path").stderr
 
