@@ -265,9 +265,8 @@ def wait_for(there, seconds=60):
 
 
 def test_a_sweep_has_the_energies_of_all_runs_kept_or_not(tmp_path):
-    rows = sweep(
-        partial(seeded_scene, "cooling"), {"n": [20], "restitution": [0.8, 1.0]}, events=400, engine="reference", out=tmp_path / "e.csv"
-    )
+    grid = {"n": [20], "restitution": [0.8, 1.0]}
+    rows = sweep(partial(seeded_scene, "cooling"), grid, events=400, engine="reference", out=tmp_path / "e.csv")
     lossy, kept = rows
     assert lossy["energy_end"] < 0.9 * lossy["energy_start"]
     assert kept["energy_start"] > 0.0
