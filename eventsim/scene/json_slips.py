@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 from eventsim.scene.keyboard import plain
 from eventsim.scene.quoting import quoted
+from eventsim.scene.remedies import two_ways
+from eventsim.scene.slips import otherwise
 
 LONGEST = 1 << 20
 """Letters of a file that is read again with a rule applied."""
@@ -47,6 +49,7 @@ SLIPS = (
     Slip("a comma stands between two", _outside(r"((?<=[\]}\"\d])|(?<=\btrue)|(?<=\bfalse))(\s*\n\s*)(?=[\[{\"])", r",\2")),
     Slip("a key stands in double quotation marks", _outside(r"([{,]\s*)([A-Za-z_]\w*)(?=\s*:)", r'\1"\2"')),
     Slip("a key is followed by :", _outside(r"\s*=\s*", ": ")),
+    Slip("a number has a decimal point, not a comma", _outside(r"(:\s*-?\d+),(\d+)(?=\s*[,}\n])", r"\1.\2")),
     Slip("true and false are written small", _outside(r"\b(True|False)\b", lambda word: word[1].lower())),
     Slip('infinity is written "inf", in quotation marks', _outside(r"\b(?:inf|infinity|infinite|Inf)\b", '"inf"')),
     Slip("lists stand in square brackets", _outside(r"\(([^()]*)\)", r"[\1]")),
@@ -82,7 +85,9 @@ def problem_of(text: str, error: json.JSONDecodeError) -> str:
             pairs = enumerate(zip_longest(lines, mended, fillvalue=""), 1)
             number, line, new = next((k, one, other) for k, (one, other) in pairs if one != other)
             same = next((k for k, (a, b) in enumerate(zip(line, new, strict=False)) if a != b), min(len(line), len(new)))
-            return f"{why} (at line {number})" + quoted(line, same, "", new, f"line {number}")
+            other = otherwise(line, new)
+            ways = f": {two_ways(line)}" if other else ""
+            return f"{why}{ways} (at line {number})" + quoted(line, same, "", new, f"line {number}", other=other)
     line = text.split("\n")[error.lineno - 1]
     told = f"{WORDS.get(error.msg, error.msg)} (at line {error.lineno}, column {error.colno})"
     return told + quoted(line, error.colno - 1, "", "", f"line {error.lineno}")

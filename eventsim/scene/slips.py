@@ -208,7 +208,7 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
         for here in _lines_before(lines, line):
             for why, right in _mended(lines, here):
                 if _reads_on(lines, here, right, line):
-                    told = f"{why}: {two_ways(lines[here - 1])}" if _otherwise(lines[here - 1], right) else why
+                    told = f"{why}: {two_ways(lines[here - 1])}" if otherwise(lines[here - 1], right) else why
                     return f"{told} (at line {_alike(lines, here, right)})" + _shown(lines, here, right)
         for here in _lines_before(lines, line):
             if HEADER.match(lines[here - 1]) is not None and _reads_on(lines, here, "", line):
@@ -305,10 +305,10 @@ def _shown(lines: list[str], number: int, right: str) -> str:
     line = lines[number - 1].rstrip()
     same = next((k for k, (a, b) in enumerate(zip(line, right, strict=False)) if a != b), min(len(line), len(right)))
     column = same if "\n" not in right else 0
-    return quoted(line, column, "", right, f"line {number}", other=_otherwise(line, right))
+    return quoted(line, column, "", right, f"line {number}", other=otherwise(line, right))
 
 
-def _otherwise(line: str, right: str) -> str:
+def otherwise(line: str, right: str) -> str:
     """What is right if commas of a line part thousands; empty where what is right has no point in their place."""
     other = right
     for found in OPEN_COMMA.finditer(line):

@@ -545,6 +545,16 @@ def test_slips_in_json_are_mended_and_what_is_proposed_is_json(tmp_path, wrong, 
         json.loads("\n".join(lines))
 
 
+def test_a_comma_that_may_part_thousands_is_answered_with_both_numbers_in_json(tmp_path):
+    (tmp_path / "scene.json").write_text(JSON.replace("2.0,\n", "2,500,\n"))
+    (problem,) = told(tmp_path / "scene.json")
+    assert "2.500, or 2500 if the comma separates thousands (at line 1)" in problem
+    assert '{"until": 2.500,' in problem.split("write:")[1]
+    assert '{"until": 2500,' in problem.split("or:")[1]
+    (tmp_path / "scene.json").write_text(JSON.replace("2.0,\n", "2,5,\n"))
+    assert told(tmp_path / "scene.json")[0].endswith('write:  {"until": 2.5,')
+
+
 def test_a_text_in_json_may_hold_what_elsewhere_is_a_slip(tmp_path):
     text = JSON.replace('"until"', '"name": "it\'s // no # comment, }",\n"until"').replace("0.1}", "0.1,}", 1)
     (tmp_path / "scene.json").write_text(text)
