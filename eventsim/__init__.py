@@ -108,8 +108,10 @@ def __getattr__(name: str) -> object:
         return import_module(f"eventsim.{name}")
     if name not in _HOMES:
         from eventsim.errors import did_you_mean  # only who errs pays for it
+        from eventsim.meant import PACKAGE
 
-        raise AttributeError(f"module 'eventsim' has no attribute {name!r}{did_you_mean(name, __all__)}")
+        hint = f": {PACKAGE[name]}" if name in PACKAGE else did_you_mean(name, __all__)
+        raise AttributeError(f"module 'eventsim' has no attribute {name!r}{hint}")
     value: object = getattr(import_module(f"eventsim.{_HOMES[name]}"), name)
     globals()[name] = value
     return value

@@ -136,7 +136,7 @@ def validate(
         compared = compare(scene, chosen_competitors(against), steps, until)
         return replace(compared, verdict=tuple(verdict(compared)))
     if dt is not None and not isinstance(dt, float | int):
-        raise EventsimError("dt: one engine has one step")
+        raise EventsimError(f"dt = {dt!r}: must be a number: one engine has one step")
     if step is not None:
         if contacts is not None:
             raise EventsimError("contacts belong to a trajectory: those of a step are read from its paths")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from eventsim.engines import ENGINES as TABLE
 from eventsim.engines import Engine
 from eventsim.engines.base import Stop
+from eventsim.errors import EventsimError
 from eventsim.meant import NamesMeant
 from eventsim.replay import log
 from eventsim.replay.past import PastRun
@@ -103,8 +104,29 @@ class Run(NamesMeant, PastRun):
     True
     """
 
-    measures: Measures | None = None
     trust: Trust | None = None
+    _measures: Measures | None = None
+
+    @property
+    def has_measures(self) -> bool:
+        """Whether anything was measured."""
+        return self._measures is not None
+
+    @property
+    def measures(self) -> Measures:
+        """What was measured.  Raises EventsimError where nothing was: that was not asked for, or no time has passed."""
+        if self._measures is None:
+            then = "simulate(..., measure=True)" + (", or run.log.measure() of the log that it kept" if self.has_log else "")
+            raise EventsimError(f"this run measured nothing: {then}")
+        return self._measures
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another run is of the same scene and came to the same events and the same end; not how long it took."""
+        if not isinstance(other, Run):
+            return NotImplemented
+        if (self.scene, self.stopped, self.counters, self.state) != (other.scene, other.stopped, other.counters, other.state):
+            return False
+        return not (self.has_log and other.has_log) or self.log == other.log
 
     @property
     def log(self) -> EventLog:

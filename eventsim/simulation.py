@@ -138,7 +138,7 @@ def simulate(
         wanted.takers.append(line.write)
     run = Run.of(run_scene(chosen, scene, stop, wanted, given))
     if meter is not None and run.time > scene.start_time:
-        run.measures = meter.finish(run.time - scene.start_time, waits=run.stopped != "interrupted")
+        run._measures = meter.finish(run.time - scene.start_time, waits=run.stopped != "interrupted")
     if line is not None:
         run.trust = line.found()
     return run

@@ -305,12 +305,12 @@ def test_a_log_file_is_measured_and_drawn_like_its_run(tmp_path, monkeypatch, co
 def test_slips_of_users_are_told_in_a_sentence(run):
     for slip, words in (
         (lambda: run.log["time"], r"it is a column, log\.time"),
-        (lambda: run.log[run.log.time < 1], "one number or a slice"),
-        (lambda: run.log[[1, 2]], r"choose among them in log\.rows or log\.to_pandas"),
+        (lambda: run.log[run.log.time], "rows go by one number, a slice, or an array"),
+        (lambda: run.log[{1, 2}], r"choose among them in log\.rows or log\.to_pandas"),
         (lambda: run.state_at([1, 2]), r"time = \[1, 2\]: must be a number; ask for one state after another"),
         (lambda: run.state_at("1"), "must be a number"),
         (lambda: es.simulate(run.scene, until=1, measure="yes"), "measure = 'yes': must be a number"),
-        (lambda: es.load_scene({}), "from the path of a file, not from the type dict"),
+        (lambda: es.load_scene([1]), "from the path of a file, or a dict, not from the type list"),
         (lambda: es.Disks([(0, 0)], radius="0.1"), "disks.radius: every entry must be a number"),
         (lambda: es.Disks([(0, 1j)], radius=0.1), "disks.position: every entry must be a number"),
     ):

@@ -176,7 +176,7 @@ def measured(
         log=len(sinks) < len(asked),
         on_event=write if sinks else None,
     )
-    if run.measures is None:
+    if not run.has_measures:
         raise click.UsageError(f"there is nothing to measure: no time passes in this run of {source}")
     found = {name: sink.found(run.state.time - scene.start_time) for name, sink in sinks.items()}
     if run.has_log:

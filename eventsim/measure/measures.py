@@ -119,6 +119,15 @@ class Measures(NamesMeant):
     by_name: dict[str, Measure] = field(repr=False)
     legend: tuple[str, ...] = ()
 
+    def __eq__(self, other: object) -> bool:
+        """Whether all numbers are the same; what has none in both is equal."""
+        if not isinstance(other, Measures):
+            return NotImplemented
+        return repr(self.to_dict()) == repr(other.to_dict())  # in which nan is like nan
+
+    def __hash__(self) -> int:
+        return hash((self.disks, self.duration))
+
     def __repr__(self) -> str:
         return f"Measures({len(self.quantities)} quantities of {self.disks} disks over {self.duration:g} units of time)"
 

@@ -30,7 +30,7 @@ from eventsim.measure.walls import described_walls
 from eventsim.record.events import SPINS, Floats, Kind, Rows, has_spins, row_of
 from eventsim.record.provenance import Kick, Provenance, has_spin
 from eventsim.replay.log import AnyLog, stream_log
-from eventsim.scene.numbers import Point
+from eventsim.scene.numbers import Point, optional_number
 from eventsim.scene.scene import Scene
 from eventsim.scene.stage import Stage, stage_of
 
@@ -86,6 +86,7 @@ class Meter:
         Raises:
             EventsimError: for a negative or infinite time, and for a scene in which nothing can be deflected.
         """
+        discard = optional_number(discard, "discard")
         if discard is not None and not 0.0 <= discard < math.inf:
             raise EventsimError(f"discard = {discard!r}: must be a finite time, at least 0")
         self._steps = engine if engine in STEPPED else None

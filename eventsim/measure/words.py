@@ -46,6 +46,9 @@ def _shared_doubts(quantities: Sequence[Measure]) -> dict[str, int]:
     return {why: k for k, why in enumerate(several, 1)}
 
 
+NO_ACCURACY = 1e-9
+"""Share of a theory below which it is exact but for rounding."""
+
 NONE_SEEN, EXACT = "none in this run", "(exact)"
 
 
@@ -55,9 +58,16 @@ OF = {"collision_rate": "per disk", "wall_contact_rate": "of all disks"}
 
 def _row(one: Measure, shared: dict[str, int]) -> tuple[str, str, str, str, str]:
     digits = _digits(one.value, one.error)
-    theory = "" if one.theory is None else f"{one.theory:.{digits}g}"
+    theory = "" if one.theory is None else f"{one.theory:.{digits}g}{_accuracy(one)}"
     words = "  ".join(text for text in (OF.get(one.name), one.source, _remark(one, shared)) if text)
     return one.name, value_with_error(one), theory, _difference(one), words
+
+
+def _accuracy(one: Measure) -> str:
+    """How far the theory may be off, which the difference in sigma takes into account, where that is not nothing."""
+    assert one.theory is not None
+    seen = math.isfinite(one.accuracy) and one.accuracy > NO_ACCURACY * abs(one.theory)
+    return f" \N{PLUS-MINUS SIGN} {one.accuracy:.2g}" if seen else ""
 
 
 def _remark(one: Measure, shared: dict[str, int]) -> str | None:

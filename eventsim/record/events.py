@@ -161,6 +161,10 @@ def unchangeable(rows: NDArray[Any]) -> NDArray[Any]:
     return view
 
 
+def _are_equal(mine: Floats | None, its: Floats | None) -> bool:
+    return mine is its if mine is None or its is None else np.array_equal(mine, its)
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class State(NamesMeant):
     """Where all disks are at one time.
@@ -181,6 +185,16 @@ class State(NamesMeant):
         for name in ("position", "velocity", "spin"):
             if (values := getattr(self, name)) is not None:
                 object.__setattr__(self, name, unchangeable(values))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another state has the same time, places, velocities and spins: equal numbers, not nearly equal ones."""
+        if not isinstance(other, State):
+            return NotImplemented
+        pairs = ((getattr(self, name), getattr(other, name)) for name in ("position", "velocity", "spin"))
+        return self.time == other.time and all(_are_equal(mine, its) for mine, its in pairs)
+
+    def __hash__(self) -> int:
+        return hash((self.time, len(self.position)))
 
     def __repr__(self) -> str:
         return f"State(time = {self.time!r}, {len(self.position)} disks)"

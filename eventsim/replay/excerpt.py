@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import operator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, Never, cast, overload
 
 import numpy as np
 
 from eventsim.errors import EventsimError, LogError
 from eventsim.meant import NamesMeant
 from eventsim.notebook import few, html_table
+from eventsim.record.digest import digest_of
 from eventsim.record.events import FIELDS, LABELS, Column, Kind, Rows, SpinColumns, columns_of, has_spins, unchangeable
 from eventsim.record.places import on_scene_axes
 from eventsim.record.provenance import Provenance
@@ -61,7 +62,18 @@ def _no_row(place: object) -> str:
     if isinstance(place, str):
         named = f": it is a column, log.{place}" if place in FIELDS else ""
         return f"log[{place!r}] is no row{named}"
-    return f"log[{type(place).__name__}]: rows go by one number or a slice; choose among them in log.rows or log.to_pandas()"
+    return (
+        f"log[{type(place).__name__}]: rows go by one number, a slice, or an array of numbers or of True and False, one a row; "
+        "choose among them in log.rows or log.to_pandas()"
+    )
+
+
+def _places(place: object) -> Column | None:
+    """Several rows as an array of their numbers, or of whether each is meant; None for what is neither."""
+    if not isinstance(place, np.ndarray | list):
+        return None
+    several = np.asarray(place)
+    return several if several.ndim == 1 and several.dtype.kind in "biu" else None
 
 
 class Excerpt(NamesMeant, SpinColumns):
@@ -83,17 +95,39 @@ class Excerpt(NamesMeant, SpinColumns):
     def __len__(self) -> int:
         return len(self.rows)
 
+    def __eq__(self, other: object) -> bool:
+        """Whether other rows tell the same events: their digests are equal.  Compact logs are made full for it."""
+        if not isinstance(other, Excerpt):
+            return NotImplemented
+        return self is other or (len(self) == len(other) and self.digest() == other.digest())
+
+    def __hash__(self) -> int:
+        return hash(len(self))
+
+    def __array__(self, *_: object, **__: object) -> Never:
+        """Refuse: rows have columns of several types."""
+        raise LogError("a log is no array of one type: log.rows is a structured one, log.time, log.xa, ... are its columns")
+
+    def digest(self) -> str:
+        """Return the SHA-256 of these rows (see `eventsim.record.digest`)."""
+        return digest_of(self.rows)
+
     @overload
     def __getitem__(self, place: int) -> Event: ...
     @overload
-    def __getitem__(self, place: slice) -> Excerpt: ...
+    def __getitem__(self, place: slice | list[int] | list[bool] | Column) -> Excerpt: ...
 
-    def __getitem__(self, place: int | slice) -> Event | Excerpt:
+    def __getitem__(self, place: int | slice | list[int] | list[bool] | Column) -> Event | Excerpt:
         """One event, its places on the scene's axes, or some rows, whose columns count places from `corner` as those here do."""
         if isinstance(place, slice):
             return Excerpt(self.provenance, self.rows[place])
+        if (several := _places(place)) is not None:
+            try:
+                return Excerpt(self.provenance, self.rows[several])
+            except IndexError as error:
+                raise IndexError(f"there are no such rows: {error}") from None
         try:
-            number = operator.index(place)
+            number = operator.index(cast("int", place))
         except TypeError:
             raise LogError(_no_row(place)) from None
         if not -len(self) <= number < len(self):

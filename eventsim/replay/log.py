@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Self, overload
 
 from eventsim.errors import LogError
 from eventsim.record.digest import digest_of
-from eventsim.record.events import Rows, State
+from eventsim.record.events import Column, Rows, State
 from eventsim.record.files import open_log, open_sink, read_log
 from eventsim.record.provenance import Provenance
 from eventsim.replay.any_log import AnyLog as AnyLog
@@ -59,9 +59,9 @@ class EventLog(Excerpt):
     @overload
     def __getitem__(self, place: int) -> Event: ...
     @overload
-    def __getitem__(self, place: slice) -> Excerpt: ...
+    def __getitem__(self, place: slice | list[int] | list[bool] | Column) -> Excerpt: ...
 
-    def __getitem__(self, place: int | slice) -> Event | Excerpt:
+    def __getitem__(self, place: int | slice | list[int] | list[bool] | Column) -> Event | Excerpt:
         """One event, its places on the scene's axes, or some rows, whose columns count places from `corner` as those here do.
 
         A compact log is made full for it.

@@ -98,12 +98,15 @@ def hard_sides(domain: Domain) -> tuple[str, ...]:
     return (() if along_x else BOUNDARY_NAMES[:2]) + (() if along_y else BOUNDARY_NAMES[2:])
 
 
-def _sides(given: Mapping[str, Any] | Sides, names: tuple[str, ...]) -> Sides:
+def _sides(given: Any, names: tuple[str, ...]) -> Sides:
     """What sides have of their own, in the order of the sides.
 
     Raises:
         SceneError: for what no side has.
     """
+    pairs = isinstance(given, tuple | list) and all(isinstance(one, tuple | list) and len(one) == 2 for one in given)
+    if not (isinstance(given, Mapping) or pairs):
+        raise SceneError(f'domain.walls = {given!r}: must be a table of sides, as {{"bottom": {{"restitution": 0.5}}}}')
     table = dict(given)
     problems = [f"domain.walls.{name}: this domain has {_listed(names)}" for name in table if name not in names]
     for name, own in table.items():

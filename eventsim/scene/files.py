@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eventsim.errors import SceneError
+from eventsim.scene.numbers import optional_whole
 from eventsim.scene.origins import Origins, origins_of
 from eventsim.scene.overrides import apply_overrides, begun_by, is_shallow, settings_of
 from eventsim.scene.scene import Scene
@@ -40,20 +41,31 @@ __all__ = [
     "with_lines",
 ]
 
-def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: int | None = None) -> Scene:
+GALLERY = Path(__file__).with_name("gallery")
+"""Where the built-in scenes are, which are made of what is here."""
+
+
+def load_scene(
+    path: str | PathLike[str] | Mapping[str, Any], overrides: Iterable[str] | None = None, seed: int | None = None
+) -> Scene:
     """The scene of a .toml or .json file; where it has no name, it is called after the file.
 
     Args:
-        path: the file; a disks_file in it is looked for beside it.
+        path: the file; a disks_file in it is looked for beside it.  Or a dict with the tables of a file, as
+            {"until": 1.0, "domain": {...}, "gas": [{...}]}.
         overrides: settings like "gas.0.count=500", or one, that change keys before the scene is made.
         seed: seeds the i-th gas from (seed, i) instead of its own seed.
 
     Raises:
         SceneError: with all problems of the file.
     """
+    if isinstance(path, Mapping):
+        return scene_from_dict(apply_overrides(path, overrides), seed=optional_whole(seed, "seed"))
     if not isinstance(path, str | PathLike):
-        raise SceneError(f"a scene is loaded from the path of a file, not from the type {type(path).__name__}")
-    path, settings = Path(path), settings_of(overrides)
+        raise SceneError(f"a scene is loaded from the path of a file, or a dict, not from the type {type(path).__name__}")
+    if not Path(path).exists() and _is_built_in(str(path)):
+        raise SceneError(f"{path}: no such file; the built-in scene is gallery({str(path)!r})")
+    path, settings, seed = Path(path), settings_of(overrides), optional_whole(seed, "seed")
     data, text = tables_of_file(path)
     changed = apply_overrides(data, settings)
     if path.stem.isprintable():
@@ -63,6 +75,12 @@ def load_scene(path: str | Path, overrides: Iterable[str] | None = None, seed: i
     except SceneError as error:
         told = with_lines(begun_by(error, data, settings), text, data, settings, path.suffix.lower() == ".json")
         raise SceneError(f"{path}: {problem}" for problem in told.problems) from None
+
+
+def _is_built_in(name: str) -> bool:
+    """Whether a scene of the gallery has this name: it has a file there."""
+    stem = name.replace("-", "_")
+    return stem.isidentifier() and any((GALLERY / f"{stem}{end}.py").exists() for end in ("", "_"))
 
 
 def draws_at_random(path: str | Path, overrides: Iterable[str] | None = None) -> bool:

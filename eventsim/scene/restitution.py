@@ -69,14 +69,17 @@ EXAMPLES = {item.name: f"{item.name} = {item.metadata['line']}" for item in fiel
 """A line for each of them."""
 
 
-def _pairs(given: Mapping[str, float] | Pairs) -> Pairs:
+def _pairs(given: Any) -> Pairs:
     """Shares of pairs of species in one form.
 
     Raises:
         SceneError: for what are not two names with a hyphen between.
     """
     if not isinstance(given, Mapping):
-        return tuple(given)
+        triples = isinstance(given, tuple | list) and all(isinstance(one, tuple | list) and len(one) == 3 for one in given)
+        if not triples:
+            raise SceneError(f'restitution.pairs = {given!r}: must be a table of pairs of species, as {{"a-b" = 0.5}}')
+        return tuple((a, b, share) for a, b, share in given)
     found: dict[tuple[str, str], float] = {}
     problems: list[str] = []
     for key, share in given.items():

@@ -16,6 +16,7 @@ from eventsim.errors import EventsimError
 from eventsim.record.files.atomic import atomic_write
 from eventsim.replay.log import AnyLog
 from eventsim.replay.passage import Passage
+from eventsim.scene.numbers import as_number, as_whole
 from eventsim.show.frames import GLOW, SECONDS, Timing, frame_timing, frames_at, moments, shown_span
 from eventsim.show.gif import palette_of, write_gif
 from eventsim.show.mp4 import ffmpeg, write_mp4
@@ -68,6 +69,8 @@ def animate(
     The file appears only when whole. Raises EventsimError where an option does not fit the log, the suffix is unknown,
     ffmpeg is missing or the file cannot be written.
     """
+    if not isinstance(path, str | PathLike):
+        raise EventsimError(f"path = {path!r}: must be the path of a file, one of {', '.join(suffixes.ANIMATIONS)}")
     file, film, look = Path(path), film or Film(), look or Look()
     suffix = suffix_of(file, suffixes.ANIMATIONS, "an animation")
     if suffix == ".html":
@@ -122,8 +125,26 @@ def animate_with(log: AnyLog, path: str | PathLike[str], **options: Any) -> None
     unknown = sorted(set(options) - set(known))
     if unknown:
         raise EventsimError(f"animate has no option {', '.join(unknown)}; there are {', '.join(known)}")
+    for name in ("fps", "speed", "duration", "begin", "end"):
+        if options.get(name) is not None:
+            options[name] = _number(options[name], name)
+    if "moments" in options and as_whole(options["moments"]) is None:
+        raise EventsimError(f"moments = {options['moments']!r}: must be a whole number")
+    size = options.get("size")
+    if size is not None:
+        sides = [as_whole(side) for side in size] if isinstance(size, tuple | list) else []
+        if len(sides) != 2 or any(side is None or side < 1 for side in sides):
+            raise EventsimError(f"size = {size!r}: must be two numbers of pixels, (width, height)")
     film, look = ({name: value for name, value in options.items() if known[name] is part} for part in (Film, Look))
     animate(log, path, Film(**film), Look(**look))
+
+
+def _number(value: object, name: str) -> float:
+    """The value as a float; EventsimError for what is no number."""
+    try:
+        return as_number(value)
+    except (TypeError, OverflowError) as error:
+        raise EventsimError(f"{name} = {value!r}: {error}") from None
 
 
 def _timing(span: tuple[float, float], suffix: str, film: Film) -> Timing:

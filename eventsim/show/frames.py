@@ -73,13 +73,13 @@ def moments(span: tuple[float, float], count: int, begin: float | None = None, e
 def shown_span(span: tuple[float, float], begin: float | None, end: float | None) -> tuple[float, float]:
     """Return the times between which to show a log; raise EventsimError where it does not cover them."""
     first, last = (span[0] if begin is None else begin), (span[1] if end is None else end)
-    for name, value in (("from", first), ("to", last)):
+    for name, value in (("begin (--from)", first), ("end (--to)", last)):
         if not span[0] <= value <= span[1]:
             raise EventsimError(f"{name} = {value!r}: the log tells the time from {span[0]!r} to {span[1]!r}")
     if span[0] == span[1]:
         raise EventsimError(f"there is nothing to show: the log ends where it begins, at {span[0]!r}")
     if not first < last:
-        raise EventsimError(f"from = {first!r}, to = {last!r}: the beginning must be before the end")
+        raise EventsimError(f"begin (--from) = {first!r}, end (--to) = {last!r}: the beginning must be before the end")
     return first, last
 
 

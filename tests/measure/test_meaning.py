@@ -8,6 +8,8 @@ import pytest
 import eventsim as es
 from eventsim.measure import Meter, measure
 from eventsim.measure.free_paths import free_paths
+from eventsim.measure.measures import Measure
+from eventsim.measure.words import table_text
 from eventsim.record.events import Kind
 from eventsim.replay.flight_table import flight_table, flights
 from eventsim.replay.replay import Replay
@@ -263,6 +265,14 @@ def test_walls_with_two_sides_have_two_pressures():
     left, right = measures["force_middle_left"].value, measures["force_middle_right"].value
     assert measures["force_middle"].value == pytest.approx(left + right, rel=1e-12)
     assert left > right  # two fast disks against a slow one; the left of the way up is towards smaller x
+
+
+def test_the_table_shows_the_accuracy_of_a_theory_that_the_difference_counts():
+    approximate = Measure(0.1022, 0.0069, theory=0.095, accuracy=0.0019, name="cooling_exponent", source="Haff 1983")
+    assert approximate.deviation == pytest.approx(0.0072 / math.hypot(0.0069, 0.0019))
+    assert "0.095 ± 0.0019  +1.0 sigma  Haff 1983" in table_text([approximate])
+    exact = Measure(2.06, 0.02, theory=2.05, name="Z")
+    assert "2.05    +0.5 sigma" in table_text([exact])
 
 
 def test_measures_have_keys_and_a_table():

@@ -249,7 +249,7 @@ def test_a_measured_run_hears_signals_within_a_second(name):
             waiting.cancel()
     assert time.process_time() - asked[0] < 1.0
     assert run.stopped == "interrupted"
-    assert run.measures is not None
+    assert run.has_measures
 
 
 @IN_MAIN

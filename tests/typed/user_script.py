@@ -21,7 +21,7 @@ speed: float = float((run.state.velocity**2).sum())
 energy: float = run.state.energy
 px, py = run.state.momentum
 print(run.counters.events, run.stopped, run.residuals.energy, speed, energy, px, py)
-if run.measures is not None:
+if run.has_measures:
     print(run.measures["collision_rate"].value, run.measures.keys(), run.measures.table())
 log = run.log
 first = log[0]

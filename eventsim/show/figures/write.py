@@ -74,7 +74,7 @@ def _demand_axes(ax: object) -> None:
 
 def drawing_of(kind: str) -> Callable[[Figure, AnyLog], None]:
     """Return the function that draws a kind of figure; EventsimError where there is none."""
-    if kind not in TITLES:
+    if kind not in tuple(TITLES):  # whatever is asked for
         raise EventsimError(f"there is no figure {kind!r}; there are {', '.join(TITLES)}")
     draw: Callable[[Figure, AnyLog], None] = import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw
     return draw

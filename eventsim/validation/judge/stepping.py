@@ -33,6 +33,8 @@ def stepped(scene: Scene, step: Step, dt: float, until: float | None = None) -> 
     Raises:
         EventsimError: where nothing says when to stop, or the function returns what is no state of the disks.
     """
+    if not callable(step):
+        raise EventsimError(f"step = {step!r}: must be a function step(position, velocity, dt) that returns both after dt")
     end = scene.until if until is None else until
     if end is None:
         raise EventsimError("nothing says when to stop: give until, or a key until in the scene")
