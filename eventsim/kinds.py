@@ -12,6 +12,6 @@ TITLES = {
     "residuals": "energy and overlaps over time: how good the run is",
     "structure": "g(r) and S(k) along the run (needs freud)",
     "boundary": "boundary map of a billiard: arc length and sine of the angle of each contact",
-    "space-time": "positions against time, for disks in a corridor",
+    "space-time": "a coordinate against time: disks in a corridor, the height of a ball that bounces",
 }
 """Kind -> what it shows; its module in `show.figures` has the same name, with _ for -."""

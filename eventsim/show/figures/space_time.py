@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from eventsim.record.events import Kind
 from eventsim.replay.flight_table import flights, together
 from eventsim.replay.log import AnyLog
 from eventsim.scene.names import plural
-from eventsim.show.colouring import own_colours
+from eventsim.show.colouring import FEW, own_colours
 from eventsim.show.figures.demands import passage_with_time
 from eventsim.show.figures.style import LENGTH, TIME, label
 from eventsim.show.images import wrapped_pieces
@@ -57,8 +58,12 @@ def draw(figure: Figure, log: AnyLog) -> None:
             axes.axhline(edge, color="#39424e", lw=1.2, ls="--" if scene.domain.periodic[axis] else "-")
     drawn = int(table.pair.sum()) // 2
     which = f"{pairs:,}" if drawn == pairs else f"the first {drawn:,} of {pairs:,}"
+    told = f", {which} of them between disks (dots)" if pairs else ""
     label(
         axes, f"time [{TIME}]", f"{'xy'[axis]} [{LENGTH}]",
-        f"{name_of(log)}: {plural(passage.stage.n, 'disk')}, {plural(every, 'contact')}, {which} of them between disks (dots)",
+        f"{name_of(log)}: {plural(passage.stage.n, 'disk')}, {plural(every, 'contact')}{told}",
     )  # fmt: skip
+    if 1 < passage.stage.n <= FEW:
+        keys = [Line2D([], [], color=colour) for colour in own_colours(scene.disks)]
+        axes.legend(keys, [f"disk {k}" for k in range(passage.stage.n)], frameon=False, fontsize="small", loc="upper right")
     axes.grid(visible=False)
