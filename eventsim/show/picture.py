@@ -88,6 +88,8 @@ class Picture:
         self._overview = overview_of(log)
         self._colouring = colouring_of(look.color, log.scene.disks, self._overview)
         shown = window_of(passage, float(times[-1]))
+        if look.velocities:
+            shown = _with_room_for_arrows(shown, log.scene.domain.periodic)
         self.layout = layout(shown, look.size, room)
         width, height = self.layout.size
         self._figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=self._palette.paper)
@@ -104,6 +106,7 @@ class Picture:
             [withStroke(linewidth=2.6 * self.layout.unit, foreground="white")]
         )  # seen on every colour
         self._arrow_time, self._arrows = self._time_of_arrows(shown), self._path_artist(self._palette.arrow)
+        self._arrows.set_path_effects([withStroke(linewidth=2.6 * self.layout.unit, foreground=self._palette.paper)])
         self._bars = Bars(self._figure, self.layout, self._palette, name_of(log))
         self._bars.draw_key(self._colouring.key)
         self._caption = f"{caption}   " if caption else ""
@@ -126,13 +129,20 @@ class Picture:
             self._spokes.set_path(spokes(place, frame.angle[disk], self._radius[disk]))
             self._axes.draw_artist(self._spokes)
         if self._look.velocities:
-            self._arrows.set_path(arrows(frame.state.position, frame.state.velocity * self._arrow_time))
+            self._arrows.set_path(arrows(*self._from_rims(frame)))
             self._axes.draw_artist(self._arrows)
         self._bars.clock.set_text(f"{self._caption}t = {frame.state.time:{self._clock_format}}")
         self._bars.counter.set_text(self._energy.format(events=plural(frame.events, "event"), energy=f"{frame.energy:.4g}"))
         for text in (self._bars.clock, self._bars.counter):
             self._figure.draw_artist(text)
         return np.asarray(self._canvas.buffer_rgba())
+
+    def _from_rims(self, frame: Frame) -> tuple[Floats, Floats]:
+        """Return where the arrows of velocities begin, at the rims of the disks, and how far they go."""
+        velocity = frame.state.velocity
+        speed = np.hypot(*velocity.T)[:, None]
+        way = np.divide(velocity, speed, out=np.zeros_like(velocity), where=speed > 0.0)
+        return frame.state.position + self._radius[:, None] * way, velocity * self._arrow_time
 
     def _energy_words(self) -> str:
         """Return the words of the lower bar, as long as there is room: which energy it is, and where it is 0."""
@@ -201,6 +211,13 @@ class Picture:
         )
         artist.set_capstyle("round")
         self._axes.add_collection(artist, autolim=False)
+
+
+def _with_room_for_arrows(shown: outlines.Rectangle, periodic: Sequence[bool]) -> outlines.Rectangle:
+    """Return the window with the length of the longest arrow on each side at which disks turn round."""
+    length = LONGEST_ARROW * max(shown[2] - shown[0], shown[3] - shown[1])
+    x, y = (0.0 if wraps else length for wraps in periodic)
+    return shown[0] - x, shown[1] - y, shown[2] + x, shown[3] + y
 
 
 MISPLACED = 0.02

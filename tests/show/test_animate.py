@@ -333,3 +333,19 @@ def test_a_trail_of_more_ways_than_can_be_seen_reaches_back_less_far(broken, mon
     assert longest() > 200
     monkeypatch.setattr(strokes, "MOST_WAYS", 150)
     assert 100 < longest() <= 150
+
+
+def test_the_arrow_of_a_slow_ball_begins_at_its_rim_and_that_of_a_fast_one_stays_in_the_frame():
+    disks = es.Disks(
+        position=np.array([[0.5, 0.5], [0.899, 0.5]]), velocity=np.array([[0.02, 0.0], [1.0, 0.0]]), radius=0.1, mass=1.0
+    )
+    log = es.simulate(es.Scene(disks, es.Box((1.0, 1.0))), until=1e-3, log=True).log
+    passage = Passage(log)
+    (frame,) = frames_at(passage, np.array([5e-4]), 0.1)
+    picture = Picture(passage, Look(velocities=True), (320, 240), np.array([5e-4]))
+    tail, along = picture._from_rims(frame)
+    assert tail[0] == pytest.approx(frame.state.position[0] + [0.1, 0.0])
+    assert along[0][0] > 0.0
+    low, high = picture._axes.get_xlim()
+    assert high >= (tail + along)[:, 0].max()
+    assert low < 0.0

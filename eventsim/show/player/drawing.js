@@ -249,7 +249,10 @@ class Drawing {
     context.strokeStyle = this.palette.arrow;
     context.lineWidth = 1.2 * this.ratio;
     context.beginPath();
-    for (let i = 0; i < this.world.count; i++) this._arrow(state.x[i], state.y[i], state.vx[i] * time, state.vy[i] * time);
+    for (let i = 0; i < this.world.count; i++) {
+      const speed = Math.hypot(state.vx[i], state.vy[i]), rim = speed ? this.world.disks.radius[i] / speed : 0; // a slow one is seen, too
+      if (speed) this._arrow(state.x[i] + rim * state.vx[i], state.y[i] + rim * state.vy[i], state.vx[i] * time, state.vy[i] * time);
+    }
     context.stroke();
   }
 
