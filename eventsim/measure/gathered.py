@@ -21,6 +21,7 @@ def measures_of(records: Records) -> Measures:
     """Return the measures that records amount to."""
     ensemble = records.ensemble
     quantities = quantities_of(records)
+    unshared = records.no_sharing and records.no_temperature
     found = _doubts(records)
     if not found and ensemble.steady:
         found = strangers((quantity.name, quantity.deviation, quantity.source) for quantity in quantities)
@@ -40,7 +41,7 @@ def measures_of(records: Records) -> Measures:
         speeds=speed_histograms(records),
         correlations=records.correlations,
         series=series_of(records),
-        profile=records.profile,
+        profile=None if records.profile is None else records.profile.without_temperature(unshared),
         by_name={quantity.name: quantity for quantity in quantities},
         legend=(*species_legend(records), *walls_legend(records)),
     )

@@ -6,7 +6,7 @@ Source of the barometric curve: hydrostatics, dP = -rho m g dy, with the pressur
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -70,11 +70,20 @@ class SpeciesProfile:
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """Profiles along an axis; edges (slices + 1,) on the scene's axes."""
+    """Profiles along an axis; edges (slices + 1,) on the scene's axes; why there are no temperatures, None where there are."""
 
     axis: str
     edges: Floats
     species: tuple[SpeciesProfile, ...]
+    no_temperature: str | None = None
+
+    def without_temperature(self, why: str | None) -> Profile:
+        """Return the same profiles without temperatures, for a reason; as they are without one."""
+        if why is None:
+            return self
+        none = np.full(SLICES, np.nan)
+        species = (replace(one, temperature=none, temperature_error=none, theory=None) for one in self.species)
+        return replace(self, species=tuple(species), no_temperature=why)
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data."""

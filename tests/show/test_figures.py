@@ -272,3 +272,47 @@ def test_trajectories_mark_where_disks_began_and_say_which_are_drawn():
     middles = [path.get_extents().get_points().mean(axis=0) for path in rings.get_paths()]
     chosen = np.unique(np.linspace(0, n - 1, 16).astype(int))
     assert np.allclose(middles, disks.position[chosen], atol=1e-12)
+
+
+BALL = {
+    "gravity": [0.0, -1.0],
+    "restitution": 0.9,
+    "until": 6.0,
+    "domain": {"kind": "box", "size": [1.0, 2.0]},
+    "disk": [{"position": [0.5, 1.0], "radius": 0.1}],
+}
+
+
+def test_a_single_ball_has_no_temperature_in_a_profile_as_in_measure():
+    from eventsim.scene.files import scene_from_dict
+
+    log = es.simulate(scene_from_dict(BALL), log=True).log
+    measures = measure(log, profile="y")
+    (refused,) = [one.doubt for one in measures.quantities if one.name == "temperature"]
+    assert measures.profile.no_temperature is not None
+    assert np.isnan(measures.profile.species[0].temperature).all()
+    figure = drawn(log, "profile")
+    above, below = figure.axes
+    assert not below.containers
+    told = " ".join(" ".join(text.get_text() for text in below.texts).split())
+    assert refused in told
+    assert "temperature" not in above.get_title()
+
+
+def test_space_time_of_a_ball_is_its_height_and_of_few_disks_has_a_legend():
+    from eventsim.scene.files import scene_from_dict
+
+    ball = drawn(es.simulate(scene_from_dict(BALL), log=True).log, "space-time").axes[0]
+    assert ball.get_ylabel().startswith("y")
+    assert "between disks" not in ball.get_title()
+    assert ball.get_legend() is None
+    pair = drawn(es.simulate(es.gallery("two-disks"), events=20, log=True).log, "space-time").axes[0]
+    assert [text.get_text() for text in pair.get_legend().get_texts()] == ["disk 0", "disk 1"]
+
+
+def drawn(log, kind):
+    from importlib import import_module
+
+    figure = new_figure()
+    import_module(f"eventsim.show.figures.{kind.replace('-', '_')}").draw(figure, log)
+    return figure

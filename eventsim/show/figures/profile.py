@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from textwrap import fill
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -9,7 +11,7 @@ from eventsim.measure import measure
 from eventsim.replay.log import AnyLog
 from eventsim.show.colouring import measured_labels
 from eventsim.show.figures.demands import passage_with_time
-from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, label
+from eventsim.show.figures.style import BLUE, LENGTH, ORANGE, WIDE, label
 from eventsim.show.output import name_of
 
 
@@ -36,5 +38,10 @@ def draw(figure: Figure, log: AnyLog) -> None:
     label(below, f"{profile.axis} [{LENGTH}]", "temperature kT", "")
     above.set_ylim(0.0, None)
     below.set_ylim(0.0, None)
+    if profile.no_temperature is not None:
+        label(above, f"{profile.axis} [{LENGTH}]", f"disks / ({LENGTH})$^2$", f"{name_of(log)}: density along {profile.axis}")
+        above.tick_params(labelbottom=True)
+        below.axis("off")
+        below.text(0.5, 0.5, fill(f"no temperature: {profile.no_temperature}", WIDE), transform=below.transAxes, ha="center")
     if theory or len(profile.species) > 1:
         above.legend(frameon=False)
