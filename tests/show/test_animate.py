@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -233,7 +234,8 @@ def test_drawing_needs_neither_a_display_nor_pyplot(tmp_path):
         "import sys, eventsim as es; run = es.simulate(es.gallery('two-disks'), log=True); "
         "run.animate('a.png', moments=1); assert 'matplotlib.pyplot' not in sys.modules"
     )
-    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={"HOME": str(tmp_path)}, check=True)
+    bare = {"HOME": str(tmp_path), "PYTHONPATH": str(Path(es.__file__).parents[1])}  # this package, installed or not
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=bare, check=True)
 
 
 @pytest.mark.parametrize(
