@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from eventsim.scene import restitution, roughness
 from eventsim.scene.keyboard import plain
+from eventsim.scene.walls import WALLS
 
 EXAMPLES = {
     "name": 'name = "ramp"',
@@ -111,11 +112,22 @@ ALIASES: dict[str, dict[str, str]] = {
 }  # fmt: skip
 
 WORDS = {
-    "kind": "box:rectangle,rect,square,walls,closed periodic:torus,pbc,wrap open:free,infinite,none,plane channel:tube,pipe "
-    "segment:line,straight,wall polygon:poly,triangle,rectangle,box circle:ring,container polyline:chain,path ellipse:oval "
-    "arc:bow",
+    "kind": "box:rectangle,rect,square,walls,closed periodic:torus,pbc,wrap open:free,infinite,none,plane channel:tube,pipe",
     "arrangement": "random:uniform,rand square:grid,lattice,cubic hexagonal:hex,hexagon,triangular compressed:dense,packed",
 }
+"""What people call the values of a key that are words."""
+
+
+def _named(words: str) -> dict[str, list[str]]:
+    """Values, and what people call each of them, from one line."""
+    return {right: others.split(",") for right, _, others in (group.partition(":") for group in words.split())}
+
+
+OF_WALLS: dict[str, list[str]] = {kind: [] for kind in WALLS} | _named(
+    "segment:line,straight,wall polygon:poly,triangle,rectangle,box circle:ring,container polyline:chain,path ellipse:oval "
+    "arc:bow"
+)
+"""Every kind of wall that there is, and what people call some."""
 
 POSTS = ("obstacle", "post", "pin", "peg", "pillar", "scatterer", "bumper")
 """What people call what stands still and is met from outside."""
@@ -372,8 +384,7 @@ def _of_value(table: str, key: str, value: Any) -> Remedy | None:
         word = value.lower()
         if of_wall and word.removesuffix("s") in NO_WALLS:
             return Remedy(NO_WALLS[word.removesuffix("s")], "")
-        groups = [group.partition(":") for group in WORDS[key].split()]
-        mine = {right: words.split(",") for right, _, words in (groups[4:] if of_wall else groups[:4])}
+        mine = OF_WALLS if of_wall else _named(WORDS[key])
         fits = [right for right, words in mine.items() if word == right or word in words] or get_close_matches(word, mine, n=1)
         mended = fits[0] if fits else None
     elif key == "velocity" and isinstance(value, Mapping) and "speed" in value and value.keys() <= {"speed", "angle"}:

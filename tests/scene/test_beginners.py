@@ -9,6 +9,7 @@ import pytest
 from eventsim.errors import SceneError
 from eventsim.scene.files import load_scene
 from eventsim.scene.remedies import EXAMPLES
+from eventsim.scene.walls import WALLS
 from eventsim.scene.schema import DISK, DISKS_FILE, DOMAIN, GAS, RESTITUTION, WALL
 from eventsim.scene.schema import SCENE as SCENE_KEYS
 
@@ -176,6 +177,11 @@ def test_a_kind_of_wall_that_there_is_not_is_answered_without_another_ones_name(
     assert why in text
     assert "write:" not in text
     assert "as in:" not in text
+
+
+@pytest.mark.parametrize("kind", WALLS)
+def test_a_slip_in_any_kind_of_wall_is_mended(tmp_path, kind):
+    assert f'write:   kind = "{kind}"' in told_of(tmp_path, f'[[wall]]\nkind = "{kind[:-2]}{kind[-1]}{kind[-2]}"\n')
 
 
 def test_a_kind_of_wall_nobody_knows_is_answered_with_one_of_a_wall(tmp_path):
