@@ -202,7 +202,13 @@ class Law:
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts; number: how it writes one."""
         pairs, walls = (" or ".join(map(number, dict.fromkeys(self.shares(*kind)))) for kind in ((True, False), (False, True)))
-        return f"restitution {pairs} between disks, {walls} at walls: energy is lost"
+        return f"restitution {pairs} between disks, {walls} at walls: energy is lost{self.soon_words(number)}"
+
+    def soon_words(self, number: Callable[[float], str]) -> str:
+        """What it says of a contact that follows another one soon; nothing where a contact does not matter to the next."""
+        if self.duration is None:
+            return ""
+        return f"; a contact within {number(self.duration)} of a disk's previous one is elastic (TC model)"
 
     def driven_words(self, number: Callable[[float], str]) -> str:
         """What it says of walls that heat, shake or slide; nothing where none does."""
@@ -258,10 +264,7 @@ class TimeOfContact(Law):
 
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts."""
-        return (
-            f"{super().words(number)}; a contact within {number(self.duration or 0.0)} of a disk's previous one is elastic "
-            "(TC model), so contacts cannot pile up without end"
-        )
+        return f"{super().words(number)}, so contacts cannot pile up without end"
 
     def remedy(self) -> str:
         """What is left to do about contacts that pile up."""
@@ -331,8 +334,7 @@ class Own(Law):
 
     def words(self, number: Callable[[float], str]) -> str:
         """What a page on a scene says of its contacts."""
-        soon = "" if self.duration is None else f"; within {number(self.duration)} of a disk's previous contact elastic"
-        return f"by {self.name()}, of your own: nobody else knows whether energy is kept{soon}"
+        return f"by {self.name()}, of your own: nobody else knows whether energy is kept{self.soon_words(number)}"
 
 
 def wrong_share(share: Real) -> str | None:

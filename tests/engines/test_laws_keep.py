@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eventsim as es
+from eventsim.formulas import laws
 from eventsim.formulas.impulse import approach_speed, mass_fractions, pair_update
 from eventsim.formulas.laws import law_of
+from eventsim.scene.contact_law import law_of_scene
 from eventsim.scene.restitution import Restitution
 from tests.engines.law_scenes import LAWS, by_chance, random_scene, relabelled, told
 
@@ -37,6 +39,11 @@ def test_a_pair_keeps_its_momentum_and_loses_the_energy_that_its_law_states(ua, 
     before = energy(ua, wa, ub, wb)
     lost = 0.5 * (a * b / (a + b)) * (1.0 - e * e) * approach**2
     assert energy(ua1, wa1, ub1, wb1) == pytest.approx(before - lost, abs=64.0 * 2.0**-53 * before)
+
+
+def test_each_law_has_random_scenes():
+    scenes = [random_scene(seed, law) for law in LAWS for seed in range(4)]
+    assert {type(law_of_scene(scene)) for scene in scenes} == set(laws.LAWS), "tests/engines/law_scenes.py lacks a law"
 
 
 @pytest.mark.parametrize("law", [law for law in LAWS if not by_chance(law)])
