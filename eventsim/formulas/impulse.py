@@ -90,7 +90,8 @@ def contact_restitution(usual: Real, law: Any, since_a: Real, since_b: Real, app
     if law is None:
         return usual
     share = _users(usual, approach, since_a, since_b, mass, law.own)
-    return _kept_if_soon(_yielding(share, approach, law.yield_speed), since_a, since_b, law.duration)
+    share = _yielding(share, approach, law.yield_speed)
+    return _kept_if_soon(share, since_a, since_b, law.duration)
 
 
 def _users(restitution: Real, approach: Real, since_a: Real, since_b: Real, mass: Real, own: Any) -> Real:

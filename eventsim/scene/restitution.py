@@ -16,6 +16,11 @@ def line(example: str) -> dict[str, str]:
     return {"line": example}
 
 
+def of_law(example: str) -> dict[str, str]:
+    """The same of a key that asks for a law of its own, one that looks at the speed of approach."""
+    return line(example) | {"law": "by speed"}
+
+
 Pairs: TypeAlias = tuple[tuple[str, str, float], ...]
 """Shares between species: (name, name, share), the smaller name first."""
 
@@ -30,8 +35,7 @@ class Restitution:
 
     pair: float = field(default=1.0, metadata=line("0.9"))
     wall: float = field(default=1.0, metadata=line("1.0"))
-
-    yield_speed: float | None = field(default=None, metadata=line("0.5"))
+    yield_speed: float | None = field(default=None, metadata=of_law("0.5"))
     pairs: Pairs = field(default=(), metadata=line('{"a-b" = 0.8}'))
 
     def __post_init__(self) -> None:
@@ -47,8 +51,15 @@ class Restitution:
         found = {key: getattr(self, key) for key in KEYS if key != PAIRS and getattr(self, key) is not None}
         return found | ({PAIRS: {f"{a}-{b}": share for a, b, share in self.pairs}} if self.pairs else {})
 
+    @property
+    def laws(self) -> tuple[str, ...]:
+        """The keys that ask for a law by speed: of a sound scene at most one."""
+        return tuple(key for key in OF_LAWS if getattr(self, key) is not None)
+
     def problems(self) -> Iterator[str]:
         """Rules that its numbers break, one sentence each."""
+        for other in self.laws[1:]:
+            yield f"restitution.{other}: has a restitution.{self.laws[0]} beside it: one law says what comes back"
         for a, b, share in self.pairs:
             if not 0.0 <= share <= 1.0:
                 yield f"restitution.pairs.{a}-{b} = {share}: must be from 0 to 1"
@@ -64,6 +75,9 @@ class Restitution:
 PAIRS = "pairs"
 KEYS = tuple(item.name for item in fields(Restitution))
 """The keys of a `restitution = {...}` table."""
+
+OF_LAWS = tuple(item.name for item in fields(Restitution) if "law" in item.metadata)
+"""Those that ask for a law by speed."""
 
 EXAMPLES = {item.name: f"{item.name} = {item.metadata['line']}" for item in fields(Restitution)}
 """A line for each of them."""

@@ -122,8 +122,8 @@ def scalar_problems(given: Mapping[str, Any]) -> Iterator[str]:
         yield f"gravity = {list(gravity)}: must be 0, or at least {SHORTEST} along an axis"
     if restitution is not None:
         yield from restitution.problems()
-        if given["law"] is not None and restitution.yield_speed is not None:
-            yield "contact_law: has a restitution.yield_speed beside it: one law says what comes back"
+        if given["law"] is not None and restitution.laws:
+            yield f"contact_law: has a restitution.{restitution.laws[0]} beside it: one law says what comes back"
     if given["tangential_restitution"] is not None:
         yield from given["tangential_restitution"].problems()
     for key in ("contact_duration", "equilibration"):

@@ -7,6 +7,7 @@ import pytest
 
 import eventsim as es
 from eventsim.scene.own_law import KNOWN
+from eventsim.scene.restitution import OF_LAWS
 
 TEXT = """
 def soft(restitution, approach):
@@ -225,9 +226,10 @@ def test_a_name_is_a_file_and_a_function(laws, law):
         named(laws, "soft", contact_law="elsewhere.py:soft")
 
 
-def test_a_law_and_a_yield_speed_are_two_laws(laws):
-    with pytest.raises(es.SceneError, match="one law says what comes back"):
-        named(laws, "soft", restitution={"yield_speed": 1.0})
+@pytest.mark.parametrize("key", OF_LAWS)
+def test_a_law_and_a_key_that_asks_for_another_are_two_laws(laws, key):
+    with pytest.raises(es.SceneError, match=f"has a restitution.{key} beside it: one law says what comes back"):
+        named(laws, "soft", restitution={key: 1.0})
 
 
 @pytest.mark.parametrize("suffix", ["npz", "csv", "jsonl"])
