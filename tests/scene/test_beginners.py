@@ -9,9 +9,9 @@ import pytest
 from eventsim.errors import SceneError
 from eventsim.scene.files import load_scene
 from eventsim.scene.remedies import EXAMPLES
-from eventsim.scene.walls import WALLS
 from eventsim.scene.schema import DISK, DISKS_FILE, DOMAIN, GAS, RESTITUTION, WALL
 from eventsim.scene.schema import SCENE as SCENE_KEYS
+from eventsim.scene.walls import WALLS
 
 SCENE = """\
 until = 2.0
