@@ -37,6 +37,10 @@ POINTS = (
 """What disks without a radius do at walls."""
 
 
+HOT = 100.0
+"""A temperature above which somebody may mean kelvin."""
+
+
 def page(asked: str, name: str | None, needs: Needs, origins: Origins | None = None) -> str:
     """Return the whole page that `eventsim check` prints."""
     stop = "" if _stops(needs) else "; eventsim run needs --until T or --events N, as the scene has no stop"
@@ -55,6 +59,8 @@ def explanation(needs: Needs, origins: Origins | None = None) -> Iterator[tuple[
     surprising = not needs.law.keeps_energy()
     if surprising:
         yield "contacts", _contacts(needs)
+    if needs.gravity is not None and needs.gravity[1] > 0.0:
+        yield "gravity", "it points upwards; downwards is gravity = [0.0, -9.81]"
     lands = needs.walls or needs.immovable or needs.domain in ("box", "channel")
     if needs.gravity is not None and needs.contact_duration is not None and lands and needs.disks > needs.immovable:
         yield "rest", _rest(settling(needs.disks - needs.immovable, needs.radii[0], needs.gravity), needs.contact_duration)
@@ -124,6 +130,8 @@ def _motion(needs: Needs) -> str:
     text += f", the fastest at {short(needs.fastest)}"
     if needs.temperature is not None and needs.moving >= MANY:
         text += f"; mean m v^2/2 is {short(needs.temperature)}, the temperature kT of a gas"
+        if isinstance(needs.temperature, float) and needs.temperature > HOT:
+            text += " (kT is an energy in the units of the scene, no kelvin)"
     return text
 
 

@@ -188,3 +188,13 @@ def test_disks_that_nothing_deflects_are_explained():
     disks = es.Disks([[0.5, 0.5], [1.5, 0.5]], [[1.0, 0.0], [0.0, 1.0]], 0.1, np.inf)
     scene = es.Scene(disks, es.Box((2.0, 1.0)))
     assert "nothing deflects it" in page("still", "still", needs_of(scene))
+
+
+@pytest.mark.parametrize(("gravity", "temperature", "told"), [(9.81, 300.0, True), (-9.81, 1.0, False)])
+def test_gravity_upwards_and_a_temperature_in_kelvin_are_remarked(eventsim, tmp_path, gravity, temperature, told):
+    path = tmp_path / "a.toml"
+    gas = f"[[gas]]\ncount = 40\nradius = 0.01\nseed = 1\ntemperature = {temperature}\n"
+    path.write_text(f'until = 1.0\ngravity = [0.0, {gravity}]\n[domain]\nkind = "box"\nsize = [1, 1]\n{gas}')
+    words = " ".join(eventsim("check", path).stdout.split())
+    assert ("it points upwards" in words) is told
+    assert ("kT is an energy" in words) is told
