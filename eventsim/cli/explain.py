@@ -130,7 +130,7 @@ def _motion(needs: Needs) -> str:
     text += f", the fastest at {short(needs.fastest)}"
     if needs.temperature is not None and needs.moving >= MANY:
         text += f"; mean m v^2/2 is {short(needs.temperature)}, the temperature kT of a gas"
-        if isinstance(needs.temperature, float) and needs.temperature > HOT:
+        if float(needs.temperature) > HOT:
             text += " (kT is an energy in the units of the scene, no kelvin)"
     return text
 
