@@ -4,9 +4,9 @@
 # **Question.** A cue disk runs into fifteen disks at rest. Sixteen velocities change at once, and walls come into play
 # later. Which sums over all disks do the contacts of disks leave alone, and which do walls leave alone?
 #
-# **Prediction.** An elastic contact keeps $\sum m v^2/2$. Contacts of disks exchange momentum, so $\sum m v$ changes
-# at walls only: by exactly what the walls exchange. Write down your guess for the momentum along x after 3 time units
-# before you go on: more than at the start, less, or negative?
+# **Prediction.** Think of $\sum m v^2/2$ and of $\sum m v$: which of them can a contact of two disks change, and which a
+# contact with a wall? Write down your guess for the momentum along x after 3 time units before you go on: more than at
+# the start, less, or negative?
 
 # %%
 import sys
@@ -55,7 +55,8 @@ below.legend()
 plt.savefig("conservation.png") if SAVE else plt.show()
 
 # %% [markdown]
-# **Check.**
+# **Check.** An elastic contact keeps $\sum m v^2/2$. Contacts of disks exchange momentum, so $\sum m v$ changes at walls
+# only: by exactly what the walls exchange.
 
 # %%
 drift = np.abs(energy / energy[0] - 1).max()
