@@ -59,9 +59,9 @@ plt.savefig("pressure.png") if SAVE else plt.show()
 
 # %%
 for eta, z in zip(etas, found, strict=True):
-    near = abs(z.value - henderson(eta)) < 4 * z.error + 0.02 * henderson(eta)
-    print(f"eta {eta:.2f}: within bars and 2 %: {near}")
-    assert near
+    theory = henderson(eta)
+    print(f"eta {eta:.2f}: Z {z.value:.3f} +- {z.error:.3f}, theory {theory:.3f}: {(z.value - theory) / z.error:+.1f} sigma")
+    assert abs(z.value - theory) < 4 * z.error + 0.02 * theory
 
 # %% [markdown]
 # **Exercise.** At which packing fraction do disks press twice as hard as an ideal gas? Check it.
@@ -71,5 +71,5 @@ for eta, z in zip(etas, found, strict=True):
 # %%
 root = np.roots([2 - 1 / 8, -4, 1]).min().real
 double = compressibility(root)
-print(f"eta = {root:.3f}; Z = 2 within bars and 2 %: {abs(double.value - 2) < 4 * double.error + 0.04}")
+print(f"eta = {root:.3f}: Z {double.value:.3f} +- {double.error:.3f}, theory 2")
 assert abs(double.value - 2) < 4 * double.error + 0.04
