@@ -40,6 +40,12 @@ POINTS = (
 HOT = 100.0
 """A temperature above which somebody may mean kelvin."""
 
+NEVER_AT_REST = (
+    "none under this law: a disk left on a floor or in a pile goes on bouncing. If it does so ever lower, contacts come ever"
+    " faster, and a run may not get to its stop time: --events N ends it, a contact_duration avoids it"
+)
+"""What holds where a law does not say that slow bounces end."""
+
 
 def page(asked: str, name: str | None, needs: Needs, origins: Origins | None = None) -> str:
     """Return the whole page that `eventsim check` prints."""
@@ -62,8 +68,11 @@ def explanation(needs: Needs, origins: Origins | None = None) -> Iterator[tuple[
     if needs.gravity is not None and needs.gravity[1] > 0.0:
         yield "gravity", "it points upwards; downwards is gravity = [0.0, -9.81]"
     lands = needs.walls or needs.immovable or needs.domain in ("box", "channel")
-    if needs.gravity is not None and needs.contact_duration is not None and lands and needs.disks > needs.immovable:
-        yield "rest", _rest(settling(needs.disks - needs.immovable, needs.radii[0], needs.gravity), needs.contact_duration)
+    if needs.gravity is not None and lands and needs.disks > needs.immovable:
+        if needs.contact_duration is not None:
+            yield "rest", _rest(settling(needs.disks - needs.immovable, needs.radii[0], needs.gravity), needs.contact_duration)
+        elif needs.law.by_speed and not needs.law.comes_to_rest():
+            yield "rest", NEVER_AT_REST
     yield "disks", _disks(needs)
     if origins is not None and len(origins.shares) > 1:
         yield "numbers", _numbers(origins)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import eventsim as es
-from eventsim.cli.explain import page
+from eventsim.cli.explain import explanation, page
 from eventsim.cli.folding import folded
 from eventsim.cli.needs import needs_of
 from eventsim.scene.gallery import names
@@ -168,6 +168,16 @@ def test_gases_of_one_seed_are_told(eventsim, tmp_path):
     assert "one seed" not in told_of_file(eventsim, file, "--set", "gas.1.seed=8")
     file.write_text(MIXED.replace("temperature = 1.0", 'arrangement = "square"'))
     assert "one seed" not in told_of_file(eventsim, file)
+
+
+def test_under_a_law_of_ones_own_check_tells_that_nothing_rests_and_what_avoids_ever_faster_contacts():
+    def told(**keys):
+        scene = es.Scene(es.Disks([[1.0, 2.0]], radius=0.5), es.Box((4.0, 4.0)), law=lambda approach: 0.5, **keys)
+        return dict(explanation(needs_of(scene))).get("rest", "")
+
+    assert "may not get to its stop time: --events N ends it" in told(gravity=(0.0, -1.0))
+    assert "none with a contact_duration" in told(gravity=(0.0, -1.0), contact_duration=0.01)
+    assert told() == ""
 
 
 if __name__ == "__main__":
