@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from tests.oracle.digits import ONE, UNIT, ZERO, root
-from tests.oracle.doubt import SAFE, NoDoubt, contact_map
+from tests.oracle.digits import ONE, UNIT, ZERO, is_float, root
+from tests.oracle.doubt import SAFE, NoDoubt, contact_map, last_bits
 from tests.oracle.impact import MOST_TOGETHER, Together, lightness, parted, shares
 from tests.oracle.order import demand_ends, demand_small, is_same, lateness, predict
 from tests.oracle.rest import settle
@@ -46,6 +46,7 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
         else:
             after, impulses, unique = parted_by_one(run, m, normals[0], before, e)
         map_contact(run, m, normals[0], before, after, pulls, e)
+        turn_normal(run, m, normals[0], states, UNIT * (clock + delay), e)
     elif all(m.at_end for m in cluster) and len(disks) == 1 and is_convex(run, disks[0], cluster, before[disks[0]]):
         i = disks[0]
         after, unique, may_refuse = {i: _turned(before[i], es[0])}, True, True
@@ -143,6 +144,26 @@ def map_contact(
     with np.errstate(all="ignore"):  # what has grown so far ends the judging
         matrix = contact_map(floats(normal), run.bend(m), velocities, accelerations, parts, float(e))
     run.doubt.map(m.disks, matrix)
+
+
+def turn_normal(
+    run: State, m: Meeting, normal: Vector, states: dict[int, tuple[Vector, Vector]], instant: float, e: Decimal
+) -> None:
+    """Round the velocities of a contact as its normal is rounded, which places at a rounded time give.
+
+    A deviation of a flight moves the contact along its flight; a rounding there moves the place alone, and turns the normal.
+    """
+    aside, speed = 0.0, 0.0
+    along = (abs(float(normal[1])), abs(float(normal[0])))
+    for i in m.disks:
+        for share, place, v, c in zip(along, *states[i], run.table.corner, strict=True):
+            if not (is_float(place - c) and (v == 0 or is_float(run.now))):
+                aside += share * (last_bits(place - c) + abs(float(v)) * instant)
+        speed += float(size(states[i][1]))
+    parts = [1.0] if m.b < 0 else [float(s) for s in shares(run.table.mass[m.a], run.table.mass[m.b])]
+    for i, share in zip(m.disks, parts, strict=True):
+        sigma = share * (1.0 + float(e)) * speed * abs(run.bend(m)) * aside
+        run.doubt.round(i, (0.0, 0.0, sigma, sigma))
 
 
 def is_along(run: State, k: int, velocity: Vector) -> bool:

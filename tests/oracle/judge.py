@@ -167,6 +167,10 @@ class _MistakeError(Exception):
         self.row = row
 
 
+class _NoDigitsLeftError(Exception):
+    """From here on floats do not determine what a run does."""
+
+
 def judge(story: Story, seen: Seen, close: float = CLOSE) -> Verdict:
     """The verdict on what an engine did; close: what is right, in mean free times and the like."""
     with working_with(ROUNDS[0]):
@@ -206,6 +210,8 @@ class _Judge:
             for number, row in enumerate(self.seen.rows):
                 self._match(number, row)
             word, why = self._ending()
+        except _NoDigitsLeftError:
+            word, why = RIGHT, ""
         except _MistakeError as mistake:
             return Verdict(WRONG, str(mistake), mistake.row, self.judged, total)
         if word == RIGHT and not self._is_enough(total):
@@ -254,6 +260,8 @@ class _Judge:
             i = disks[0]
             if ahead[0] and kind == REST and (rest := self._early_rest(i, wall, number)) is not None:
                 return rest
+            if ahead[0] and kind == REST and self._rests_in_doubt(ahead[0][0], wall):
+                raise _NoDigitsLeftError
             if ahead[0] and kind == REST and self._rests_again(ahead[0][0], wall, time, i, number):
                 self.judged += 1
                 return None
@@ -347,6 +355,10 @@ class _Judge:
         before = [row for row in self.seen.rows[:number] if i in (row["a"], row["b"])]
         at_once = bool(before) and self._time(before[-1]) == time and self.seen.rows[number]["impulse"] == 0.0
         return at_once and rest.kind == REST and wall not in rest.walls and time <= rest.time
+
+    def _rests_in_doubt(self, bounce: Row, wall: str) -> bool:
+        """Whether a disk rests in place of a low bounce on that wall that floats do not determine."""
+        return bounce.kind == WALL and wall in bounce.walls and _is_cut(bounce) and self._is_in_doubt(bounce)
 
     def _early_rest(self, i: int, wall: str, number: int) -> Row | None:
         """The rest that ends the series that this disk is in, or begins by a bounce in doubt, if it may end here."""
