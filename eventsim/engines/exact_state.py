@@ -11,7 +11,7 @@ from eventsim.engines.turnover import Anchors
 from eventsim.formulas.clock import end_of_epoch, window_length
 from eventsim.formulas.motion import position, velocity
 from eventsim.formulas.real import Real
-from eventsim.formulas.rest import NOT_LAST, SUPPORTED, Support, has_struck, held_by
+from eventsim.formulas.rest import AS_AT_START, NOT_LAST, SUPPORTED, Support, has_struck, held_by
 from eventsim.scene.sides import Sides
 
 LONG_AGO = -1e300
@@ -152,7 +152,12 @@ class ExactState(ABC):
             self.low_vx[i] = self.low_vy[i] = 0.0
 
     def since_met(self, i: int, wall: int) -> Real:
-        """How long before its flight began disk i struck a wall, -1 - its place, or one in line with it; else NOT_LAST."""
+        """How long before its flight began disk i struck a wall, -1 - its place, or one in line with it; else NOT_LAST.
+
+        AS_AT_START where it has met nothing yet.
+        """
+        if self.is_as_at_start(i):
+            return AS_AT_START
         if not has_struck(self.supports, self.met[i], -1 - wall):
             return NOT_LAST
         return self.since_contact(i)

@@ -13,15 +13,15 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from eventsim.formulas.crossing import crossing_delay
-from eventsim.formulas.doubt import AT_ONCE, FLOORS, LEAST_LOSS, NO_SPEED, ROUNDED, TOUCHING
+from eventsim.formulas.doubt import AT_ONCE, BELOW, FLOORS, LEAST_LOSS, NO_SPEED, ROUNDED, TOUCHING
 from eventsim.formulas.real import NEVER, Real, is_float, sqrt
 from eventsim.formulas.slide import end_delay, slide_delay
 from eventsim.formulas.walls.face import Face, flight_side, hangs_below, is_met, slope
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Shape
 
-NOT_LAST = -1.0
-"""Instead of the time since a wall was met: it is not what the disk met last."""
+NOT_LAST, AS_AT_START = -1.0, -2.0
+"""Something else was met since the wall; or nothing was met yet, so that the flight is the one that the scene tells."""
 
 STRUCK, SUPPORTED, LEFT = 0, 1, 2
 """What a contact with a wall is, and what the disk remembers of it: an impact; it came to rest there; it slid over the end."""
@@ -116,17 +116,18 @@ def rest_delay(
 
     gap, rate, fall: of its distance from contact, in terms of the wall's normal.  scale: the coordinates that the gap was
     calculated from.  t: the clock at the beginning of the flight.  since: the time from the contact with the wall until then,
-    NOT_LAST if something else was met since.  rounds: whether rounding moves a disk that touches the wall.  blur: what it may
-    do to the rate, 0 where that is one component; what comes no faster does not come.
+    NOT_LAST or AS_AT_START if it was not met last.  rounds: whether rounding moves a disk that touches the wall.  blur: what it
+    may do to the rate, 0 where that is one component; what comes no faster does not come.
 
     It rests at its Zeno time where the next bounce is over at the same instant of the clock, or so slow that rounding may keep it
     up; earlier if until then it would fall through the wall by more than the last bits of its place (a share of the whole series
     as small as that of the last bounce).  On a wall where those are rounded the series is cut once it would not fall so far.
-    At once where it does not leave the wall, or comes to it no faster than from the gap that rounding may have left.
+    At once where it does not leave the wall, or comes to it no faster than from the gap that rounding may have left: behind a
+    contact with something else that is few last bits, and from a larger gap it falls and bounces.
     """
     if not fall < 0.0:
         return NEVER
-    if gap > TOUCHING * scale or gap < -(TOUCHING * scale):
+    if gap > (BELOW if since == NOT_LAST else TOUCHING) * scale or gap < -(TOUCHING * scale):
         return NEVER
     lag = since if since > 0.0 else 0.0
     if lag > 0.0 or not rate < 0.0:

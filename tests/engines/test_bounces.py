@@ -121,15 +121,18 @@ def test_a_bounce_that_rounding_would_keep_up_ends(engine):
     assert run.state.position.tolist() == [[0.5, 0.1]]
 
 
+@pytest.mark.parametrize("height", [0.0, 0.25])
 @pytest.mark.parametrize("engine", ENGINES)
-def test_what_has_met_another_disk_low_above_the_floor_falls_on_and_bounces(engine):
-    """Its gap is known to the last bits of its height, however large its other coordinate is."""
-    radius, height, low = 2.0**-10, 2.0**-47, 2.0**-49
-    begun = math.sqrt(2.0 * (height - low))
-    disks = es.Disks([(1.0, radius + height), (1.0 + 2.0 * radius + begun, radius + height)], [(0.0, 0.0), (-1.0, 0.0)], radius)
-    run = es.simulate(es.Scene(disks, es.Box((4.0, 1.0)), (), (0.0, -1.0), 0.5), until=1e-5, engine=engine, log=True)
+def test_what_has_met_another_disk_low_above_the_floor_falls_on_and_bounces(engine, height):
+    """Its gap is known to a few last bits, to those of its height alone above a side of the domain."""
+    radius, drop, low = 2.0**-10, 2.0**-47, 2.0**-49
+    begun = math.sqrt(2.0 * (drop - low))
+    y = height + radius + drop
+    disks = es.Disks([(1.0, y), (1.0 + 2.0 * radius + begun, y)], [(0.0, 0.0), (-1.0, 0.0)], radius)
+    walls = (es.Segment((0.0, height), (4.0, height)),) if height else ()
+    run = es.simulate(es.Scene(disks, es.Box((4.0, 1.0)), walls, (0.0, -1.0), 0.5), until=1e-5, engine=engine, log=True)
     assert run.log.kind[:2].tolist() == [Kind.PAIR, Kind.WALL]
-    assert run.log.time[run.log.kind == Kind.REST] == pytest.approx([3.0 * math.sqrt(2.0 * height)] * 2, rel=1e-8)
+    assert run.log.time[run.log.kind == Kind.REST] == pytest.approx([3.0 * math.sqrt(2.0 * drop)] * 2, rel=1e-8)
 
 
 @pytest.mark.parametrize("engine", RARE)

@@ -52,6 +52,7 @@ from eventsim.formulas.corner import kept_up_energy, passes_sliding, slides_into
 from eventsim.formulas.crossing import crossing_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import (
+    AS_AT_START,
     LEFT,
     NOT_LAST,
     STRUCK,
@@ -180,7 +181,9 @@ def _has_struck(m, i, place):
 
 @inline
 def _since_met(m, i, place):
-    """How long before its flight began disk i struck a wall, or one in line with it; else NOT_LAST."""
+    """How long before its flight began disk i struck a wall, or one in line with it; else NOT_LAST, or AS_AT_START."""
+    if real(m.disks, i * REALS + CONTACT_TIME) == -math.inf:
+        return AS_AT_START
     if not _has_struck(m, i, place):
         return NOT_LAST
     return real(m.disks, i * REALS + T) - real(m.disks, i * REALS + CONTACT_TIME)
