@@ -112,7 +112,13 @@ ZENO = [
 
 @pytest.mark.parametrize(("bounce", "delay"), ZENO)
 def test_a_disk_rests_at_its_zeno_time_or_at_once(bounce, delay):
-    assert rest.rest_delay(*bounce, rest.NOT_LAST) == delay
+    assert rest.rest_delay(*bounce, rest.AS_AT_START) == delay
+
+
+@pytest.mark.parametrize(("gap", "delay"), [(0.25 * BIT, 0.0), (0.3125 * BIT, NEVER), (-0.25 * BIT, 0.0), (-BIT, 0.0)])
+def test_behind_another_contact_a_gap_is_known_to_a_few_last_bits(gap, delay):
+    assert rest.rest_delay(gap, 0.0, -2.0, 1.0, 0.5, 8.0, rest.NOT_LAST) == delay
+    assert rest.rest_delay(gap, 0.0, -2.0, 1.0, 0.5, 8.0, rest.AS_AT_START) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -309,7 +315,7 @@ def test_a_slope_blurs_the_rate_by_the_speed_along_it():
 def test_touching_is_measured_by_all_coordinates(offset, touches):
     floor = face(-1.0, -4.0, -5.0, -4.0)  # normal (0, -1)
     place = -3.0, -5.0 - offset * BIT
-    delay = rest.rest_on_face_delay(floor, 1, 0.0, 16.0, *place, 0.0, 0.0, 0.0, 2.0, 1.0, 0.5, 8.0, rest.NOT_LAST)
+    delay = rest.rest_on_face_delay(floor, 1, 0.0, 16.0, *place, 0.0, 0.0, 0.0, 2.0, 1.0, 0.5, 8.0, rest.AS_AT_START)
     assert delay == (0.0 if touches else NEVER)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from eventsim.formulas import rest
 from eventsim.formulas.real import NEVER
-from eventsim.formulas.rest import LEFT, NOT_LAST, STRUCK, SUPPORTED, Held, Support
+from eventsim.formulas.rest import AS_AT_START, LEFT, NOT_LAST, STRUCK, SUPPORTED, Held, Support
 from eventsim.formulas.walls.face import face
 from eventsim.formulas.walls.post import Post
 
@@ -48,7 +48,7 @@ def test_a_wall_of_the_domain_is_struck_unless_it_carries_the_disk(supports, hel
     ],
 )
 def test_a_disk_comes_to_rest_on_a_wall_of_the_domain(side, target, v, g, expected):
-    found = rest.border_contact(SUPPORTS, None, 1, side, target, 4.0, v, g, 8.0, 0.5, 8.0, NOT_LAST)
+    found = rest.border_contact(SUPPORTS, None, 1, side, target, 4.0, v, g, 8.0, 0.5, 8.0, AS_AT_START)
     if expected[1] == SUPPORTED:
         assert found == expected
     else:

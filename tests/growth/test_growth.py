@@ -86,7 +86,7 @@ def test_too_dense_a_mixture_says_how_far_it_came(monkeypatch):
         ({"disk": [{"position": [0.5, 0.5], "radius": 0.2}]}, "must be free of walls and of other disks"),
         (
             {"domain": {"kind": "periodic", "size": [1.0, 0.01]}},
-            "four of its diameters|wider than the region|do not fit",
+            "four of its diameters|wider than the region|no arrangement|do not fit",
         ),
     ],
 )

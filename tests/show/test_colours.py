@@ -28,7 +28,7 @@ def test_films_and_figures_have_the_same_colours(mass):
     assert film.tolist() == own_colours(log.scene.disks).tolist()
     figure = new_figure()
     trajectories.draw(figure, log)
-    ends = figure.axes[0].collections[2]
+    ends = figure.axes[0].collections[3]  # behind them rings mark the starts
     assert ends.get_facecolor()[:, :3].tolist() == film[:, :3].tolist()
     figure = new_figure()
     space_time.draw(figure, log)
