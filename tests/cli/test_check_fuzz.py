@@ -1,6 +1,7 @@
 """`check` never crashes: it explains a scene, or a sentence says what is wrong with it."""
 
 import copy
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +38,7 @@ def explained(scene):
 
 
 def scenes_of_the_catalogue(chosen):
-    """The first scene of each case."""
+    """The first scene of each case; of one that is refused before it is a scene, none."""
 
     class Reading(Bench):
         def run(self, scene, *_args, **_keys):
@@ -49,7 +50,7 @@ def scenes_of_the_catalogue(chosen):
 
     found = []
     for name in chosen:
-        with pytest.raises(GaveUpError):
+        with suppress(GaveUpError):
             CASES[name].judge(Reading("reference", 1.0))
     return found
 
