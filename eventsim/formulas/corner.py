@@ -5,7 +5,7 @@ after a finite time, at rest on both walls.  How they share its weight is no que
 before, once a last bit of the disk's place is worth as much energy as it has left.
 """
 
-from eventsim.formulas.doubt import LEAST_LOSS, NO_SPEED, ROUNDED
+from eventsim.formulas.doubt import LEAST_LOSS, NO_SPEED, ROUNDED, rounding_of
 from eventsim.formulas.real import Real
 
 SPENT = 8.0
@@ -47,7 +47,7 @@ def passes_sliding(ax: Real, ay: Real, bx: Real, by: Real, u: Real, w: Real, gx:
 def _leads(turn: Real, ax: Real, ay: Real, u: Real, w: Real) -> bool:
     """Whether a vector has a part along wall a towards another wall, on the left (turn < 0) or right of a's normal."""
     one, other = ax * w, ay * u
-    slack = (NO_SPEED * ROUNDED) * (abs(one) + abs(other))
+    slack = NO_SPEED * rounding_of(one, other)
     return bool(one - other < -slack) if turn > 0.0 else bool(turn < 0.0 and one - other > slack)
 
 

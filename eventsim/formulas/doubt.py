@@ -6,6 +6,8 @@ other, only exact arithmetic tells which of two contacts comes first.  A gap may
 Flights may be so short that rounding alone keeps them up; contacts behind such flights are at one instant.
 """
 
+from typing import Any
+
 from eventsim.formulas.clock import FIRST_WINDOW, window_length
 from eventsim.formulas.real import NEVER, Real
 
@@ -32,7 +34,7 @@ ROUNDED = 2.0**-52
 """What rounding may do to the speed across a slanted wall, as a part of the components that it is calculated from."""
 
 NO_SPEED = 8.0
-"""A speed across a wall, or along it, of no more than so many roundings of its terms is none."""
+"""A speed across a wall, or along it, of no more than so many roundings of its terms (`rounding_of`) is none."""
 
 FLOORS = 32.0
 """A series is cut so many times above the speed that rounding may keep up, which is ROUNDED / (1 - e): the errors of all the
@@ -79,6 +81,11 @@ SLOWLY = 2.0**-30
 
 LARGEST_PILE = 2.0**-42
 """The most that errors are taken to pile up to, as a part of the places: a gap of that size is hardly slow to close in a gas."""
+
+
+def rounding_of(one: Any, other: Any) -> Any:
+    """What rounding may do to a speed across a wall, or along it, that is the sum of two products."""
+    return ROUNDED * (abs(one) + abs(other))
 
 
 def contact_doubt(size: Real, approach: Real, bend: Real, time: Real) -> Real:

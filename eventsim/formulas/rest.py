@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from eventsim.formulas.crossing import crossing_delay
-from eventsim.formulas.doubt import AT_ONCE, BELOW, FLOORS, LEAST_LOSS, NO_SPEED, ROUNDED, TOUCHING
+from eventsim.formulas.doubt import AT_ONCE, BELOW, FLOORS, LEAST_LOSS, NO_SPEED, TOUCHING, rounding_of
 from eventsim.formulas.real import NEVER, Real, is_float, sqrt
 from eventsim.formulas.slide import end_delay, slide_delay
 from eventsim.formulas.walls.face import Face, flight_side, hangs_below, is_met, slope
@@ -187,7 +187,7 @@ def rest_on_face_delay(
     across, upwards = nx * vx, ny * vy
     blur = 0.0
     if nx != 0.0 and ny != 0.0 and is_float(x):
-        blur = ROUNDED * (abs(across) + abs(upwards))
+        blur = rounding_of(across, upwards)
     delay = rest_delay(gap, across + upwards, fall, scale, restitution, t, since, True, blur)
     if not delay < NEVER:
         return NEVER

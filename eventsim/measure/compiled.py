@@ -44,6 +44,7 @@ def _viewed(arrays: Any) -> Any:
     return type(arrays)(*(memoryview(cast(Any, item)) if isinstance(item, np.ndarray) else item for item in arrays))
 
 
+
 def _view(array: Floats | None) -> Any:
     """The same of an array that may be missing."""
     return None if array is None else memoryview(cast(Any, array))

@@ -16,6 +16,12 @@ from eventsim.scene.stage import Stage
 from eventsim.scene.walls import parts_of
 
 
+def walls_that_pull(stage: Stage) -> NDArray[np.bool_]:
+    """Which walls (W,) pull along themselves, by their numbers in the log."""
+    law, numbers = stage.law, range(len(stage.wall_names))
+    return np.array([law.grips[1] or law.treatment(wall).temperature is not None for wall in numbers], dtype=bool)
+
+
 class Pull:
     """The directions of walls that pull.
 
@@ -25,11 +31,8 @@ class Pull:
 
     def __init__(self, scene: Scene, stage: Stage) -> None:
         """Note the walls of a scene; places in rows are relative to the stage's corner."""
-        law, self._radius = stage.law, scene.disks.radius
-        names = range(len(stage.wall_names))
-        self.walls: NDArray[np.bool_] = np.array(
-            [law.grips[1] or law.treatment(wall).temperature is not None for wall in names], dtype=bool
-        )
+        self._radius = scene.disks.radius
+        self.walls = walls_that_pull(stage)
         self._sides = np.zeros((len(self.walls), 2))
         self._shapes: dict[int, list[tuple[Shape, int]]] = {}
         for surface, turn in zip(stage.surfaces, stage.turns, strict=True):

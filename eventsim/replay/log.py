@@ -136,7 +136,6 @@ class EventLog(Excerpt):
             raise
         sink.close(ending)
 
-
     @classmethod
     def loaded(cls, path: str | PathLike[str], law: Callable[..., float] | None = None) -> Self:
         """The log of a file; path, law: as of `load_log`."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from eventsim.scene.keyboard import plain
 from eventsim.scene.quoting import quoted
 from eventsim.scene.remedies import two_ways
-from eventsim.scene.slips import otherwise
+from eventsim.scene.slips import otherwise, shown
 
 LONGEST = 1 << 20
 """Letters of a file that is read again with a rule applied."""
@@ -84,10 +84,8 @@ def problem_of(text: str, error: json.JSONDecodeError) -> str:
             lines, mended = text.split("\n"), right.split("\n")
             pairs = enumerate(zip_longest(lines, mended, fillvalue=""), 1)
             number, line, new = next((k, one, other) for k, (one, other) in pairs if one != other)
-            same = next((k for k, (a, b) in enumerate(zip(line, new, strict=False)) if a != b), min(len(line), len(new)))
-            other = otherwise(line, new)
-            ways = f": {two_ways(line)}" if other else ""
-            return f"{why}{ways} (at line {number})" + quoted(line, same, "", new, f"line {number}", other=other)
+            ways = f": {two_ways(line)}" if otherwise(line, new) else ""
+            return f"{why}{ways} (at line {number})" + shown([*lines, ""], number, new)
     line = text.split("\n")[error.lineno - 1]
     told = f"{WORDS.get(error.msg, error.msg)} (at line {error.lineno}, column {error.colno})"
     return told + quoted(line, error.colno - 1, "", "", f"line {error.lineno}")

@@ -204,16 +204,16 @@ def problem_of(text: str, error: tomllib.TOMLDecodeError) -> str:
     if len(text) <= LONGEST:
         if (single := _single_before(lines, line)) is not None:
             right = f"[{lines[single - 1].strip()}]"
-            return f"tables of a list stand in double brackets, all of them (at line {single})" + _shown(lines, single, right)
+            return f"tables of a list stand in double brackets, all of them (at line {single})" + shown(lines, single, right)
         for here in _lines_before(lines, line):
             for why, right in _mended(lines, here):
                 if _reads_on(lines, here, right, line):
                     told = f"{why}: {two_ways(lines[here - 1])}" if otherwise(lines[here - 1], right) else why
-                    return f"{told} (at line {_alike(lines, here, right)})" + _shown(lines, here, right)
+                    return f"{told} (at line {_alike(lines, here, right)})" + shown(lines, here, right)
         for here in _lines_before(lines, line):
             if HEADER.match(lines[here - 1]) is not None and _reads_on(lines, here, "", line):
                 why = "this table was begun before: put its keys there, and leave this line out"
-                return f"{why} (at line {here})" + _shown(lines, here, "")
+                return f"{why} (at line {here})" + shown(lines, here, "")
     told = "a file does not compute: write the number itself" if COMPUTED.search(lines[line - 1]) else _in_words(match[1])
     key = _key_of(lines[line - 1])
     example = "" if not key or key not in EXAMPLES else EXAMPLES[key]
@@ -300,7 +300,7 @@ def _reads_on(lines: list[str], number: int, right: str, last: int) -> bool:
     return True
 
 
-def _shown(lines: list[str], number: int, right: str) -> str:
+def shown(lines: list[str], number: int, right: str) -> str:
     """A line, a caret where it departs from what is right, and that."""
     line = lines[number - 1].rstrip()
     same = next((k for k, (a, b) in enumerate(zip(line, right, strict=False)) if a != b), min(len(line), len(right)))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventsim.formulas.doubt import NO_SPEED, ROUNDED, TOUCHING
+from eventsim.formulas.doubt import NO_SPEED, TOUCHING, rounding_of
 from eventsim.formulas.rest import Support
 from eventsim.formulas.walls.arc import Arc
 from eventsim.formulas.walls.boundary import Boundary
@@ -248,7 +248,7 @@ def any_lies(support: Support, flights: tuple[Floats, ...], radius: Floats, grav
     gap, rate = np.abs(distance) - radius * shape.norm, shape.nx * vx + shape.ny * vy
     scale = shape.norm * (np.abs(x) + np.abs(y) + abs(shape.x) + abs(shape.y) + radius)
     touches = (np.abs(gap) <= TOUCHING * scale) & (support.low <= along) & (along <= support.high)
-    rounded = NO_SPEED * ROUNDED * (np.abs(shape.nx * vx) + np.abs(shape.ny * vy)) if shape.nx != 0.0 and shape.ny != 0.0 else 0.0
+    rounded = NO_SPEED * rounding_of(shape.nx * vx, shape.ny * vy) if shape.nx != 0.0 and shape.ny != 0.0 else 0.0
     still = (rate * rate <= 8.0 * abs(fall) * np.abs(gap)) | (np.abs(rate) <= rounded)
     pressed = (np.sign(distance) * fall < 0.0) | (radius * shape.norm <= TOUCHING * scale)  # places tell no side of points
     return bool(np.any(touches & still & pressed & (fall != 0.0)))

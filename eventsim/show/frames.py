@@ -84,7 +84,7 @@ def shown_span(span: tuple[float, float], begin: float | None, end: float | None
 
 
 MOST_RECENT = 20_000
-"""Rows between two frames whose ways can be told apart by nobody; and they would have to be held."""
+"""Rows between two frames, and ways in a trail, of which nobody can tell more apart; and they would have to be held."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from eventsim.record.events import Floats, Rows
 from eventsim.replay.flight_table import flights_between, flights_from
 from eventsim.replay.motion import Motion
 from eventsim.replay.passage import Moment
-from eventsim.show.frames import Frame
+from eventsim.show.frames import MOST_RECENT, Frame
 from eventsim.show.images import wrapped_pieces
 
 HEAD = 0.3
@@ -23,10 +23,6 @@ PARABOLA_PIECES = 2
 
 BANDS, STRONGEST = 12, 0.85
 """Shades in which a trail fades, and the opacity of the newest."""
-
-
-MOST_WAYS = 20_000
-"""Ways in a trail: where there are more, nobody sees the oldest among them, and they would have to be held and drawn."""
 
 
 def arrows(tail: Floats, along: Floats) -> Path:
@@ -67,7 +63,7 @@ class Trails:
             self._pieces.clear()
         elif self._before is not None:
             self._pieces.append(self._pieces_between(self._before, frame.recent, frame.state.time))
-            while sum(map(len, self._pieces)) > MOST_WAYS and len(self._pieces) > 1:
+            while sum(map(len, self._pieces)) > MOST_RECENT and len(self._pieces) > 1:
                 self._pieces.popleft()
         self._before = frame.moment
         pieces = list(self._pieces)

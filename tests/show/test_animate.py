@@ -333,7 +333,7 @@ def test_a_trail_of_more_ways_than_can_be_seen_reaches_back_less_far(broken, mon
         return max(sum(len(path.vertices) // 2 for path, _ in trails.follow(frame)) for frame in frames)
 
     assert longest() > 200
-    monkeypatch.setattr(strokes, "MOST_WAYS", 150)
+    monkeypatch.setattr(strokes, "MOST_RECENT", 150)
     assert 100 < longest() <= 150
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from eventsim.measure.entries import Expected, average
 from eventsim.measure.expected import CLOSED, two_in_a_box
 from eventsim.measure.measures import Measure
-from eventsim.measure.pull import Pull
+from eventsim.measure.pull import walls_that_pull
 from eventsim.measure.records import Records
 from eventsim.measure.sums import END, SIDES
 from eventsim.measure.walls import sides_of
@@ -34,7 +34,7 @@ def measures(records: Records) -> Iterator[Measure]:
     closed = two_in_a_box(records)
     pressed = records.no_temperature is None and ensemble.n > 1
     stage = stage_of(ensemble.scene)
-    pulls = Pull(ensemble.scene, stage).walls
+    pulls = walls_that_pull(stage)
     for place, (name, (length, sides)) in enumerate(zip(records.wall_names, sides_of(ensemble.scene, stage), strict=True)):
         impulse = [records.wall(place, side) for side in range(SIDES)]
         theory = Expected(closed[f"force_{name}"], 0.0, CLOSED) if f"force_{name}" in closed else None

@@ -90,14 +90,18 @@ def series_of(
 
     drawn: whether a row has what is drawn; None: a packing fraction and a Z.
     """
-    settings = takewhile(lambda key: key != "replica", rows[0] if rows else ())
-    keys = [key for key in settings if len({row.get(key) for row in rows}) > 1]
+    keys = [key for key in keys_of(rows) if len({row.get(key) for row in rows}) > 1]
     along = next((key for key in keys if _moves_along(rows, key, keys, x)), None)
     others = [key for key in keys if key != along]
     found: dict[str, list[Row]] = {}
     for row in rows:
         found.setdefault(", ".join(f"{key} = {row.get(key)}" for key in others), []).append(row)
     return [(words, members) for words, members in found.items() if any(map(drawn or _can_be_drawn, members))]
+
+
+def keys_of(rows: Sequence[Row]) -> list[str]:
+    """The keys that were set."""
+    return list(takewhile(lambda key: key != "replica", rows[0] if rows else ()))
 
 
 def _moves_along(rows: Sequence[Row], key: str, keys: Sequence[str], x: str) -> bool:
@@ -139,13 +143,23 @@ def _can_be_drawn(row: Row) -> bool:
 
 def _mean(group: Sequence[Row]) -> tuple[float, float, float, float, bool]:
     """(Z, its error, theory, its accuracy, whether all are equilibrated) of replicas."""
-    z, error, theory, accuracy = (_column(group, key) for key in ("Z", "Z_error", "Z_theory", "Z_accuracy"))
-    weight = 1.0 / error**2
+    z, error, theory, accuracy = (column(group, key) for key in ("Z", "Z_error", "Z_theory", "Z_accuracy"))
     settled = all(row.get("equilibrated") is True for row in group)
-    mean, spread = float(np.average(z, weights=weight)), float(weight.sum() ** -0.5)
-    return mean, spread, float(theory.mean()), float(accuracy.mean()), settled
+    return *weighted(z, error), float(theory.mean()), float(accuracy.mean()), settled
 
 
-def _column(rows: Sequence[Row], key: str) -> Floats:
-    values = [row.get(key) for row in rows]
-    return np.array([float(value) if isinstance(value, int | float) else math.nan for value in values])
+def weighted(values: Floats, errors: Floats) -> tuple[float, float]:
+    """(Mean, its standard error) of numbers that are weighted by their error bars."""
+    weight = 1.0 / errors**2
+    return float(np.average(values, weights=weight)), float(weight.sum() ** -0.5)
+
+
+def column(rows: Sequence[Row], key: str) -> Floats:
+    """The cells of a column as numbers; NaN where one is none."""
+    return np.array([number_in(row, key) for row in rows])
+
+
+def number_in(row: Row, key: str) -> float:
+    """A cell as a number; NaN where it is none."""
+    value = row.get(key)
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else math.nan

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from matplotlib.figure import Figure
 
 from eventsim.errors import EventsimError, did_you_mean
 from eventsim.record.events import Floats
-from eventsim.show.figures.equation_of_state import series_of, styles
+from eventsim.show.figures.equation_of_state import column, keys_of, number_in, series_of, styles, weighted
 from eventsim.show.figures.style import ORANGE, label
 from eventsim.show.figures.write import save_figure
 from eventsim.show.output import as_written
@@ -41,10 +40,10 @@ def draw(figure: Figure, rows: Sequence[Row], x: str | None, y: str | None, name
     along = x or next((key for key in keys_of(rows) if len({row.get(key) for row in rows}) > 1), "packing_fraction")
     upwards = y or "Z"
     columns = numbers_of(rows)
-    for option, column in (("--x", along), ("--y", upwards)):
-        if column not in columns:
+    for option, asked in (("--x", along), ("--y", upwards)):
+        if asked not in columns:
             raise EventsimError(
-                f"{option} {column}: no run of the table has such a number{did_you_mean(column, columns)}; "
+                f"{option} {asked}: no run of the table has such a number{did_you_mean(asked, columns)}; "
                 f"there are {', '.join(columns)}"
             )
     drawn = partial(_has_both, x=along, y=upwards)
@@ -71,38 +70,26 @@ def averages(rows: Sequence[Row], x: str, y: str) -> tuple[Floats, Floats, Float
     """
     groups: dict[float, list[Row]] = {}
     for row in rows:
-        groups.setdefault(round(_number(row, x), 12), []).append(row)
+        groups.setdefault(round(number_in(row, x), 12), []).append(row)
     means = np.array([_mean(groups[place], y) for place in sorted(groups)])
     return np.array(sorted(groups)), means[:, 0], means[:, 1], means[:, 2]
 
 
 def _mean(rows: Sequence[Row], y: str) -> tuple[float, float, float]:
     """(Mean, its standard error, theory) of replicas."""
-    values, errors, theory = (np.array([_number(row, key) for row in rows]) for key in (y, f"{y}_error", f"{y}_theory"))
+    values, errors, theory = (column(rows, key) for key in (y, f"{y}_error", f"{y}_theory"))
     if (errors > 0.0).all():
-        weight = 1.0 / errors**2
-        return float(np.average(values, weights=weight)), float(weight.sum() ** -0.5), float(theory.mean())
+        return *weighted(values, errors), float(theory.mean())
     scatter = float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else math.nan
     return float(values.mean()), scatter, float(theory.mean())
-
-
-def keys_of(rows: Sequence[Row]) -> list[str]:
-    """The keys that were set."""
-    return list(takewhile(lambda key: key != "replica", rows[0] if rows else ()))
 
 
 def numbers_of(rows: Sequence[Row]) -> list[str]:
     """The columns that tell a number in some run: settings first, then what was measured, without errors and theory."""
     beside = ("_error", "_theory", "_accuracy")
-    found = dict.fromkeys(key for row in rows for key in row if math.isfinite(_number(row, key)))
+    found = dict.fromkeys(key for row in rows for key in row if math.isfinite(number_in(row, key)))
     return [key for key in found if key not in ("replica", "seed") and not key.endswith(beside)]
 
 
 def _has_both(row: Row, x: str, y: str) -> bool:
-    return math.isfinite(_number(row, x)) and math.isfinite(_number(row, y))
-
-
-def _number(row: Row, key: str) -> float:
-    """A cell as a number; NaN where it is none."""
-    value = row.get(key)
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
+    return math.isfinite(number_in(row, x)) and math.isfinite(number_in(row, y))
