@@ -9,7 +9,7 @@ from pathlib import Path
 from eventsim.record.events import Rows, unchangeable
 from eventsim.record.files import open_log
 from eventsim.record.provenance import Provenance
-from eventsim.replay.log import AnyLog, load_log, stream_log
+from eventsim.replay.log import AnyLog, EventLog, stream_log
 from eventsim.scene import Scene
 
 MOST_HELD = 1_000_000
@@ -60,4 +60,4 @@ def open_filed(path: str | PathLike[str]) -> AnyLog:
     file = Path(path)
     provenance, blocks = open_log(file)
     blocks.close()
-    return load_log(file) if provenance.compact else FiledLog(file, provenance)
+    return EventLog.loaded(file) if provenance.compact else FiledLog(file, provenance)

@@ -138,7 +138,7 @@ class EventLog(Excerpt):
 
     @classmethod
     def loaded(cls, path: str | PathLike[str], law: Callable[..., float] | None = None) -> Self:
-        """The log of a file; path, law: as of `load_log`."""
+        """The log of a file; path, law: as of `run.load_log`."""
         file = Path(path)
         provenance, rows = read_log(file)
         if law is not None:
@@ -149,17 +149,6 @@ class EventLog(Excerpt):
         log = cls(provenance, rows)
         log.path = file
         return log
-
-
-def load_log(path: str | PathLike[str], law: Callable[..., float] | None = None) -> EventLog:
-    """Read a log file of any format; raise LogError with a sentence where it is not one.
-
-    A text log that still grows (NAME.csv.part, NAME.jsonl.part) is read up to its last whole line.  Warns (LogWarning) where
-    its numbers were changed since it was written.
-
-    law: the law of contacts of your own that the run had; a compact log needs it, since nothing is run from a log.
-    """
-    return EventLog.loaded(path, law)
 
 
 def stream_log(path: str | PathLike[str], verify: bool = True) -> tuple[Provenance, Generator[Rows]]:

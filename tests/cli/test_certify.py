@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from eventsim.replay.log import load_log
+from eventsim.run import load_log
 
 
 def scene_of(tmp_path, **changes):

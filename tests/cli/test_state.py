@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from eventsim.readers import read_samples
-from eventsim.replay.log import load_log
+from eventsim.run import load_log
 
 
 @pytest.fixture

@@ -113,7 +113,7 @@ def setting(data: bytes, place: Path) -> None:
 
 def _log(suffix: str) -> Callable[[bytes, Path], None]:
     def read(data: bytes, place: Path) -> None:
-        from eventsim.replay.log import load_log
+        from eventsim.run import load_log
 
         path = place / f"log{suffix}"
         path.write_bytes(data)
@@ -130,7 +130,7 @@ def _rows(suffix: str) -> Callable[[bytes, Path], None]:
 
     def read(data: bytes, place: Path) -> None:
         from eventsim.record.provenance import provenance_text
-        from eventsim.replay.log import load_log
+        from eventsim.run import load_log
 
         if not heads:
             _, *lines = _good_log(place, f"good{suffix}", compact=True).splitlines(keepends=True)

@@ -9,7 +9,7 @@ import pytest
 
 from eventsim.errors import LogError, LogWarning
 from eventsim.record.files import open_sink
-from eventsim.replay.log import load_log
+from eventsim.run import load_log
 from eventsim.scene.gallery import gallery
 from eventsim.simulation import simulate
 from eventsim.suffixes import LOGS

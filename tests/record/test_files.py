@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from eventsim.errors import LogError
 from eventsim.record.events import COLUMNS, COMPACT_COLUMNS, ROW
 from eventsim.record.files import csv, open_sink
-from eventsim.replay.log import EventLog, load_log
+from eventsim.replay.log import EventLog
+from eventsim.run import load_log
 from eventsim.suffixes import LOGS
 from tests.record.logs import FLOATS, any_float, provenance, random_log, random_rows
 
@@ -135,7 +136,7 @@ def test_parquet_and_npz_hold_the_columns_by_their_names(tmp_path: Path) -> None
 def test_without_pyarrow_parquet_says_what_to_install() -> None:
     script = (
         "import sys; sys.modules['pyarrow'] = None\n"
-        "from eventsim.replay.log import load_log\nfrom eventsim.errors import LogError\n"
+        "from eventsim.run import load_log\nfrom eventsim.errors import LogError\n"
         "try:\n    load_log(sys.argv[1])\nexcept LogError as error:\n    print(error)\n"
     )
     done = subprocess.run([sys.executable, "-c", script, __file__], capture_output=True, text=True, check=False)

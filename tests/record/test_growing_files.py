@@ -13,7 +13,7 @@ from eventsim.errors import LogError, LogWarning
 from eventsim.record import Ending
 from eventsim.record.files import Mark, continued_sink, open_log, open_sink
 from eventsim.record.files.journal import ROOM
-from eventsim.replay.log import load_log
+from eventsim.run import load_log
 from eventsim.suffixes import LOGS
 from tests.record.logs import provenance, random_log, random_rows, scene
 

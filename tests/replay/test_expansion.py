@@ -12,9 +12,9 @@ import pytest
 from eventsim.errors import LogError
 from eventsim.record import State
 from eventsim.replay.expand import expand_blocks
-from eventsim.replay.log import EventLog, load_log, stream_log
+from eventsim.replay.log import EventLog, stream_log
 from eventsim.replay.replay import Replay
-from eventsim.run import Run
+from eventsim.run import Run, load_log
 from eventsim.scene import Arc, Box, Channel, Circle, Disks, Domain, Open, Periodic, Polygon, Polyline, Scene, Segment
 from eventsim.simulation import Simulation, simulate
 from eventsim.suffixes import LOGS
