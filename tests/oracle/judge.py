@@ -432,8 +432,7 @@ class _Judge:
         away = self._distance(at, part.place, self.seen.corner)
         speed = math.hypot(*_floats(part.velocity))
         slack = max(self.close * many * self.length, SAFE * (part.place_error + expected.time_error * speed))
-        if expected.kind == REST:
-            slack += speed * self._time_slack(expected, i)
+        slack += speed * (self._time_slack(expected, i) if expected.kind == REST else abs(late))  # it flew on until this contact
         if not away <= slack:
             raise _MistakeError(
                 f"disk {i}: place {at} at {expected.kind}, true {_floats(part.place)} on the scene's axes, off by {away:.3g}",
