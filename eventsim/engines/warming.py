@@ -12,7 +12,7 @@ import pickle
 import sys
 from typing import IO
 
-from eventsim.engines.base import Snapshot, Stop
+from eventsim.engines.base import Snapshot
 from eventsim.processes import cores, end_with
 from eventsim.scene.stage import Stage
 
@@ -86,5 +86,5 @@ def warm(stage: Stage, keep_rows: bool, saved: Snapshot | None = None) -> float:
 
     with compiling_alone():
         session = FastSession(stage, keep_rows, saved=saved)
-        session.advance(Stop(events=1), 1)
+        session.compile()
     return session.compile_s

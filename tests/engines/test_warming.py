@@ -1,5 +1,7 @@
 """Kernels that another process compiles while the reference engine goes on."""
 
+import ast
+import inspect
 import os
 import subprocess
 import sys
@@ -11,9 +13,12 @@ from click.testing import CliRunner
 
 from eventsim import processes
 from eventsim.cli import main
+from eventsim.compiler import is_interpreted
 from eventsim.engines import auto
 from eventsim.engines.auto import COLD, AutoSession, first_engine, reference_seconds
 from eventsim.engines.base import Stop
+from eventsim.engines.fast import instant, loop
+from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.engines.warming import PARENT, SWITCH, Warming, may_warm
 from eventsim.processes import cores
@@ -121,6 +126,29 @@ def test_the_process_does_its_job_or_fails(monkeypatch, is_damaged):
     assert not process.has_failed
     wait_for(lambda: not process.is_at_work)
     assert process.has_failed == is_damaged
+
+
+@pytest.mark.kernels
+@pytest.mark.skipif(not is_interpreted(), reason="calls of machine code are not seen from outside")
+def test_the_process_compiles_every_kernel():
+    """A run that takes over would have to compile what is missing."""
+    wanted, called = set(), set()
+    for module in (instant, loop):
+        for function in ast.parse(inspect.getsource(module)).body:
+            if isinstance(function, ast.FunctionDef) and any(map(is_kernel, function.decorator_list)):
+                wanted.add((module.__file__, function.name))
+    session = FastSession(GAS, True)
+    sys.setprofile(lambda frame, *_: called.add((frame.f_code.co_filename, frame.f_code.co_name)))
+    try:
+        session.compile()
+    finally:
+        sys.setprofile(None)
+    assert len(wanted) > 4
+    assert wanted <= called | {(loop.__file__, "fill")}  # a session begins with that
+
+
+def is_kernel(decorator: ast.expr) -> bool:
+    return isinstance(decorator, ast.Name) and decorator.id == "kernel"
 
 
 def test_two_processes_compile_one_after_the_other(tmp_path, monkeypatch):

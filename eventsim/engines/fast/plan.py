@@ -31,6 +31,11 @@ DILUTE, VERY_DILUTE = 1.6, 2.4
 DEEP = 8
 """Slots of a cell with room for several disks, to begin with."""
 
+FIVE, ROOMY, SMALL = 5, 0.555, 0.1
+"""Slots of a cell that a fifth disk may enter: three such cells still fit into a register.  It may where this part of the disks,
+the smallest ones, are so much smaller than their cell is wide: five of them cover half of the ground that they reach from there.
+"""
+
 CROWDED = 3.0
 """In mean distances of disks: a largest diameter from which on cells as wide as that would hold too many."""
 
@@ -104,6 +109,8 @@ def _finest(
     wide = max(least, 1e-6 * max(size))
     if spacing < DILUTE * least:
         side, most = wide, False
+        if 2.0 * float(np.quantile(radius, SMALL)) < ROOMY * wide:
+            depth = max(depth, FIVE)
     elif spacing < VERY_DILUTE * least and np.ptp(radius) == 0.0:
         side, most = WIDEST * least, True
     else:
@@ -305,10 +312,10 @@ class Grids:
                 self.sizes = cell_sizes(self._stage, motion.x, motion.y, self._classes, self._depths)
 
     def deepen(self, level: int) -> None:
-        """Give the cells of a level twice as many slots, now and whenever they are chosen anew."""
+        """Give the cells of a level more slots, now and whenever they are chosen anew."""
         assert self.sizes is not None
         sizes = list(self.sizes)
-        self._depths[level] = 2 * sizes[level].depth
+        self._depths[level] = FIVE if sizes[level].depth < FIVE else 2 * sizes[level].depth
         sizes[level] = sizes[level]._replace(depth=self._depths[level])
         self.sizes = tuple(sizes)
 

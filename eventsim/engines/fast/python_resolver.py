@@ -46,7 +46,7 @@ class PythonResolver:
         machine = self._machine
         state, now = machine.state, machine.state.now
         machine.flush()
-        near = self._contacts_until(latest_tie(now, machine.rules.tie_screen))
+        near = self.contacts_until(latest_tie(now, machine.rules.tie_screen))
         generation = self._ties.settle(near) if any(event.time == now for event in near) else []
         if (sunk := self._sunk.reason(generation)) is not None:
             self.reason, self.sunk = sunk, self._sunk.sank and machine.stage.law.loses_energy()
@@ -55,7 +55,7 @@ class PythonResolver:
             self.reason = doubtful
             return "digits"
         resolver = self._opened_resolver()
-        waiting = [int(state.labels[i]) for i in self._find(due_at, machine.counts, now)[:, 0]]
+        waiting = self.waiting()
         changed: list[int] = []
         for component in components(generation):
             try:
@@ -104,7 +104,12 @@ class PythonResolver:
             if i not in changed:
                 machine.predict_one(i, now if falls or i in left else math.nextafter(now, math.inf))
 
-    def _contacts_until(self, latest: float) -> list[Event]:
+    def waiting(self) -> list[int]:
+        """The disks whose next events are due now."""
+        state = self._machine.state
+        return [int(state.labels[i]) for i in self._find(due_at, self._machine.counts, state.now)[:, 0]]
+
+    def contacts_until(self, latest: float) -> list[Event]:
         """All contacts from the present time on that have not come to nothing, each once, in the order of rows."""
         machine = self._machine
         labels, count = machine.state.labels, machine.state.count

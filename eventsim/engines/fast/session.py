@@ -71,6 +71,14 @@ class FastSession(ExactSession):
             self._marked = machine.grid.deep
         return stopped
 
+    def compile(self) -> None:
+        """Compile all that a run may need: an event, a turnover, a look at an instant.  The session is of no use after that."""
+        self.advance(Stop(events=1), 1)
+        with timed_compiling(self._note_compiling):
+            self._machine.turn_over(self.state.now, 0, self.state.window)
+            self._resolver.waiting()
+            self._resolver.contacts_until(self.state.now)
+
     @property
     def prepares(self) -> bool:
         """Whether the session only prepares itself, so that an interrupt may break in."""

@@ -9,7 +9,7 @@ import eventsim as es
 from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Stop
 from eventsim.engines.fast import FastOptions
-from eventsim.engines.fast.plan import Sizes, classes_of, levels_of
+from eventsim.engines.fast.plan import FIVE, Grids, Sizes, classes_of, levels_of
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.digest import digest_of
@@ -39,6 +39,21 @@ def test_a_wide_mixture_has_one_log(domain: type, gravity: tuple[float, float] |
         stage = stage_of(wide_mixture(250, seed, domain, gravity=gravity))
         assert len(classes_of(stage)) > 1
         assert_same(stage, STOP)
+
+
+def test_cells_into_which_a_fifth_disk_fits_have_room_for_it_from_the_beginning() -> None:
+    """More slots in the middle of a run are another kind of kernel, and compile for seconds."""
+    depths = []
+    for name in ("gas", "mixture"):
+        stage = stage_of(es.gallery(name))
+        grids = Grids(stage, "auto")
+        grids.choose(ReferenceSession(stage).motion())
+        assert grids.sizes is not None
+        depths.append(grids.sizes[0].depth)
+        for more in (FIVE, 2 * FIVE)[depths[-1] == FIVE :]:
+            grids.deepen(0)
+            assert grids.sizes[0].depth == more
+    assert depths == [4, FIVE]
 
 
 def square(count: int, depth: int, radius: float) -> Sizes:
