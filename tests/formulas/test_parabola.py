@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -13,6 +14,7 @@ from eventsim.formulas.parabola import (
     _positive_roots,
     circle_delays,
     circle_gap,
+    stays_open,
 )
 from eventsim.formulas.real import NEVER
 
@@ -131,3 +133,23 @@ def test_a_flight_from_the_circle_comes_back_where_the_distance_is_the_same(angl
     before = circle_gap(x, y, u, w, *fall, 1.0, 1.0, 0.5 * delay, True)
     assert before > 0.0
     assert abs(gap) <= 2.0**-40 * before
+
+
+def test_a_gap_that_stays_open_is_not_closed_until_then():
+    """Whatever the flight; and where nothing is met for far longer, that is seen."""
+    rng = np.random.default_rng(5)
+    seen = 0
+    for _ in range(2000):
+        side = float(rng.choice((1, -1)))
+        angle, away = rng.uniform(0, 2 * math.pi), math.sqrt(rng.random()) if side < 0 else 1.0 + 3.0 * rng.random() ** 3
+        dx, dy = away * math.cos(angle), away * math.sin(angle)
+        du, dw, ax, ay = rng.normal(0.0, 1.0, 4)
+        delay, _ = circle_delays(dx, dy, du, dw, ax, ay, 1.0, side)
+        for share in (0.25, 0.9, 1.0, 1.1, 4.0):
+            t = share * min(delay, 10.0)
+            stays = stays_open(dx, dy, du, dw, ax, ay, 1.0, side, t, 1e-9)
+            assert not (stays and delay <= t)
+            seen += stays and share == 0.25
+    assert seen > 1200
+    assert not stays_open(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 1.0, -1.0, math.inf, 0.0)
+    assert not stays_open(0.5, 0.0, 0.0, 0.0, 0.0, -1.0, 1.0, -1.0, 0.1, 0.8)

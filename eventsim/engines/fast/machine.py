@@ -107,6 +107,7 @@ class Machine:
         order = in_memory(stage)
         self.state = FastState(stage, order, self.counts)
         self.rules = rules_of(stage)
+        self._screened: int | None = None  # the exponent of the window that the rules' screen is for
         self._features = features_of(stage)
         self._supports = supports_of(stage)
         self._images = images_of(stage)
@@ -214,8 +215,11 @@ class Machine:
 
     def choose_screen(self) -> None:
         """Set within which span contacts are ordered exactly, as it is in the present window."""
-        stage, length = self.stage, window_length(self.state.window, self.state.epoch_length)
-        self.rules = self.rules._replace(tie_screen=screen_in(stage.tie_screen, length, stage.epoch_length))
+        stage, window = self.stage, self.state.window
+        if window != self._screened:
+            length = window_length(window, self.state.epoch_length)
+            self.rules = self.rules._replace(tie_screen=screen_in(stage.tie_screen, length, stage.epoch_length))
+            self._screened = window
 
     def choose_cells(self, motion: Motion) -> None:
         """Choose cells for the disks where they are, and predict all of them anew."""

@@ -60,7 +60,7 @@ def predict(m, grid, rules, i, now, floor):
     x, y, time, code, shared = _alone(m, grid, rules, i, now, floor)
     contacts = either(m.slots, contacts_in_cells, contacts_of_everyone)
     time, code, shared = contacts(m, grid, rules, i, now, floor, x, y, time, code, shared)
-    _schedule(m, grid, rules, i, time, code, shared)
+    _schedule(m, grid, rules, i, now, floor, x, y, time, code, shared)
 
 
 @inline
@@ -90,15 +90,15 @@ def _side_by_side(m, grid, rules, i, j, now):
     found = _eight(m, rules, i, now, now, x, y, edge, 0)
     other_found = _eight(m, rules, j, now, now, other_x, other_y, edge, begin)
     time, code, shared = _or_among(m, rules, i, now, now, x, y, edge, 0, end, found, time, code, shared)
-    _schedule(m, grid, rules, i, time, code, shared)
+    _schedule(m, grid, rules, i, now, now, x, y, time, code, shared)
     x, y, end, found, time, code, shared = other_x, other_y, other_end, other_found, other_time, other_code, other_shared
     time, code, shared = _or_among(m, rules, j, now, now, x, y, edge, begin, end, found, time, code, shared)
-    _schedule(m, grid, rules, j, time, code, shared)
+    _schedule(m, grid, rules, j, now, now, x, y, time, code, shared)
 
 
 @inline
 def _alone(m, grid, rules, i, now, floor):
-    """(x, y, time, code, shared): where disk i is, and its earliest event without another disk."""
+    """(x, y, time, code, shared): where disk i is, and its earliest event without another disk or a wall shape."""
     x, y = place(m, rules, i, now)
     u, w = speed(m, rules, i, now)
     home = home_of(m, grid, i)
@@ -108,12 +108,13 @@ def _alone(m, grid, rules, i, now, floor):
         time, code = crossing(m, home, rules, i, now, x, y, u, w, rules.gx)
         shared = 0
     time, code, shared = _look(m, grid, rules, i, now, u, w, time, code, shared, grid.levels)
-    time, code, shared = earliest_at_shapes(m, home, rules, i, floor, time, code, shared, rules.features)
     return x, y, time, code, shared
 
 
 @inline
-def _schedule(m, grid, rules, i, time, code, shared):
+def _schedule(m, grid, rules, i, now, floor, x, y, time, code, shared):
+    """Schedule the given event of disk i, or a contact with a wall shape that is before it."""
+    time, code, shared = earliest_at_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared, rules.features)
     shared = _or_for_rules(m, rules, i, code, time, shared, m.supports, rules.still)
     count = word(m.disks, (code if code >= 0 else grid.n) * WORDS + COUNT)  # of the sentinel: 0
     store(m.disks, i * REALS + DUE, time)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from eventsim.engines.fast.advance import pulls
+from eventsim.engines.fast.advance import pulls, speed
 from eventsim.engines.fast.calendar import earlier
+from eventsim.engines.fast.cells import home_of
 from eventsim.engines.fast.compiled import inline, part, real, word
 from eventsim.engines.fast.layout import (
     COLUMN,
@@ -28,8 +29,9 @@ from eventsim.engines.fast.layout import (
     Y,
 )
 from eventsim.engines.fast.rest import border_contact, shape_rest, slides_past
-from eventsim.engines.fast.shapes import shape_delay
+from eventsim.engines.fast.shapes import is_clear, shape_delay
 from eventsim.formulas.crossing import crossing_delay
+from eventsim.formulas.doubt import latest_tie
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.rest import STRUCK
 
@@ -136,18 +138,29 @@ def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, s
 
 
 @inline
-def earliest_at_shapes(m, grid, rules, i, floor, time, code, shared, features):
-    """The earliest contact with a wall shape, if that is before the given event."""
+def earliest_at_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared, features):
+    """The earliest contact with a wall shape, if that is before the given event; (x, y): where the disk is now."""
     if features is None:
         return time, code, shared
-    begin, end = shapes_near(m, grid, i, features, m.near_walls)
+    u, w = speed(m, rules, i, now)
+    begin, end = shapes_near(m, home_of(m, grid, i), i, features, m.near_walls)
     for item in range(begin, end):
         k = shape_near(item, m.near_walls)
+        if _is_clear_until(m, rules, i, k, now, x, y, u, w, time, rules.gx):
+            continue
         new, side, _ = shape_time(m, rules, i, k, m.supports)
         if new >= floor:
             wall = WALL - 2 * (rules.first_feature + k) - (1 if side < 0 else 0)
             time, code, shared = earlier(time, code, shared, new, wall, rules.tie_screen)
     return time, code, shared
+
+
+@inline
+def _is_clear_until(m, rules, i, k, now, x, y, u, w, time, gx):
+    """Whether a falling disk surely does not meet the k-th shape before a time, nor with it."""
+    if gx is None:
+        return False
+    return is_clear(m, rules, k, x, y, u, w, real(m.disks, i * REALS + RADIUS), latest_tie(time, rules.tie_screen) - now)
 
 
 @inline
