@@ -39,8 +39,10 @@ the smallest ones, are so much smaller than their cell is wide: five of them cov
 CROWDED = 3.0
 """In mean distances of disks: a largest diameter from which on cells as wide as that would hold too many."""
 
-CLASS = 4.0
-"""How much wider the largest disk of a class of radii is than the smallest, at most; of the smallest class: than most of them."""
+CLASS, MOST = 4.0, 0.9
+"""How much wider the largest disk of a class of radii is than the smallest, at most; so many disks, if they are not far wider
+than half of them, make up the smallest class.
+"""
 
 CROWD, MOST_CELLS = 4.0, 8.0
 """So many disks in a disk's own cell, on the average, make cells narrower, up to so many cells for each disk."""
@@ -92,7 +94,7 @@ def cell_sizes(
             places = x[level == 0], y[level == 0]
             grids.append(_finest(low, size, radius, depths.get(k, USUAL_DEPTH), shapes, places))
         else:
-            grids.append(_coarser(low, size, stage.period, radius, grids, depths.get(k, DEEP)))
+            grids.append(_coarser(low, size, stage.period, radius, grids, depths.get(k, FIVE)))
     return tuple(grids) if _images_are_clear(stage, grids) else None
 
 
@@ -141,8 +143,7 @@ def _coarser(
     So wide that a disk of a finer grid, wherever it is in its own cell, reaches no further than the next cell of this one.
     """
     largest = float(radius.max())
-    spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(len(radius))
-    wide = max([2.0 * largest, spacing, *(largest + grid.radius + max(grid.side) for grid in finer)]) * MARGIN
+    wide = max([2.0 * largest, *(largest + grid.radius + max(grid.side) for grid in finer)]) * MARGIN
     columns, rows = (max(1, int(length / wide)) for length in size)
     columns, rows = (
         1 if length is not None and count < FEWEST_SEEN else count
@@ -171,14 +172,15 @@ def classes_of(stage: Stage) -> tuple[float, ...]:
     radius = np.unique(stage.radius)
     size = stage.size if stage.size is not None else (float(np.ptp(stage.x)), float(np.ptp(stage.y)))
     spacing = math.sqrt(size[0]) * math.sqrt(size[1]) / math.sqrt(stage.n)
-    largest = bound = float(radius[-1])
+    largest = float(radius[-1])
     if 2.0 * largest <= CROWDED * spacing:
         return (largest,)
-    usual = max(float(np.median(stage.radius)), spacing / CLASS)
-    bounds = [bound]
-    while bound / CLASS >= usual > 0.0:
-        bound /= CLASS
-        bounds.append(bound)
+    half, most = np.quantile(stage.radius, (0.5, MOST))
+    bounds = [max(min(float(most), 2.0 * float(half)), spacing / CLASS)]
+    if not bounds[0] > 0.0:
+        return (largest,)
+    while bounds[-1] < largest:
+        bounds.append(bounds[-1] * CLASS)
     last = np.searchsorted(radius, bounds, side="right") - 1  # the largest radius that a bound lets in
     return tuple(np.unique(radius[last[last >= 0]]).tolist())
 
