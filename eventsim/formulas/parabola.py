@@ -110,20 +110,16 @@ def round_polynomial(
 def stays_open(
     dx: Real, dy: Real, du: Real, dw: Real, ax: Real, ay: Real, reach: Real, side: float, t: Real, margin: Real
 ) -> bool:
-    """Whether the gap h to a circle around (0, 0) surely stays above a margin until delay t; False where that is not clear at once.
+    """Whether the gap h to a circle around (0, 0) surely stays above a margin until delay t; False where that is not clear.
 
     A polynomial is nowhere below the least of its coefficients in the basis of Bernstein (Farouki, Comput. Aided Geom. Des. 29,
     379 (2012), doi:10.1016/j.cagd.2012.03.001).
     """
     c0, c1, c2, c3, c4 = round_polynomial(dx, dy, du, dw, ax, ay, Round(0.0, 0.0, reach * reach), side, touches=False)
     c1, c2, c3, c4 = t * c1, t * t * c2, t * t * t * c3, t * t * t * t * c4
-    return (
-        c0 > margin
-        and c0 + 0.25 * c1 > margin
-        and c0 + 0.5 * c1 + c2 / 6.0 > margin
-        and c0 + 0.75 * c1 + 0.5 * c2 + 0.25 * c3 > margin
-        and c0 + c1 + c2 + c3 + c4 > margin
-    )
+    second, third = c0 + 0.5 * c1 + c2 / 6.0, c0 + 0.75 * c1 + 0.5 * c2 + 0.25 * c3
+    least = min(min(c0, c0 + 0.25 * c1), min(second, third))
+    return bool(least > margin and c0 + c1 + c2 + c3 + c4 > margin)
 
 
 def circle_delays(
