@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import eventsim as es
@@ -195,6 +195,7 @@ def random_pit(seed):
 
 
 @settings(max_examples=25, deadline=None)
+@example(4502)  # where a disk that slides into a gap as wide as itself takes impulses of 1.6e8
 @given(st.integers(0, 10_000))
 def test_random_pits_end_in_order_and_replay_to_the_same_bits(seed):
     """No hang, no sinking; replay, and a run that is stopped and goes on, agree bit for bit."""
@@ -202,7 +203,7 @@ def test_random_pits_end_in_order_and_replay_to_the_same_bits(seed):
     if scene is None:
         return
     run = es.simulate(scene, until=20.0, events=2000, engine="reference", log=True)
-    assert run.residuals.momentum < 1e-11
+    assert run.residuals.momentum < 1e-11 + 2.0**-50 * max(run.log.impulse, default=0.0)
     assert run.residuals.max_overlap < 1e-12
     final = Replay(run.log).final()
     assert final.position.tobytes() == run.state.position.tobytes()
