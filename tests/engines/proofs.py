@@ -9,9 +9,9 @@ from eventsim.engines.certified.session import CertifiedSession
 from eventsim.scene.stage import stage_of
 
 
-def certified(scene, events=None, until=None, **options):
+def certified(scene, events=None, until=None, keep_rows=True, **options):
     """(session, reason to stop) of a certified run."""
-    session = CertifiedSession(stage_of(scene), options=CertifiedOptions(**options))
+    session = CertifiedSession(stage_of(scene), keep_rows, CertifiedOptions(**options))
     stopped = None
     while stopped is None:
         stopped = session.advance(Stop(until, events), 1 << 62)
