@@ -43,7 +43,10 @@ def cut_walls() -> None:
     """No wall shapes, and no contacts with hard walls."""
     from eventsim.engines.fast import loop, predict
 
-    cut(predict, earliest_at_shapes=lambda m, rules, i, floor, time, code, shared, features: (time, code, shared))
+    def without_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared, features):  # type: ignore[no-untyped-def]
+        return time, code, shared
+
+    cut(predict, earliest_at_shapes=without_shapes)
     cut(loop, resolve_wall=lambda m, rules, sums, i, code, t, clock, number, slot: None)
 
 
