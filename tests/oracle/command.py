@@ -108,13 +108,15 @@ def verdict_of(case: Case, engines: Sequence[str]) -> Verdict:
             verdicts.append(Verdict(REFUSED, str(error), -1, 0, 0))
             continue
         seen.append(one)
+        if len(seen) == 2 and is_same(*seen):
+            break  # as it was judged
         verdict = min((judge(one_told, one, case.close) for one_told in (told, *as_points)), key=_gravity)
         if verdict.word != WRONG and case.inside is not None:
             verdict = _kept_inside(case.inside, one, verdict)
         if whole is not None and verdict.word in (RIGHT, UNJUDGED) and one.stopped not in STOPS:
             verdict = _at_the_end(_as_sure_as(told, whole), one, verdict)
         verdicts.append(verdict)
-    if len(seen) == 2 and not is_same(*seen):
+    if len(verdicts) == 2 and len(seen) == 2:
         verdicts.append(Verdict(WRONG, "the engines differ", -1, 0, 0))
     return max(verdicts, key=_gravity)
 
@@ -135,9 +137,10 @@ def _with_points(scene: Any) -> list[Any]:
 
 def is_same(one: Seen, other: Seen) -> bool:
     """Whether two engines did the same, bit for bit."""
-    if one.stopped != other.stopped or len(one.rows) != len(other.rows):
+    if one.stopped != other.stopped or len(one.rows) != len(other.rows) or one.time != other.time:
         return False
-    return all(
+    ends = ((one.position, other.position), (one.velocity, other.velocity))
+    return all(mine is theirs or np.array_equal(mine, theirs) for mine, theirs in ends) and all(
         np.array_equal(one.rows[name], other.rows[name], equal_nan=one.rows[name].dtype.kind == "f")
         for name in one.rows.dtype.names
     )
