@@ -287,8 +287,8 @@ class _Judge:
     def _leaves(self, row: Row, number: int) -> bool:
         """Whether a disk only comes, in the log, to the end of its wall, and meets at once what is there."""
         i, seen = row.parts[0].disk, self.seen.rows
-        following = [k for k in range(number + 1, len(seen)) if i in (seen["a"][k], seen["b"][k])]
-        at_once = bool(following) and self._time(seen[following[0]]) == self._time(seen[number])
+        following = next((k for k in range(number + 1, len(seen)) if i in (seen["a"][k], seen["b"][k])), None)
+        at_once = following is not None and self._time(seen[following]) == self._time(seen[number])
         after = (float(seen["vxa"][number]), float(seen["vya"][number]))
         return at_once and row.kind == WALL and math.dist(after, _floats(row.parts[0].velocity)) > self.close * self.speed
 
