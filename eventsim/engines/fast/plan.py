@@ -44,6 +44,11 @@ CLASS, MOST = 4.0, 0.9
 than half of them, make up the smallest class.
 """
 
+FEW, AROUND, SMALL_PART = 0.002, 0.25, 0.25
+"""In a box: such a part of the disks may be outside of the cells on each side; the room around the others, in parts of their
+extent; the part of the box up to which it is worth while.
+"""
+
 CROWD, MOST_CELLS = 4.0, 8.0
 """So many disks in a disk's own cell, on the average, make cells narrower, up to so many cells for each disk."""
 
@@ -191,15 +196,32 @@ def levels_of(stage: Stage, classes: tuple[float, ...]) -> NDArray[np.int64]:
 
 
 def _ground(stage: Stage, x: Floats, y: Floats) -> tuple[Pair, Pair]:
-    """Corner and size of what cells for centres at (x, y) cover; with many shapes their own ground, on the open plane."""
+    """Corner and size of what cells for centres at (x, y) cover; with many shapes their own ground, on the open plane.
+
+    In a box that is where nearly all disks are, if that is a small part of it: outer cells have what is beyond them.
+    """
     if stage.size is not None:
-        return (0.0, 0.0), stage.size
+        crowded = stage.period == (None, None) and not stage.features and _crowd(stage.size, x, y)
+        return crowded or ((0.0, 0.0), stage.size)
     if len(stage.features) >= MANY_SHAPES:
         x = np.append(x, [one.shape.x for one in stage.features])
         y = np.append(y, [one.shape.y for one in stage.features])
         low = float(x.min()), float(y.min())
         return low, (float(np.ptp(x)) or 1.0, float(np.ptp(y)) or 1.0)
     return _around(x, y)
+
+
+def _crowd(size: Pair, x: Floats, y: Floats) -> tuple[Pair, Pair] | None:
+    """Corner and size of the part of a box that holds nearly all centres, with some room around; None where it is not small."""
+    low, sides = [], []
+    for places, length in zip((x, y), size, strict=True):
+        first, last = np.quantile(places, (FEW, 1.0 - FEW)).tolist()
+        room = AROUND * (last - first)
+        low.append(max(0.0, first - room))
+        sides.append(min(length, last + room) - low[-1])
+    if not 0.0 < sides[0] * sides[1] < SMALL_PART * size[0] * size[1]:
+        return None
+    return (low[0], low[1]), (sides[0], sides[1])
 
 
 def _around(x: Floats, y: Floats) -> tuple[Pair, Pair]:

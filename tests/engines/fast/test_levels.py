@@ -93,6 +93,29 @@ def test_each_class_ends_with_a_radius_that_exists() -> None:
 
 
 @pytest.mark.parametrize("gravity", [None, pytest.param((0.5, -1.0), marks=slow)])
+@pytest.mark.parametrize("wide", [False, True])
+@pytest.mark.parametrize("shift", [0.0, 3.5])
+def test_disks_in_a_small_part_of_a_box_have_cells_there(
+    shift: float, wide: bool, gravity: tuple[float, float] | None
+) -> None:
+    """Chosen anew as the gas spreads, until they cover the box."""
+    gas = wide_mixture(60, 1, es.Box) if wide else lattice_gas(64, 0.3, seed=3)
+    (width, height), disks = gas.domain.size, gas.disks
+    place = disks.position + np.array([shift * width, shift * height])
+    moved = es.Disks(place, disks.velocity, disks.radius, disks.mass)
+    stage = stage_of(es.Scene(moved, es.Box((8.0 * width, 8.0 * height)), gravity=gravity))
+    assert_same(stage, Stop(events=300))
+    session = FastSession(stage)
+    grounds = []
+    for events in (1, 300):
+        rows_of(session, Stop(events=events))
+        grid = session._machine.grid
+        grounds.append(grid.columns * grid.side_x * grid.rows * grid.side_y / (64.0 * width * height))
+    assert grounds[0] < 0.1
+    assert gravity is not None or grounds[1] > 0.1
+
+
+@pytest.mark.parametrize("gravity", [None, pytest.param((0.5, -1.0), marks=slow)])
 @pytest.mark.parametrize("wide", [False, pytest.param(True, marks=slow)])
 def test_disks_that_fly_apart_on_the_open_plane_come_to_an_end(wide: bool, gravity: tuple[float, float] | None) -> None:
     scene = (
