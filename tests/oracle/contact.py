@@ -46,7 +46,8 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
         else:
             after, impulses, unique = parted_by_one(run, m, normals[0], before, e)
         map_contact(run, m, normals[0], before, after, pulls, e)
-        turn_normal(run, m, normals[0], states, UNIT * (clock + delay), e)
+        delays = {i: float(run.now - run.flights[i].time) for i in disks}
+        turn_normal(run, m, normals[0], states, {i: UNIT * (clock + since) for i, since in delays.items()}, e)
     elif all(m.at_end for m in cluster) and len(disks) == 1 and is_convex(run, disks[0], cluster, before[disks[0]]):
         i = disks[0]
         after, unique, may_refuse = {i: _turned(before[i], es[0])}, True, True
@@ -147,18 +148,24 @@ def map_contact(
 
 
 def turn_normal(
-    run: State, m: Meeting, normal: Vector, states: dict[int, tuple[Vector, Vector]], instant: float, e: Decimal
+    run: State,
+    m: Meeting,
+    normal: Vector,
+    states: dict[int, tuple[Vector, Vector]],
+    instants: dict[int, float],
+    e: Decimal,
 ) -> None:
     """Round the velocities of a contact as its normal is rounded, which places at a rounded time give.
 
     A deviation of a flight moves the contact along its flight; a rounding there moves the place alone, and turns the normal.
+    instants: by disk, the rounding of the time of its flight.
     """
     aside, speed = 0.0, 0.0
     along = (abs(float(normal[1])), abs(float(normal[0])))
     for i in m.disks:
         for share, place, v, c in zip(along, *states[i], run.table.corner, strict=True):
             if not (is_float(place - c) and (v == 0 or is_float(run.now))):
-                aside += share * (last_bits(place - c) + abs(float(v)) * instant)
+                aside += share * (last_bits(place - c) + abs(float(v)) * instants[i])
         speed += float(size(states[i][1]))
     parts = [1.0] if m.b < 0 else [float(s) for s in shares(run.table.mass[m.a], run.table.mass[m.b])]
     for i, share in zip(m.disks, parts, strict=True):
