@@ -111,8 +111,7 @@ class Sides:
         if before != 0:
             before = 1 if before > 0 else -1
         elif support is not None and isinstance(shape, Face) and shape.lies_on(support[0].face):
-            line = support[0].face
-            before = support[1] if shape.nx * line.nx + shape.ny * line.ny > 0.0 else -support[1]
+            before = in_line(shape, support[0].face, support[1])
         else:
             before = -moved_to(shape, -shape.side(*flight[:4]), *at, *came)  # from afar: it comes from behind
         side = shape.side(*at, *came)
@@ -148,6 +147,8 @@ class Sides:
         met = None if wall < self.first else self._shapes[wall - self.first]
         if isinstance(met, Post):
             return moved_to(shape, side, *at, *leaves) if ends_at(shape, met.x, met.y) else side
+        if isinstance(met, Face) and isinstance(shape, Face) and shape.lies_on(met):
+            return in_line(shape, met, from_side)
         other = None if met is None else self._thin[wall - self.first]
         if other is not None:
             for second in (False, True):
@@ -165,6 +166,11 @@ class Sides:
                     return moved_to(shape, side, *at, *leaves)
                 return 2 * side
         return side
+
+
+def in_line(shape: Face, line: Face, side: int) -> int:
+    """The side of a face that is the given one of another face in line with it."""
+    return side if shape.nx * line.nx + shape.ny * line.ny > 0.0 else -side
 
 
 def moved_to(shape: Thin, side: int, x: float, y: float, u: float, w: float) -> int:

@@ -203,3 +203,15 @@ def test_a_wall_that_hangs_below_a_straight_joint_does_not_open_it(below, engine
             run = es.simulate(es.Scene(disk, es.Open(), walls, until=1.5), engine=engine)
             assert run.state.velocity.tolist() == [[slope, 1.0]]
             assert run.state.position[0, 1] == pytest.approx(0.5, abs=1e-12)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("joints", [(), (0.5,), (0.5, 1.0, 2.0)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_point_that_rests_on_pieces_in_line_stays_on_them_where_the_last_one_ends_at_a_side(turned, joints, engine):
+    """It landed on another piece: the side of the last one was taken for the one below."""
+    floor = [(x, 1.25) for x in (0.0, *joints, 4.0)] + [(5.0, 2.25)]
+    walls = [es.Polyline(floor[::-1] if turned else floor, name="floor")]
+    scene = one((3.0, 1.26), (-1.0, 0.0), domain=es.Box((5.0, 8.0)), walls=walls, gravity=(0.0, -9.81), restitution=0.3)
+    run = es.simulate(scene, until=4.0, engine=engine)
+    assert run.state.position[0].tolist() == pytest.approx([0.3, 1.25], abs=1e-12)

@@ -131,9 +131,14 @@ def _side_on_support(m, i, k, kind):
     line = face_at(m.supports, SUPPORT * (-1 - word(m.disks, i * WORDS + MET)) + SUPPORT_FACE)
     if not lies_on(m, k, line):
         return 0
-    held, s = word(m.disks, i * WORDS + MET_KX), WIDTH * k
-    shape = face_at(m.features, s + 2)
-    return held if shape.nx * line.nx + shape.ny * line.ny > 0.0 else -held
+    return _in_line(m, k, line, word(m.disks, i * WORDS + MET_KX))
+
+
+@inline
+def _in_line(m, k, line, side):
+    """The side of the k-th shape, a face, that is the given one of another face in line with it."""
+    shape = face_at(m.features, WIDTH * k + 2)
+    return side if shape.nx * line.nx + shape.ny * line.ny > 0.0 else -side
 
 
 @part
@@ -155,6 +160,10 @@ def _next_to(m, rules, k, kind, side, wall, from_side, x, y, u, w, close):
         if _ends_at(m, s, real(row, o + CENTER), real(row, o + CENTER + 1)):
             return _moved_to(m, s, kind, side, x, y, u, w)
         return side
+    if kind == FACE and other == FACE:
+        line = face_at(row, o + 2)
+        if lies_on(m, k, line):
+            return _in_line(m, k, line, from_side)
     if thin:
         for second in range(2):
             at = o + (END_X if second == 1 else CENTER)
