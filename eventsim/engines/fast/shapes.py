@@ -175,11 +175,11 @@ def _delay(m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, container
 
 
 @part
-def is_clear(m, rules, k, x, y, u, w, radius, delay):
+def is_clear(m, rules, k, x, y, u, w, pull, radius, delay):
     """Whether a falling disk, at (x, y) with velocity (u, w), surely does not meet the k-th shape within a delay.
 
-    So nobody asks when its parabola meets a circle; other shapes are not looked at.  What rounding does is far less than
-    2^-40 of places and 2^-20 of what is compared.
+    pull: its acceleration; along a slope it is not that of gravity.  So nobody asks when its parabola meets a circle; other
+    shapes are not looked at.  What rounding does is far less than 2^-40 of places and 2^-20 of what is compared.
     """
     _, posts, containers, arcs, _ = rules.shapes
     row = m.features
@@ -195,7 +195,7 @@ def is_clear(m, rules, k, x, y, u, w, radius, delay):
     side = 1.0 if square > size * size else -1.0
     reach = size + side * radius
     margin = 2.0**-20 * (square + size * size) + 2.0**-40 * (abs(x) + abs(y)) * (abs(dx) + abs(dy) + size)
-    return reach >= 0.0 and stays_open(dx, dy, u, w, rules.gx, rules.gy, reach, side, delay, margin)
+    return reach >= 0.0 and stays_open(dx, dy, u, w, *pull, reach, side, delay, margin)
 
 
 @part

@@ -160,7 +160,8 @@ def _is_clear_until(m, rules, i, k, now, x, y, u, w, time, gx):
     """Whether a falling disk surely does not meet the k-th shape before a time, nor with it."""
     if gx is None:
         return False
-    return is_clear(m, rules, k, x, y, u, w, real(m.disks, i * REALS + RADIUS), latest_tie(time, rules.tie_screen) - now)
+    delay = latest_tie(time, rules.tie_screen) - now
+    return is_clear(m, rules, k, x, y, u, w, pulls(m, rules, i), real(m.disks, i * REALS + RADIUS), delay)
 
 
 @inline

@@ -240,3 +240,17 @@ def test_auto_hands_over_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None
     assert mixed.log.digest() == pure.log.digest()
     assert (mixed.begun_by, mixed.engine) == ("reference", "fast")
     assert math.isclose(mixed.time, 20.0)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_disks_that_slide_into_ends_of_walls_meet_them(seed: int) -> None:
+    """Where a disk rests on a slope its path is no parabola of gravity: the screen of circles must know."""
+    rng = np.random.default_rng(seed)
+    start, end = np.array([0.0, 5.0]), np.array([8.0, 5.0 - 8.0 * rng.uniform(0.05, 0.55)])
+    along = (end - start) / np.linalg.norm(end - start)
+    across = np.array([-along[1], along[0]])
+    post = start + rng.uniform(3.0, 6.0) * along + rng.uniform(0.1, 0.45) * across
+    walls = [es.Segment(tuple(start), tuple(end)), es.Segment(tuple(post), tuple(post + 2.0 * across))]
+    disks = es.Disks([start + 0.6 * along + 0.25 * across], [rng.uniform(0.0, 1.0) * along], 0.25)
+    rules = {"gravity": (0.0, -1.0), "restitution": 0.5}
+    assert_same(stage_of(es.Scene(disks, es.Box((10.0, 12.0)), walls, **rules)), Stop(30.0, 80))
