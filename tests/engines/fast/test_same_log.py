@@ -252,5 +252,5 @@ def test_disks_that_slide_into_ends_of_walls_meet_them(seed: int) -> None:
     post = start + rng.uniform(3.0, 6.0) * along + rng.uniform(0.1, 0.45) * across
     walls = [es.Segment(tuple(start), tuple(end)), es.Segment(tuple(post), tuple(post + 2.0 * across))]
     disks = es.Disks([start + 0.6 * along + 0.25 * across], [rng.uniform(0.0, 1.0) * along], 0.25)
-    rules = {"gravity": (0.0, -1.0), "restitution": 0.5}
-    assert_same(stage_of(es.Scene(disks, es.Box((10.0, 12.0)), walls, **rules)), Stop(30.0, 80))
+    box = es.Box((10.0, 12.0))
+    assert_same(stage_of(es.Scene(disks, box, walls, gravity=(0.0, -1.0), restitution=0.5)), Stop(30.0, 80))
