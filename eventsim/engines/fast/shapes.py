@@ -195,7 +195,8 @@ def is_clear(m, rules, k, x, y, u, w, pull, radius, delay):
     side = 1.0 if square > size * size else -1.0
     reach = size + side * radius
     margin = 2.0**-20 * (square + size * size) + 2.0**-40 * (abs(x) + abs(y)) * (abs(dx) + abs(dy) + size)
-    return reach >= 0.0 and stays_open(dx, dy, u, w, *pull, reach, side, delay, margin)
+    gx, gy = pull
+    return reach >= 0.0 and stays_open(dx, dy, u, w, gx, gy, reach, side, delay, margin)
 
 
 @part
