@@ -94,7 +94,7 @@ def test_each_class_ends_with_a_radius_that_exists() -> None:
 
 @pytest.mark.parametrize("gravity", [None, pytest.param((0.5, -1.0), marks=slow)])
 @pytest.mark.parametrize("wide", [False, True])
-@pytest.mark.parametrize("shift", [0.0, 3.5])
+@pytest.mark.parametrize("shift", [0.0, pytest.param(3.5, marks=slow)])
 def test_disks_in_a_small_part_of_a_box_have_cells_there(
     shift: float, wide: bool, gravity: tuple[float, float] | None
 ) -> None:
