@@ -95,3 +95,22 @@ def test_the_proof_is_the_same_at_the_ends_of_the_range_of_speeds(k):
     for name in ("kind", "a", "b", "xa", "ya"):
         assert found[name].tolist() == rows[name].tolist()
     assert found["vxa"].tolist() == np.ldexp(rows["vxa"], k).tolist()
+
+
+@pytest.mark.parametrize(("treatment", "speed"), [({"shaking": 0.5}, 2.0), ({"velocity": 3.0}, 1.0)])
+def test_what_walls_that_shake_and_slide_give_is_exact(treatment, speed):
+    """A wall that comes at .5 gives twice that; a smooth one that slides gives nothing."""
+    scene = es.Scene(
+        es.Disks([(2.0, 2.0)], [(-1.0, 0.25)], 0.5), es.Box((4.0, 8.0), walls={"left": treatment})
+    )
+    session, stopped = certified(scene, until=2.0)
+    motion = session.motion()
+    assert (stopped, motion.vx.tolist(), motion.vy.tolist()) == ("until", [speed], [0.25])
+
+
+@pytest.mark.parametrize("name", ["heat-flow", "sheared", pytest.param("vibrated", marks=pytest.mark.slow)])
+def test_gases_that_walls_drive_are_proven(name):
+    """In the order of the reference engine, which takes the same formulas through floats."""
+    session, stopped = certified(gallery(name), events=60)
+    assert stopped == "events"
+    assert len(agreement(session.take_rows(), rows_of(gallery(name), events=60)).pairs) == 60

@@ -200,9 +200,10 @@ class CertifiedSession(Session):
 
 
 def _refuse_laws(stage: Stage) -> None:
-    """Raise EventsimError under a law of the user's own, which computes with floats, and where walls drive disks."""
-    if stage.law.drives:
-        raise EventsimError("the certified engine cannot prove this scene: it knows no walls that heat, shake or slide")
+    """Raise EventsimError under a law of the user's own, which computes with floats.
+
+    What chance gives at walls that heat is a float, too, but the same one everywhere: there the proof is of what follows.
+    """
     if isinstance(stage.law, Own):
         raise EventsimError(f"the certified engine cannot prove this scene: {stage.law.name()} computes with floats")
 
