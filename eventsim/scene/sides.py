@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, TypeAlias
 
 from eventsim.formulas.rest import Support
-from eventsim.formulas.walls.face import Face
+from eventsim.formulas.walls.face import Face, side_in_line
 from eventsim.formulas.walls.point import CORNER, closeness, end_of, is_near, is_point
 from eventsim.formulas.walls.post import Post
 from eventsim.formulas.walls.shape import Closed, Thin
@@ -111,7 +111,7 @@ class Sides:
         if before != 0:
             before = 1 if before > 0 else -1
         elif support is not None and isinstance(shape, Face) and shape.lies_on(support[0].face):
-            before = in_line(shape, support[0].face, support[1])
+            before = side_in_line(shape, support[0].face, support[1])
         else:
             before = -moved_to(shape, -shape.side(*flight[:4]), *at, *came)  # from afar: it comes from behind
         side = shape.side(*at, *came)
@@ -148,7 +148,7 @@ class Sides:
         if isinstance(met, Post):
             return moved_to(shape, side, *at, *leaves) if ends_at(shape, met.x, met.y) else side
         if isinstance(met, Face) and isinstance(shape, Face) and shape.lies_on(met):
-            return in_line(shape, met, from_side)
+            return side_in_line(shape, met, from_side)
         other = None if met is None else self._thin[wall - self.first]
         if other is not None:
             for second in (False, True):
@@ -166,11 +166,6 @@ class Sides:
                     return moved_to(shape, side, *at, *leaves)
                 return 2 * side
         return side
-
-
-def in_line(shape: Face, line: Face, side: int) -> int:
-    """The side of a face that is the given one of another face in line with it."""
-    return side if shape.nx * line.nx + shape.ny * line.ny > 0.0 else -side
 
 
 def moved_to(shape: Thin, side: int, x: float, y: float, u: float, w: float) -> int:

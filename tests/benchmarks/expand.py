@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.expand [--n 1000 10000] [--eta 0.5] [--contacts 1e7] [--repeats 3] [--csv FILE]
 
-The gas is that of `rates`, its log a compact npz file.  `run_s`, `expand_s`: seconds of processor time, of all threads, until the
-file is whole, and until all its rows have been compared with those of an engine and the digest of the log has been verified.
+The gas is that of `rates`, its log a compact npz file.  Times are those of the processor, of all threads.  `run_s`: until the
+file is whole.  `expand_s`: until an engine has found all its rows again, and the digest of the log is verified.
 """
 
 from __future__ import annotations

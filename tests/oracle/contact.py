@@ -31,8 +31,8 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
     es = [restitution_of(run, m) for m in cluster]
     normals = [run.normal(m) for m in cluster]
     clock = run.tick()
-    delay = max(float(run.now - run.flights[i].time) for i in cluster[0].disks)
-    late = lateness(run, cluster[0]) + UNIT * (clock + delay)
+    delays = {i: float(run.now - run.flights[i].time) for i in cluster[0].disks}
+    late = lateness(run, cluster[0]) + UNIT * (clock + max(delays.values()))
     disks = sorted({i for m in cluster for i in m.disks})
     pulls = {i: (run.flights[i].ax, run.flights[i].ay) for i in disks}
     terms = max(run.terms_of(m) for m in cluster)
@@ -46,7 +46,6 @@ def resolve(run: State, cluster: list[Meeting]) -> list[int]:
         else:
             after, impulses, unique = parted_by_one(run, m, normals[0], before, e)
         map_contact(run, m, normals[0], before, after, pulls, e)
-        delays = {i: float(run.now - run.flights[i].time) for i in disks}
         turn_normal(run, m, normals[0], states, {i: UNIT * (clock + since) for i, since in delays.items()}, e)
     elif all(m.at_end for m in cluster) and len(disks) == 1 and is_convex(run, disks[0], cluster, before[disks[0]]):
         i = disks[0]

@@ -42,7 +42,7 @@ from eventsim.engines.fast.shapes import (
 )
 from eventsim.formulas.motion import velocity
 from eventsim.formulas.walls.arc import arc_distance, arc_rate, arc_side, arc_side_after
-from eventsim.formulas.walls.face import face_distance, face_rate, face_side, face_side_after
+from eventsim.formulas.walls.face import face_distance, face_rate, face_side, face_side_after, side_in_line
 from eventsim.formulas.walls.point import CORNER, closeness, end_of, is_near, is_point
 
 NOWHERE = -1
@@ -131,14 +131,7 @@ def _side_on_support(m, i, k, kind):
     line = face_at(m.supports, SUPPORT * (-1 - word(m.disks, i * WORDS + MET)) + SUPPORT_FACE)
     if not lies_on(m, k, line):
         return 0
-    return _in_line(m, k, line, word(m.disks, i * WORDS + MET_KX))
-
-
-@inline
-def _in_line(m, k, line, side):
-    """The side of the k-th shape, a face, that is the given one of another face in line with it."""
-    shape = face_at(m.features, WIDTH * k + 2)
-    return side if shape.nx * line.nx + shape.ny * line.ny > 0.0 else -side
+    return side_in_line(face_at(m.features, WIDTH * k + 2), line, word(m.disks, i * WORDS + MET_KX))
 
 
 @part
@@ -163,7 +156,7 @@ def _next_to(m, rules, k, kind, side, wall, from_side, x, y, u, w, close):
     if kind == FACE and other == FACE:
         line = face_at(row, o + 2)
         if lies_on(m, k, line):
-            return _in_line(m, k, line, from_side)
+            return side_in_line(face_at(row, s + 2), line, from_side)
     if thin:
         for second in range(2):
             at = o + (END_X if second == 1 else CENTER)

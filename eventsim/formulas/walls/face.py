@@ -317,6 +317,11 @@ def is_in_line(shape: Face, x: Real, y: Real) -> bool:
     return bool(not distance > TOUCHING * scale and not distance < -(TOUCHING * scale))
 
 
+def side_in_line(shape: Face, line: Face, side: int) -> int:
+    """The side of a face that is the given one of another face in line with it."""
+    return side if shape.nx * line.nx + shape.ny * line.ny > 0.0 else -side
+
+
 def _holds(shape: Face, side: int, along: Real, slack: Real) -> bool:
     """Whether a foot is on the face; up to a slack beyond the ends that are no posts on that side."""
     before, _ = end_of(shape.ends, False, side)
