@@ -1,7 +1,7 @@
 """Rates side by side: fast, reference, yardstick where one is given, PyPI's `billiards` and pymunk where they are installed;
 repeats in turn, medians of CPU time, ratios in one run.
 
-    python -m tests.benchmarks.rates [--n 1000 10000] [--eta 0.2 0.5 0.7] [--yardstick FOLDER] [--csv FILE]
+    python -m tests.benchmarks.rates [--n 1000 10000] [--eta 0.2 0.5 0.7] [--yardstick FOLDER] [--alone] [--csv FILE]
 
 The gas: equal disks of diameter 1 from a triangular lattice with Maxwell velocities, in a periodic box.  Up to 1000 disks a
 second one, that of `peers` between hard walls, is for those two, with the fast engine beside them; pymunk's contacts are those
@@ -89,7 +89,7 @@ def bytes_per_disk(scene: es.Scene) -> int:
 
 
 def measure(
-    n: int, eta: float, contacts: int, repeats: int, folder: str | None, warm_up: float
+    n: int, eta: float, contacts: int, repeats: int, folder: str | None, warm_up: float, alone: bool
 ) -> list[dict[str, object]]:
     """The rows of the table for one gas."""
     scene = lattice_gas(n, eta)
@@ -98,7 +98,7 @@ def measure(
         ("fast", True): engine_advance("fast", scene, True),
     }
     share = dict.fromkeys(engines, 1.0)
-    if n <= MOST_FOR_REFERENCE:
+    if n <= MOST_FOR_REFERENCE and not alone:
         engines["reference", False] = engine_advance("reference", scene, False)
         share["reference", False] = 0.01
     if folder is not None:
@@ -179,13 +179,14 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--warm-up", type=float, default=10.0, help="contacts per disk before the clock starts")
     parser.add_argument("--yardstick", help="folder of the yardstick")
+    parser.add_argument("--alone", action="store_true", help="no reference engine and no peers: fast, and the yardstick")
     chosen = parser.parse_args()
     table = Table(COLUMNS)
     for n in chosen.n:
         for eta in chosen.eta:
-            for row in measure(n, eta, chosen.contacts, chosen.repeats, chosen.yardstick, chosen.warm_up):
+            for row in measure(n, eta, chosen.contacts, chosen.repeats, chosen.yardstick, chosen.warm_up, chosen.alone):
                 table.add(row)
-            if n <= MOST_FOR_PEERS:
+            if n <= MOST_FOR_PEERS and not chosen.alone:
                 for row in measure_peers(n, eta, chosen.repeats):
                     table.add(row)
     table.write(chosen.csv)
