@@ -25,8 +25,8 @@ def command(scenes: tuple[str, ...], as_json: bool, quiet: bool, job: bool) -> N
     mixture, sinai and jar.  Kernels are kept in the user's cache (EVENTSIM_CACHE_DIR names another folder), until eventsim
     or numba is another one.  Scenes of one kind share them.
 
-    A run that is long enough compiles what is missing in a second process, if a second core is free, and simulates
-    meanwhile; EVENTSIM_WARM=0 lets it compile for itself, and wait.
+    A run that is long enough compiles what is missing, half of it in a second process if a second core is free;
+    EVENTSIM_WARM=0 lets it compile all for itself.
 
     \b
     Examples:

@@ -1,7 +1,7 @@
 """The engine `auto`: begins with the reference engine and hands over to the fast one, mid-run, when the job proves long.
 
 Both write the same log, so there is no seam; a small scene never loads the compiler.  Where kernels have to be compiled first and
-a second core is free, another process does that meanwhile.
+a second core is free, another process compiles half of them.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import pickle
 import sys
+from contextlib import suppress
 from time import perf_counter, thread_time
 
 import numpy as np
@@ -44,10 +45,10 @@ def first_engine(stage: Stage, stop: Stop, keep_rows: bool = True) -> str:
     """The engine that a run of this stage to this stop begins with."""
     if not has_compiler():
         return "reference"
-    seconds = reference_seconds(stage, stop)
-    if stage.n >= LARGE or (seconds > COLD and not may_warm()):
+    if stage.n >= LARGE:
         return "fast"
-    return "fast" if seconds > SURE and _is_warm(stage, _at_start(stage), keep_rows) else "reference"
+    is_long = reference_seconds(stage, stop) > SURE
+    return "fast" if is_long and _is_warm(stage, _at_start(stage), keep_rows) else "reference"
 
 
 class AutoSession(Session):
@@ -67,8 +68,6 @@ class AutoSession(Session):
         self._may_change = self._options == AutoOptions()
         self._opened: Session | None = None
         self._is_cold = False
-        self._warming: Warming | None = None
-        self._warmed = False  # or in vain: another process is asked once
         self._loading = 0.0
         self._changing = False
         self.at_work = "reference"
@@ -87,6 +86,7 @@ class AutoSession(Session):
                 self.at_work = "reference"
         if self.at_work == "fast":
             try:
+                self._is_cold = not _is_warm(self.stage, _at_start(self.stage), self._keep_rows)
                 self._opened = self._opened_fast(began)
             except BrokenOffError:  # there is nothing yet that could be kept
                 raise KeyboardInterrupt from None
@@ -111,20 +111,25 @@ class AutoSession(Session):
 
     def _opened_fast(self, began: float, saved: Snapshot | None = None) -> Session:
         """A session of the fast engine; all since `began` went into loading and compiling it."""
-        self._changing = True
+        self._changing, others = True, None
         try:
             from eventsim.engines.fast.session import FastSession
 
-            session = FastSession(self.stage, self._keep_rows, saved=saved)
+            if self._is_cold and may_warm():
+                with suppress(OSError, pickle.PicklingError, TypeError, AttributeError):
+                    others = Warming(self.stage, self._keep_rows, saved)
+            session = FastSession(self.stage, self._keep_rows, saved=saved, others=others.wait if others else None)
         finally:
             self._changing = False
+            if others is not None:
+                others.end()
         self._loading += perf_counter() - began - session.compile_s
         return session
 
     @property
     def clock(self) -> tuple[int, float]:
         """Where the clock stands: (epoch, remainder)."""
-        return self._session.clock
+        return (0, 0.0) if self._opened is None else self._opened.clock  # it is not known yet what the job is
 
     def advance(self, stop: Stop, budget: int) -> str | None:
         """Simulate until the stop or for about `budget` steps; the reason to stop, None where the budget ended first."""
@@ -156,7 +161,7 @@ class AutoSession(Session):
             note = f"the engine fast needs numba, which {why}: this run goes on with the reference engine"
             print(f"note: {note}", file=sys.stderr)
             return
-        if self._is_warming() or self._is_bound_to_python():
+        if self._is_bound_to_python():
             return
         left = self._sampled * self._share_left(stop)
         if left < WARM or (self._is_cold and left < COLD):
@@ -164,7 +169,7 @@ class AutoSession(Session):
         began = perf_counter()
         self._is_cold = not _is_warm(self.stage, self.motion(), self._keep_rows)
         self._loading += perf_counter() - began
-        if left > (COLD if self._is_cold else WARM) and not (self._is_cold and self._begin_warming()):
+        if left > (COLD if self._is_cold else WARM):
             self._hand_over()
 
     def _is_bound_to_python(self) -> bool:
@@ -178,25 +183,6 @@ class AutoSession(Session):
                 print(f"note: {error}: so does this run", file=sys.stderr)
                 self._may_change = False
         return not self._may_change
-
-    def _is_warming(self) -> bool:
-        """Whether another process compiles just now."""
-        if self._warming is None:
-            return False
-        if self._warming.is_at_work:
-            return True
-        self._is_cold, self._warmed, self._warming = self._warming.has_failed, True, None
-        return False
-
-    def _begin_warming(self) -> bool:
-        """Have the kernels compiled by another process; whether that is possible."""
-        if self._warmed or not may_warm():
-            return False
-        try:
-            self._warming = Warming(self.stage, self._keep_rows, self._session.snapshot())
-        except (OSError, pickle.PicklingError, TypeError, AttributeError):
-            self._warmed = True
-        return self._warming is not None
 
     def _share_left(self, stop: Stop) -> float:
         """What is left of the job, in parts of what this session has done."""

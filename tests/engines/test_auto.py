@@ -33,8 +33,7 @@ def warm(monkeypatch):
         (0.5 * SURE, True, "reference"),
         (1.5 * SURE, True, "fast"),
         (1.5 * SURE, False, "reference"),
-        (0.9 * COLD, False, "reference"),
-        (1.1 * COLD, False, "fast"),
+        (2.0 * COLD, False, "reference"),  # what it compiles for is measured, not foreseen
     ],
 )
 def test_a_job_begins_with_the_engine_that_will_have_done_it_first(warm, seconds, is_warm, engine):
@@ -43,8 +42,9 @@ def test_a_job_begins_with_the_engine_that_will_have_done_it_first(warm, seconds
 
 
 def test_a_time_to_stop_at_is_a_job_as_long_as_its_contacts(warm):
+    warm.append(True)
     rate = contact_rate(GAS)
-    for seconds, engine in ((0.5 * COLD, "reference"), (2.0 * COLD, "fast")):
+    for seconds, engine in ((0.5 * SURE, "reference"), (2.0 * SURE, "fast")):
         stop = Stop(until=seconds / FORESEEN / rate)
         assert math.isclose(reference_seconds(GAS, stop), seconds, rel_tol=0.01)
         assert first_engine(GAS, stop) == engine

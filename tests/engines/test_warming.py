@@ -1,7 +1,8 @@
-"""Kernels that another process compiles while the reference engine goes on."""
+"""Kernels that another process compiles while the run compiles its loop."""
 
 import ast
 import inspect
+import json
 import os
 import subprocess
 import sys
@@ -13,9 +14,9 @@ from click.testing import CliRunner
 
 from eventsim import processes
 from eventsim.cli import main
-from eventsim.compiler import is_interpreted
+from eventsim.compiler import has_compiler, is_interpreted
 from eventsim.engines import auto
-from eventsim.engines.auto import COLD, AutoSession, first_engine, reference_seconds
+from eventsim.engines.auto import LARGE, AutoSession
 from eventsim.engines.base import Stop
 from eventsim.engines.fast import instant, loop
 from eventsim.engines.fast.session import FastSession
@@ -30,76 +31,104 @@ LONG = Stop(events=10**9)
 
 
 class Compiler:
-    """A process that is at work for so many questions, and then has failed or not."""
+    """A process that compiles; what is asked of it."""
 
-    begun = 0
-
-    def __init__(self, questions: int, has_failed: bool) -> None:
-        self.questions, self.has_failed = questions, has_failed
+    def __init__(self, begins: bool = True) -> None:
+        self.begins = begins
+        self.asked: list[str] = []
 
     def __call__(self, *job: object) -> "Compiler":
-        self.begun += 1
+        self.asked.append("begin")
+        if not self.begins:
+            raise OSError("no more processes")
         return self
 
-    @property
-    def is_at_work(self) -> bool:
-        self.questions -= 1
-        return self.questions >= 0
+    def wait(self) -> None:
+        self.asked.append("wait")
+
+    def end(self) -> None:
+        self.asked.append("end")
+
+
+class Fast(ReferenceSession):
+    """A session in place of one whose kernels would have to be compiled."""
+
+    def __init__(self, stage, keep_rows, saved, others) -> None:
+        super().__init__(stage, keep_rows)
+        if saved is not None:
+            self.restore(saved)
+        if others is not None:
+            others()
 
 
 @pytest.fixture
 def cold(monkeypatch):
-    """Nothing is compiled, and a second core is free; which engines would have been handed over to."""
-    handed: list[bool] = []
+    """Nothing is compiled, and a second core is free."""
     monkeypatch.setattr(auto, "has_compiler", lambda: True)
     monkeypatch.setattr(auto, "may_warm", lambda: True)
     monkeypatch.setattr(auto, "_is_warm", lambda *asked: False)
     monkeypatch.setattr(auto, "PATIENCE", 0.0)
     monkeypatch.setattr(auto, "SAMPLE", 0.0)
-    monkeypatch.setattr(AutoSession, "_hand_over", lambda self: handed.append(self._is_cold))
-    return handed
+    monkeypatch.setattr("eventsim.engines.fast.session.FastSession", Fast)
 
 
-def advanced(session: AutoSession, times: int) -> AutoSession:
-    for _ in range(times):
-        session.advance(LONG, 20)
+def changed(stage=GAS) -> AutoSession:
+    """A session that has gone over to the fast engine."""
+    session = AutoSession(stage)
+    session.advance(LONG, 20)
+    assert session.at_work == "fast"
     return session
 
 
-def test_a_long_run_goes_on_while_kernels_are_compiled_and_takes_them_up(cold, monkeypatch):
-    compiler = Compiler(3, has_failed=False)
+@pytest.mark.parametrize("stage", [GAS, stage_of(lattice_gas(LARGE, 0.3))], ids=["long", "large"])
+def test_another_process_compiles_half_of_the_kernels(cold, monkeypatch, stage):
+    compiler = Compiler()
     monkeypatch.setattr(auto, "Warming", compiler)
-    session = advanced(AutoSession(GAS), 4)
-    assert compiler.begun == 1
-    assert cold == []
+    session = changed(stage)
+    assert compiler.asked == ["begin", "wait", "end"]
     events = session.counters.events
-    monkeypatch.setattr(auto, "_is_warm", lambda *asked: True)
-    advanced(session, 1)
-    assert cold == [False]
-    assert session.counters.events > events > 0
-
-
-def test_a_compiler_that_failed_is_not_asked_again(cold, monkeypatch):
-    compiler = Compiler(1, has_failed=True)
-    monkeypatch.setattr(auto, "Warming", compiler)
-    advanced(AutoSession(GAS), 3)
-    assert (compiler.begun, cold) == (1, [True])
+    session.advance(LONG, 20)
+    assert session.counters.events > events
 
 
 def test_where_no_process_can_be_started_the_run_compiles_for_itself(cold, monkeypatch):
-    def refused(*job: object) -> None:
-        raise OSError("no more processes")
-
-    monkeypatch.setattr(auto, "Warming", refused)
-    advanced(AutoSession(GAS), 1)
-    assert cold == [True]
+    compiler = Compiler(begins=False)
+    monkeypatch.setattr(auto, "Warming", compiler)
+    changed()
+    assert compiler.asked == ["begin"]
 
 
-def test_without_a_free_core_a_long_run_begins_with_the_compiler(cold, monkeypatch):
-    stop = Stop(events=int(2.0 * COLD / (reference_seconds(GAS, Stop(events=10**6)) / 10**6)))
-    assert first_engine(GAS, stop) == "reference"
-    monkeypatch.setattr(auto, "may_warm", lambda: False)
-    assert first_engine(GAS, stop) == "fast"
+@pytest.mark.parametrize("reason", ["may_warm", "_is_warm"], ids=["without a free core", "warm"])
+def test_no_process_is_begun(cold, monkeypatch, reason):
+    compiler = Compiler()
+    monkeypatch.setattr(auto, "Warming", compiler)
+    monkeypatch.setattr(auto, reason, lambda *asked: reason == "_is_warm")
+    changed()
+    assert compiler.asked == []
+
+
+def test_it_is_ended_where_the_run_is_broken_off(cold, monkeypatch):
+    compiler = Compiler()
+    monkeypatch.setattr(auto, "Warming", compiler)
+
+    def broken_off() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(compiler, "wait", broken_off)
+    with pytest.raises(KeyboardInterrupt):
+        changed()
+    assert compiler.asked == ["begin", "end"]
+
+
+def test_a_long_run_begins_with_the_fast_engine_where_its_kernels_are_there(monkeypatch):
+    """Though it is asked for its clock before it knows what the job is."""
+    monkeypatch.setattr(auto, "has_compiler", lambda: True)
+    monkeypatch.setattr(auto, "_is_warm", lambda *asked: True)
+    monkeypatch.setattr("eventsim.engines.fast.session.FastSession", Fast)
+    session = AutoSession(GAS)
+    assert session.clock == ReferenceSession(GAS).clock
+    session.advance(LONG, 20)
+    assert (session.at_work, session.begun_by) == ("fast", None)
 
 
 def test_cores_are_counted_by_affinity_and_quota_and_can_be_kept(tmp_path, monkeypatch):
@@ -123,15 +152,14 @@ def test_the_process_does_its_job_or_fails(monkeypatch, is_damaged):
     if is_damaged:
         monkeypatch.setattr("pickle.dump", lambda job, file: file.write(b"nonsense"))
     process = Warming(GAS, False, session.snapshot())
-    assert not process.has_failed
-    wait_for(lambda: not process.is_at_work)
-    assert process.has_failed == is_damaged
+    assert process.wait() == (not is_damaged)
+    process.end()
 
 
 @pytest.mark.kernels
 @pytest.mark.skipif(not is_interpreted(), reason="calls of machine code are not seen from outside")
 def test_the_process_compiles_every_kernel():
-    """A run that takes over would have to compile what is missing."""
+    """But for the loop, which the run compiles: it would have to compile what is missing."""
     wanted, called = set(), set()
     for module in (instant, loop):
         for function in ast.parse(inspect.getsource(module)).body:
@@ -140,11 +168,39 @@ def test_the_process_compiles_every_kernel():
     session = FastSession(GAS, True)
     sys.setprofile(lambda frame, *_: called.add((frame.f_code.co_filename, frame.f_code.co_name)))
     try:
-        session.compile()
+        session.compile(with_loop=False)
     finally:
         sys.setprofile(None)
     assert len(wanted) > 4
-    assert wanted <= called | {(loop.__file__, "fill")}  # a session begins with that
+    assert wanted - called == {(loop.__file__, name) for name in ("fill", "run")}  # a session begins with the one
+
+
+@pytest.mark.kernels
+def test_a_run_is_the_same_where_its_loop_is_compiled_first():
+    sessions = FastSession(GAS, True), FastSession(GAS, True, others=lambda: None)
+    for session in sessions:
+        session.advance(Stop(events=100), 10**6)
+    assert len({session.take_rows().tobytes() for session in sessions}) == 1
+
+
+@pytest.mark.slow
+def test_a_first_run_is_the_same_as_any_other(tmp_path):
+    """With nothing compiled; with all compiled; with the loop alone compiled."""
+    if not has_compiler():
+        pytest.skip("nothing is compiled here")
+    command = [sys.executable, "-m", "eventsim", "run", "gas", "--events", "1000000", "--digest", "--json"]
+    environment = {name: value for name, value in os.environ.items() if name != SWITCH}
+    digests = []
+    for _ in range(3):
+        done = subprocess.run(
+            command, env=environment | {"EVENTSIM_CACHE_DIR": str(tmp_path)}, capture_output=True, text=True, check=True
+        )
+        digests.append(json.loads(done.stdout)["digest"])
+        for kept in (*tmp_path.rglob("*.ready"), *tmp_path.rglob("*.nb?")) if len(digests) == 2 else ():
+            if not kept.name.startswith("loop.run-"):
+                kept.unlink()
+    assert list(tmp_path.rglob("loop.run-*.nbc"))
+    assert len(set(digests)) == 1
 
 
 def is_kernel(decorator: ast.expr) -> bool:

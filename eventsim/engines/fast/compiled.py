@@ -20,7 +20,8 @@ else:
     from eventsim.engines.fast import numba_memory as memory
 
 compiled_law = chosen.compiled_law
-inline, part, kernel, link = chosen.inline, chosen.part, chosen.kernel, chosen.link
+inline, part, kernel = chosen.inline, chosen.part, chosen.kernel
+announce, link = chosen.announce, chosen.link
 timed_compiling, compiling_alone, mark_warm = chosen.timed_compiling, chosen.compiling_alone, chosen.mark_warm
 pointer, either, real, word, store = memory.pointer, memory.either, memory.real, memory.word, memory.store
 put_line, prefetch = memory.put_line, memory.prefetch

@@ -252,29 +252,7 @@ class Machine:
         state, now = self.state, self.state.now
         self._remade = int(self.counts[layout.EVENTS]), state.epoch, now
         while True:
-            self.grid = self.grids.grid(self._lanes)
-            state.set_levels(self.grids.level)
-            self.arrays = Arrays(
-                state.memory,
-                self.grids.slots(),
-                self.grids.near(),
-                state.several.reshape(-1),
-                self._mass,
-                state.low.reshape(-1) if state.low_parts else None,
-                self._features,
-                self.grids.table(),
-                self._supports,
-                state.sides_in_memory,
-                self._images,
-                self._shares,
-                self._species,
-                self._pairs,
-                self.state.contacts_in_memory,
-                self._buffer.view(np.uint8) if self.keep_rows else None,
-                None if state.turning is None else state.turning.reshape(-1),
-                self._spins,
-                self.grids.near_walls(),
-            )
+            self._lay_out()
             full = fill(self.arrays, self.grid, self.rules, now)
             if full < 0:
                 break
@@ -283,6 +261,40 @@ class Machine:
         schedule(self.arrays, self.grid, self.counts, now)
         self._predict(0, state.n, self._floor)
         self.schedule()
+
+    def _lay_out(self) -> None:
+        """Make arrays for the cells that have been chosen; they are empty."""
+        state = self.state
+        self.grid = self.grids.grid(self._lanes)
+        state.set_levels(self.grids.level)
+        self.arrays = Arrays(
+            state.memory,
+            self.grids.slots(),
+            self.grids.near(),
+            state.several.reshape(-1),
+            self._mass,
+            state.low.reshape(-1) if state.low_parts else None,
+            self._features,
+            self.grids.table(),
+            self._supports,
+            state.sides_in_memory,
+            self._images,
+            self._shares,
+            self._species,
+            self._pairs,
+            state.contacts_in_memory,
+            self._buffer.view(np.uint8) if self.keep_rows else None,
+            None if state.turning is None else state.turning.reshape(-1),
+            self._spins,
+            self.grids.near_walls(),
+        )
+
+    def compile_loop(self, motion: Motion) -> None:
+        """Have the loop compiled for disks that move so, before there is anything that it could do."""
+        self.grids.choose(motion)
+        self.choose_screen()
+        self._lay_out()
+        run(self.arrays, self.grid, self.rules, self.counts, self.sums, self.state.now, 0, 0)
 
     def predict_one(self, i: int, floor: float) -> None:
         """Predict disk i anew; what is before `floor` does not count."""

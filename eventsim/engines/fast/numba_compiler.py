@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from ctypes import addressof, c_void_p
 from functools import cache, partial
 from pathlib import Path
 from time import perf_counter, sleep
@@ -16,9 +17,11 @@ from types import ModuleType
 from typing import Any
 from uuid import uuid4
 
-from llvmlite import binding
+from llvmlite import binding, ir
 from numba import cfunc, config, njit, types
 from numba.core import event
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
 from numba.extending import overload, register_jitable
 
 from eventsim.engines.fast.numba_parts import CallerCompiler as CallerCompiler
@@ -240,17 +243,47 @@ def link(has_walls: bool) -> None:
 
     has_walls: whether the scene has walls besides the sides of its domain; no other kernel asks for the side of a point.
     """
-    _linked(_careful, digits.careful_pair_delay)
-    if has_walls:
-        _linked(_hand, point.exact_hand)
+    for name, formula in _called(has_walls):
+        _door(name).value = _linked(name, formula).address
+
+
+def announce(has_walls: bool) -> None:
+    """Give kernels the names alone, so that they can be compiled: to be linked before they are called."""
+    for name, _ in _called(has_walls):
+        _door(name)
+
+
+def _called(has_walls: bool) -> list[tuple[Any, Callable[..., float]]]:
+    """What kernels call: by which name, and which formula."""
+    return [(_careful, digits.careful_pair_delay), *([(_hand, point.exact_hand)] if has_walls else [])]
 
 
 @cache
 def _linked(name: Any, formula: Callable[..., float]) -> Any:
     """The owner of the memory of a formula that kernels call by this name."""
-    compiled = _kept(cfunc, formula, name.sig)
-    binding.add_symbol(name.symbol, compiled.address)
-    return compiled
+    return _kept(cfunc, formula, name.sig)
+
+
+@cache
+def _door(name: Any) -> c_void_p:
+    """Where the address of a formula is kept, and code that has its name and jumps to that address."""
+    address, kind = c_void_p(), ir.FunctionType(ir.DoubleType(), [ir.DoubleType()] * len(name.sig.args))
+    module = ir.Module(f"{name.symbol}_door")
+    function = ir.Function(module, kind, module.name)
+    builder = ir.IRBuilder(function.append_basic_block())
+    place = builder.inttoptr(ir.Constant(ir.IntType(64), addressof(address)), kind.as_pointer().as_pointer())
+    builder.ret(builder.call(builder.load(place), function.args))
+    with global_compiler_lock:
+        library = cpu_target.target_context.codegen().create_library(module.name)
+        library.add_ir_module(module)
+        library.finalize()
+    binding.add_symbol(name.symbol, library.get_pointer_to_function(module.name))
+    _DOORS.append(library)
+    return address
+
+
+_DOORS: list[Any] = []
+"""The owners of the code of doors."""
 
 
 @overload(digits.careful_pair_delay)

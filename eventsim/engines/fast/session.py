@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from eventsim.engines.base import Motion, Snapshot, Stop
 from eventsim.engines.exact_session import ExactSession
 from eventsim.engines.fast import FastOptions, layout
-from eventsim.engines.fast.compiled import is_compiling, link, mark_warm, timed_compiling
+from eventsim.engines.fast.compiled import announce, is_compiling, link, mark_warm, timed_compiling
 from eventsim.engines.fast.machine import FOREVER, Machine
 from eventsim.engines.fast.python_resolver import PythonResolver
 from eventsim.engines.fast.rules import kind_of
@@ -29,6 +30,7 @@ class FastSession(ExactSession):
     """The fast engine in the middle of a run.
 
     keep_rows: whether the log is wanted.  saved: the snapshot that it goes on from; None: the beginning.
+    others: waits for who compiles all kernels but the loop meanwhile; None: nobody does.
     """
 
     name = "fast"
@@ -40,6 +42,7 @@ class FastSession(ExactSession):
         keep_rows: bool = True,
         options: FastOptions | None = None,
         saved: Snapshot | None = None,
+        others: Callable[[], object] | None = None,
     ) -> None:
         super().__init__(stage)
         options = options or FastOptions()
@@ -49,13 +52,17 @@ class FastSession(ExactSession):
         self.state = self._machine.state
         self._resolver = PythonResolver(self._machine, self.counters)
         with timed_compiling(self._note_compiling):
-            link(bool(stage.features))
             if saved is None:
                 self._machine.set_epoch(0)
                 self._machine.set_now(0.0)
                 self.state.begin(stage)
             else:
                 self._fly_as(saved)
+            if others is not None:
+                announce(bool(stage.features))
+                self._machine.compile_loop(self.motion())
+                others()
+            link(bool(stage.features))
             self._predict_afresh()
 
     def advance(self, stop: Stop, budget: int) -> str | None:
@@ -71,9 +78,13 @@ class FastSession(ExactSession):
             self._marked = machine.grid.deep
         return stopped
 
-    def compile(self) -> None:
-        """Compile all that a run may need: an event, a turnover, a look at an instant.  The session is of no use after that."""
-        self.advance(Stop(events=1), 1)
+    def compile(self, with_loop: bool = True) -> None:
+        """Compile all that a run may need: an event, a turnover, a look at an instant.  The session is of no use after that.
+
+        with_loop: False where another process compiles that for an event.
+        """
+        if with_loop:
+            self.advance(Stop(events=1), 1)
         with timed_compiling(self._note_compiling):
             self._machine.turn_over(self.state.now, 0, self.state.window)
             self._resolver.waiting()
