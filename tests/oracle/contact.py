@@ -162,8 +162,9 @@ def turn_normal(
     aside, speed = 0.0, 0.0
     along = (abs(float(normal[1])), abs(float(normal[0])))
     for i in m.disks:
+        on_clock = run.is_on_clock(i)
         for share, place, v, c in zip(along, *states[i], run.table.corner, strict=True):
-            if not (is_float(place - c) and (v == 0 or is_float(run.now))):
+            if not (is_float(place - c) and (v == 0 or on_clock)):
                 aside += share * (last_bits(place - c) + abs(float(v)) * instants[i])
         speed += float(size(states[i][1]))
     parts = [1.0] if m.b < 0 else [float(s) for s in shares(run.table.mass[m.a], run.table.mass[m.b])]

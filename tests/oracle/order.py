@@ -143,8 +143,11 @@ def demand_before(run: State, first: Meeting, stop: Decimal) -> None:
 
 
 def demand_clear(run: State, stop: Decimal, first: Meeting | None) -> None:
-    """Stop the judging where a stop may come after what is ahead."""
+    """Stop the judging where a stop may come after what is ahead, or what is ahead is not known until then."""
     demand_calls(run, stop)
+    for i, flight in enumerate(run.flights):
+        if not SAFE * run.doubt.error(i, float(stop - flight.time)) <= LOST * run.large:
+            raise BeyondError("growth")
     if first is not None and first.how != LOOK:
         demand_before(run, first, stop)
 

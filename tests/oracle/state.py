@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from decimal import Decimal
+from decimal import ROUND_FLOOR, Decimal
 from typing import Any
 
 from tests.oracle.digits import UNIT, ZERO, exact, is_float, root
@@ -135,7 +135,7 @@ class State:
         delay = float(self.now - f.time)
         self.doubt.fly(i, delay)
         corner = self.table.corner
-        on_clock = is_float(self.now)
+        on_clock = self.is_on_clock(i)
         sigma = []
         for axis, (place, start, v, c) in enumerate(((x, f.x, u, corner[0]), (y, f.y, w, corner[1]))):
             kept = axis in sides or (is_float(place - c) and (place == start or on_clock))
@@ -145,6 +145,23 @@ class State:
             sigma.append(0.0 if v == start or is_float(v) else last_bits(v, v - start))
         self.doubt.round(i, sigma)
         return (x, y), (u, w)
+
+    def is_on_clock(self, i: int) -> bool:
+        """Whether the present is a float, and so were the times at which disk i has been wrapped since its flight began."""
+        f = self.flights[i]
+        if not is_float(self.now):
+            return False
+        ways = zip((f.x, f.y), f.at(self.now), (f.u, f.w), (f.ax, f.ay), self.table.period, self.table.corner, strict=False)
+        for start, place, v, a, period, corner in ways:
+            if period is None:
+                continue
+            first, last = sorted(((at - corner) / period).to_integral_value(ROUND_FLOOR) for at in (start, place))
+            if first != last and a != 0:
+                return False
+            for border in range(int(first) + 1, int(last) + 1):
+                if not is_float(f.time + (corner + border * period - start) / v):
+                    return False
+        return True
 
     def place_size(self, place: Decimal, corner: Decimal) -> float:
         """The size of a coordinate as engines have it: from the corner, inside the period."""
@@ -183,7 +200,7 @@ class State:
         """
         change = math.hypot(float(after[0] - before[0]), float(after[1] - before[1]))
         sigma = [0.0, 0.0]
-        late = 0.0 if is_float(self.now) else UNIT * clock
+        late = 0.0 if self.is_on_clock(i) else UNIT * clock
         sigma = [late * abs(float(a - b)) for a, b in zip(after, before, strict=True)]
         for a, b in zip(after, before, strict=True):
             is_exact = a == b or is_float(a) or abs(float(a)) <= NOTHING * change

@@ -117,3 +117,25 @@ def test_what_floats_do_not_determine_is_not_judged() -> None:
     verdict = judge(told, seen)
     assert verdict.word != WRONG
     assert 10 < verdict.judged < 60
+
+
+TINY = 2.0**-20
+
+
+def test_a_place_behind_a_wrap_between_two_floats_is_not_exact() -> None:
+    """A disk begins anew at a wrap, whose time is no float, so that its next contact, which would be head-on, is not quite."""
+    position = [(0.75, 2.75), (1.0, 1.5), (np.nextafter(2.25, 3.0), np.nextafter(3.25, 3.0)), (2.75, 3.5), (1.0, 2.75)]
+    velocity = [(-0.75, -0.5), (0.5, 0.5), (0.75, 0.75), (-0.75, 0.5), (-0.25, 0.0)]
+    scene = es.Scene(es.Disks(position, velocity, TINY, [1.0, 3.0, 1.0, 3.0, 3.0]), es.Channel((4.0, 4.0)), until=50.0)
+    verdict = judge(story(scene), observe(scene, "reference"))
+    assert (verdict.word, verdict.judged) == (RIGHT, 26)
+
+
+def test_nobody_knows_what_a_disk_meets_that_may_be_anywhere() -> None:
+    """The second contact of two tiny disks turns by a seventh part of a right angle with the last bit of a place."""
+    position = [(np.nextafter(2.0, 1.0), np.nextafter(1.0, 2.0)), (1.5, 0.25), (np.nextafter(0.5, 1.0), np.nextafter(3.0, 2.0))]
+    velocity = [(0.5, -0.5), (-1.0, -0.25), (-0.25, 0.5)]
+    scene = es.Scene(es.Disks(position, velocity, TINY, [np.inf, np.inf, 1.0]), es.Periodic((4.0, 4.0)), until=50.0)
+    told = story(scene)
+    assert (told.ending, len(told.rows)) == ("beyond", 2)
+    assert judge(told, observe(scene, "reference")).word == RIGHT
