@@ -421,8 +421,8 @@ class _Judge:
         after = (float(row[f"vx{name}"]), float(row[f"vy{name}"]))
         wrong = math.hypot(*(float(exact(v) - true) for v, true in zip(after, part.velocity, strict=True)))
         slack = max(self.close * many * self.speed, SAFE * part.velocity_error)
-        if expected.kind == REST:  # a slide that begins so much later is so much faster
-            slack += self.pull * self._time_slack(expected, i)
+        # a contact that is so much later finds a disk that has fallen so much longer
+        slack += self.pull * (self._time_slack(expected, i) if expected.kind == REST else 2.0 * abs(late))
         if not wrong <= slack:
             raise _MistakeError(
                 f"disk {i}: velocity {after} after {expected.kind}, true {_floats(part.velocity)}, off by {wrong:.3g}",

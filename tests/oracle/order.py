@@ -37,6 +37,9 @@ def first_of(run: State) -> Meeting | None:
     for meeting in run.rest_due.values():
         if first is None or meeting.time <= first.time:
             first = meeting
+    if first is not None and first.how == REST:
+        struck = [m for m in meetings_of(run, {first.a}) if m.how == IMPACT and m.time == first.time]
+        return struck[0] if struck else first  # a rest is no contact, and comes after those of its instant
     return first if first is None or not (first.at_end or first.how == LEAVE) else _leaving(run, first)
 
 
