@@ -1,4 +1,4 @@
-"""When contacts come, exactly: as roots of quadratics in rationals, from the flights and the numbers of the scene.
+"""When contacts come, exactly: as roots of polynomials in rationals, from the flights and the numbers of the scene.
 
 A disk that nothing has struck yet flies as the scene says, whatever wraps and turnovers of the clock have rounded since.
 """
@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from eventsim.engines.exact_state import ExactState
 from eventsim.formulas.rest import STRUCK
-from eventsim.formulas.roots import Line, Moment, falls_to, less_number, order_of, rational, reaches
+from eventsim.formulas.roots import Line, Moment, Quartic, falls_to, less_number, order_of, rational, reaches
 from eventsim.formulas.walls.boundary import Boundary
 from eventsim.scene.stage import Stage
 
@@ -24,13 +24,15 @@ class ExactTimes:
         self._state = state
 
     def of(self, a: int, b: int, image: tuple[int, int], time: float) -> Moment:
-        """The exact time of a contact whose float time is `time`; that itself where it is no root of a quadratic.
+        """The exact time of a contact whose float time is `time`; that itself where it is no root of a polynomial.
 
-        b: the other disk, image: of it, (kx, ky); or -1 - place of a wall, and (side, how).  No root: a parabola against a
-        round thing, coming to rest, sliding over the end of a wall.
+        b: the other disk, image: of it, (kx, ky); or -1 - place of a wall, and (side, how).  No root: coming to rest, sliding
+        over the end of a wall, a float that is none of its quartic (a graze).
         """
         disks = (a,) if b < 0 else (a, b)
         moment = self._root(a, b, image)
+        if isinstance(moment, Quartic):
+            moment = moment.root_near(time)
         if moment is None:
             return rational(time)
         begin = rational(max(self._state.t[i] for i in disks))
@@ -41,28 +43,28 @@ class ExactTimes:
         if b < 0 and not self._is_round(-1 - b, image[0], a):
             return False
         moment = self._root(a, b, image)
-        return moment is not None and moment.square == 0
+        return isinstance(moment, Moment) and moment.square == 0
 
     def _is_round(self, number: int, side: int, i: int) -> bool:
         """Whether a wall is round where disk i meets it on that side; a post is none for a point, which hits it exactly."""
         stage = self._stage
         return stage.is_round_outside(number, side) and not stage.is_exact_hit(number, float(stage.radius[i]))
 
-    def _root(self, a: int, b: int, image: tuple[int, int]) -> Moment | None:
-        """The time of a contact as a root of a quadratic; None where it is none."""
+    def _root(self, a: int, b: int, image: tuple[int, int]) -> Moment | Quartic | None:
+        """The time of a contact as a root; None where it is none."""
         if b < 0:
             return self._of_wall(-1 - b, image, float(self._stage.radius[a]), a)
         reach = Fraction(float(self._stage.radius[a])) + Fraction(float(self._stage.radius[b]))
         return self._of_pair(image, reach, a, b)
 
-    def _of_pair(self, image: tuple[int, int], reach: Fraction, a: int, b: int) -> Moment | None:
+    def _of_pair(self, image: tuple[int, int], reach: Fraction, a: int, b: int) -> Moment | Quartic | None:
         apart: list[Line] = []
         for one, other, k, length in zip(self.lines(a), self.lines(b), image, self._stage.period, strict=True):
             line = _less(one, other)
             apart.append(less_number(line, k * length) if k and length is not None else line)
         return reaches(apart[0], apart[1], reach, -1)
 
-    def _of_wall(self, number: int, image: tuple[int, int], radius: float, i: int) -> Moment | None:
+    def _of_wall(self, number: int, image: tuple[int, int], radius: float, i: int) -> Moment | Quartic | None:
         stage, (side, how) = self._stage, image
         if how != STRUCK:
             return None

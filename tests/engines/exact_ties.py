@@ -9,6 +9,7 @@ import random
 from fractions import Fraction
 
 import eventsim as es
+from eventsim.record.events import Kind
 
 TIME_BITS = (5, 30, 40, 44, 47)
 """With many of them, a contact time as floats compute it is off by some last bits of the places, and no two are alike."""
@@ -128,6 +129,70 @@ def _crosses(walls):
     return side(p, q, r) * side(p, q, s) <= 0 and side(r, s, p) * side(r, s, q) <= 0
 
 
+def falls_beside(seed):
+    """A disk that falls to the floor and meets there, at that instant, one that slides on it or stands: the time is a root of
+    a quartic, that of the floor one of a quadratic."""
+    rng = random.Random(seed)
+    while True:
+        time = Fraction(_few_bits(rng, rng.choice((3, 6, 12, 20)), rng.randint(-2, 2)))
+        radius = Fraction(rng.choice((1, 2, 3, 5)), 1 << rng.randint(2, 4))
+        falls = [Fraction(_few_bits(rng, rng.randint(1, 3), rng.randint(-2, 1))) * rng.choice((-1, 1)) for _ in range(2)]
+        slides = rng.choice((Fraction(0), falls[0] * rng.choice((-2, -1, Fraction(1, 2)))))
+        middle = 4 + 2 * abs(falls[0]) * math.ceil(time)
+        start = middle - falls[0] * time, radius - falls[1] * time + time * time / 2
+        other = middle + (2 * radius if falls[0] > slides else -2 * radius)
+        begun = other - slides * time
+        if start[1] <= radius or _exact(*start, *falls, radius, begun, slides, other) is None:
+            continue
+        disks = es.Disks(
+            [tuple(map(float, start)), (float(begun), float(radius))],
+            [tuple(map(float, falls)), (float(slides), 0.0)],
+            float(radius),
+            [1.0, rng.choice((0.5, 1.0, 3.0)) if slides else rng.choice((1.0, math.inf))],
+        )
+        size = math.ceil(middle * 4), math.ceil(start[1] + 4 + abs(falls[1]) * time + falls[1] ** 2)
+        restitution = rng.choice((0.5, 1.0))
+        return es.Scene(disks, es.Box(tuple(map(float, size))), gravity=(0.0, -1.0), restitution=restitution)
+
+
+def falls_on_two(seed):
+    """A disk that falls on two others at once, which stand; both times are roots of quartics."""
+    rng = random.Random(seed)
+    while True:
+        time = Fraction(_few_bits(rng, rng.choice((3, 6, 12, 20)), rng.randint(-2, 2)))
+        (a, b, c), (p, q, r) = rng.choice(TRIPLES), rng.choice(TRIPLES)
+        unit = Fraction(1, 1 << rng.randint(4, 8))
+        offsets = (a * r * unit, -b * r * unit), (-p * c * unit, -q * c * unit)
+        speed = [Fraction(_few_bits(rng, rng.randint(1, 3), rng.randint(-3, 0))) * rng.choice((-1, 1)) for _ in range(2)]
+        strikes = speed[0], speed[1] - time
+        radius = c * r * unit / 2
+        if any(strikes[0] * dx + strikes[1] * dy <= 0 for dx, dy in offsets) or _too_near(*offsets, 2 * radius):
+            continue
+        middle = 4 + 2 * abs(speed[0]) * math.ceil(time) + 4 * radius, 4 + abs(speed[1]) * math.ceil(time) + 4 * radius
+        start = middle[0] - speed[0] * time, middle[1] - speed[1] * time + time * time / 2
+        others = [(middle[0] + dx, middle[1] + dy) for dx, dy in offsets]
+        if _exact(*start, *speed, radius, *others[0], *others[1]) is None or _fell_early(start, speed, others, radius, time):
+            continue
+        places = [tuple(map(float, place)) for place in (start, *others)]
+        disks = es.Disks(places, [tuple(map(float, speed)), (0.0, 0.0), (0.0, 0.0)], float(radius), [1.0, math.inf, math.inf])
+        size = math.ceil(middle[0] * 4), math.ceil(start[1] * 2 + speed[1] ** 2)
+        return es.Scene(disks, es.Box(tuple(map(float, size))), gravity=(0.0, -1.0), restitution=rng.choice((0.5, 1.0)))
+
+
+def _too_near(one, other, reach):
+    return (one[0] - other[0]) ** 2 + (one[1] - other[1]) ** 2 <= reach * reach
+
+
+def _fell_early(start, speed, others, radius, time):
+    """Whether a disk is near one of the others before, or so near a wall."""
+    for k in range(200):
+        t = time * Fraction(k, 200)
+        place = start[0] + speed[0] * t, start[1] + speed[1] * t - t * t / 2
+        if min(place) <= radius or any(_too_near(place, other, 2 * radius) for other in others):
+            return True
+    return False
+
+
 def is_cluster(run):
-    """Whether the first two rows of a run are one cluster."""
-    return len(run.log) >= 2 and run.log.joint.tolist()[:2] == [0, 0]
+    """Whether the first contact of a run is one of a cluster, whose others may give nothing."""
+    return run.log.joint[run.log.kind != Kind.REST][0] >= 0

@@ -7,7 +7,7 @@ import pytest
 from mpmath import mp, mpf
 
 import eventsim as es
-from tests.engines.exact_ties import is_cluster, two_partners, two_walls
+from tests.engines.exact_ties import falls_beside, falls_on_two, is_cluster, two_partners, two_walls
 
 ENGINES = ["reference", "fast"]
 FEW, MANY = range(40), range(1500)
@@ -17,14 +17,14 @@ def missed(make, seeds, engine):
     """The seeds whose tie an engine does not see."""
     found = []
     for seed in seeds:
-        run = es.simulate(make(seed), events=2, engine=engine, log=True)
+        run = es.simulate(make(seed), events=3, engine=engine, log=True)
         if not is_cluster(run):
             found.append(seed)
     return found
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("make", [two_partners, two_walls])
+@pytest.mark.parametrize("make", [two_partners, two_walls, falls_beside, falls_on_two])
 @pytest.mark.parametrize("seeds", [FEW, pytest.param(MANY, marks=pytest.mark.slow)])
 def test_an_exact_tie_is_seen_wherever_it_falls_on_the_clock(make, seeds, engine):
     if engine == "fast":

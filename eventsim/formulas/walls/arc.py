@@ -17,7 +17,7 @@ from eventsim.formulas.digits import careful_pair_delay
 from eventsim.formulas.doubt import SLACK
 from eventsim.formulas.parabola import NO_OVERLAP, PRESENT_OVERLAP, Round, round_delays
 from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
-from eventsim.formulas.roots import Line, Moment, less_number, reaches
+from eventsim.formulas.roots import Line, Moment, Quartic, less_number, reaches
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.point import (
     CLOSE,
@@ -190,8 +190,8 @@ class Arc(NamedTuple):
             return dx / distance, dy / distance, distance - self.radius
         return -dx / distance, -dy / distance, self.radius - distance
 
-    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
-        """The exact time of a contact; None along a parabola."""
+    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | Quartic | None:
+        """The exact time of a contact; along a parabola the quartic whose root it is."""
         reach = Fraction(self.radius) + Fraction(self.low) + side * Fraction(radius)
         x, y = (
             less_number(x, Fraction(self.x) + Fraction(self.ux)),

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from eventsim.formulas.contact import leaving_delay
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays, on_circle
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
-from eventsim.formulas.roots import Line, Moment, less_number, reaches
+from eventsim.formulas.roots import Line, Moment, Quartic, less_number, reaches
 from eventsim.formulas.walls.face import Face
 
 
@@ -61,8 +61,8 @@ class Container(NamedTuple):
             return 0.0, 0.0, NEVER
         return -(dx / distance), -(dy / distance), self.radius - distance
 
-    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
-        """The exact time of a contact; None along a parabola."""
+    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | Quartic | None:
+        """The exact time of a contact; along a parabola the quartic whose root it is."""
         reach = Fraction(self.radius) + side * Fraction(radius)
         return reaches(less_number(x, self.x), less_number(y, self.y), reach, -side)
 

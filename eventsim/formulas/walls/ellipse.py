@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from eventsim.formulas.contact import circle_delay, leaving_delay
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
-from eventsim.formulas.roots import Line, Moment, less_number, quadratic_root
+from eventsim.formulas.roots import Line, Moment, Quartic, less_number, quadratic_root
 from eventsim.formulas.walls.face import Face
 from eventsim.formulas.walls.point import side_known
 
@@ -113,7 +113,7 @@ class Ellipse(NamedTuple):
         distance = nx * (p - f) + ny * (q - g)
         return (nx * self.ex - ny * self.ey) / self.norm, (nx * self.ey + ny * self.ex) / self.norm, distance
 
-    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
+    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | Quartic | None:
         """The exact time of a contact."""
         x, y = less_number(x, self.x), less_number(y, self.y)
         if x[2] or y[2]:

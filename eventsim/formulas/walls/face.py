@@ -10,7 +10,7 @@ from typing import NamedTuple
 from eventsim.formulas.crossing import closing_delay, reopening_delay
 from eventsim.formulas.doubt import SLACK, TOUCHING
 from eventsim.formulas.real import NEVER, Acceleration, Real, is_float, sqrt
-from eventsim.formulas.roots import Line, Moment, falls_to, less_number, root_of
+from eventsim.formulas.roots import Line, Moment, Quartic, falls_to, less_number, root_of
 from eventsim.formulas.walls.point import (
     CLOSE,
     STEEPEST,
@@ -179,7 +179,7 @@ class Face(NamedTuple):
         side = 1.0 if distance >= 0.0 else -1.0
         return side * nx, side * ny, side * distance
 
-    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
+    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | Quartic | None:
         """The exact time of a contact, by the exact normal; along a parabola with its length to so many bits that none counts."""
         x, y = less_number(x, self.x), less_number(y, self.y)
         nx, ny = Fraction(self.y) - Fraction(self.y1), Fraction(self.x1) - Fraction(self.x)

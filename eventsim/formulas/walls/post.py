@@ -11,7 +11,7 @@ from eventsim.formulas.contact import circle_delay
 from eventsim.formulas.doubt import SLACK
 from eventsim.formulas.parabola import ANY_OVERLAP, circle_delays, on_circle
 from eventsim.formulas.real import NEVER, Acceleration, Real, sqrt
-from eventsim.formulas.roots import Line, Moment, less_number, reaches
+from eventsim.formulas.roots import Line, Moment, Quartic, less_number, reaches
 from eventsim.formulas.walls.face import Face, is_in_line
 from eventsim.formulas.walls.point import CLOSE, is_near, is_point, post_delay_of_point
 
@@ -85,8 +85,8 @@ class Post(NamedTuple):
             return 0.0, 0.0, NEVER
         return dx / distance, dy / distance, distance
 
-    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
-        """The exact time of a contact; None along a parabola."""
+    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | Quartic | None:
+        """The exact time of a contact; along a parabola the quartic whose root it is."""
         return reaches(less_number(x, self.x), less_number(y, self.y), side * Fraction(radius), -side)
 
     def line(self) -> Face | None:

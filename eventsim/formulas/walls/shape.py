@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
 
 from eventsim.formulas.real import Acceleration, Real
-from eventsim.formulas.roots import Line, Moment
+from eventsim.formulas.roots import Line, Moment, Quartic
 
 if TYPE_CHECKING:
     from eventsim.formulas.walls.face import Face
@@ -64,8 +64,8 @@ class Shape(Protocol):
     def nearest(self, x: Real, y: Real) -> tuple[Real, Real, Real]:
         """(nx, ny, distance): the unit normal that points to a centre, and its distance; NEVER beside the shape."""
 
-    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | None:
-        """The exact time of a contact; None where it is no root of a quadratic, and counts with its float time.
+    def moment(self, x: Line, y: Line, side: int, radius: float) -> Moment | Quartic | None:
+        """The exact time of a contact, or the quartic whose root it is; None where it counts with its float time.
 
         x, y: the flight of the centre.
         """
