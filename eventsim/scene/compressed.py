@@ -46,8 +46,6 @@ def place_compressed(
         SceneError: if the disks do not fit or did not find how, or the region is not free; `where` is how to call them.
     """
     region = region_of(gases[0], domain)
-    if region is None:
-        raise SceneError(f"{where}.region is missing: an open domain has no size that a gas could fill")
     count = sum(gas.count for gas in gases)
     if count > MANY and not has_compiler():
         raise SceneError(

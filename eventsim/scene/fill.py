@@ -48,8 +48,6 @@ def place_gas(
         SceneError: if the disks do not fit; `where` is how to call the gas.
     """
     region = region_of(gas, domain)
-    if region is None:
-        raise SceneError(f"{where}.region is missing: an open domain has no size that a gas could fill")
     if isinstance(gas.radius, Sizes):
         velocity = start_velocity(gas, rng)
         gas = gas if gas.radii is not None else with_radii(gas, rng)
@@ -67,7 +65,6 @@ def clear_of(
 ) -> bool:
     """Whether disks of a gas at `position` (N, 2) are clear of walls and of the disks `present`."""
     region = region_of(gas, domain)
-    assert region is not None
     place = _Place(replace(gas, radius=radius, packing_fraction=None), domain, walls, present, region, where)
     return bool(place.is_free(position, gas.radii).all())
 

@@ -68,12 +68,11 @@ class Gas:
         return random or bool(self.temperature) or bool(self.speed)
 
 
-def region_of(gas: Gas, domain: Domain) -> Region | None:
-    """The region that a gas fills; None where neither the gas nor the domain says."""
+def region_of(gas: Gas, domain: Domain) -> Region:
+    """The region that a gas that keeps the rules fills: its own one, or the domain."""
     if gas.region is not None:
         return gas.region
-    if domain.size is None:
-        return None
+    assert domain.size is not None
     (x, y), (width, height) = domain.origin, domain.size
     return x, y, x + width, y + height
 

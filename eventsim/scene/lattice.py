@@ -42,10 +42,8 @@ class Lattice:
     wraps: tuple[bool, bool]
 
     def shape(self, count: int) -> Shape | None:
-        """The shape with at least `count` sites that keeps neighbours farthest apart; None if none fits."""
+        """The shape with at least `count` > 0 sites that keeps neighbours farthest apart; None if none fits."""
         width, height = self._size()
-        if count < 1 or min(width, height) < 2.0 * self.radius:
-            return None
         # With many more columns than rows by the proportions of the region, neighbours would only come closer.
         most = min(count, int(8.0 * math.sqrt(count * width / height)) + 16)
         if self.radius > 0.0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -284,7 +285,7 @@ def written(value: Any) -> str:
         return "[" + ", ".join(map(written, value)) + "]"
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key} = {written(entry)}" for key, entry in value.items()) + "}"
-    return f'"{value}"' if isinstance(value, str) else repr(value)
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
 
 
 def _numbers(here: Mapping[str, Any], keys: tuple[str, ...]) -> bool:
@@ -393,6 +394,8 @@ def _of_value(table: str, key: str, value: Any) -> Remedy | None:
         mended = str(value)
     elif key in PAIRS:
         mended = _pair(key, value)
+        if mended == value:
+            return None  # of the right form, whatever is wrong with its numbers
     elif key == "restitution" and _is_number(value) and 1.0 < value < LEAST_PER_CENT:
         return Remedy("more than 1 would make energy", f"{key} = 1.0")
     elif key == "restitution" and _is_number(value) and LEAST_PER_CENT <= value <= 100.0:

@@ -212,7 +212,7 @@ def difference(one: Scene, other: Scene) -> str:
     """The first key in which `other` is not like `one`; O(N)."""
     for item in fields(Scene):
         mine, theirs = getattr(one, item.name), getattr(other, item.name)
-        if mine == theirs:
+        if mine == theirs or not item.compare:
             continue
         if item.name != "disks":
             return f"its {item.name} is {mine!r}, not {theirs!r}"

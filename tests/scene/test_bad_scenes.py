@@ -7,6 +7,7 @@ from eventsim.scene.files import load_scene
 
 BOX = '[domain]\nkind = "box"\nsize = [10, 5]\n'
 DISK = "[[disk]]\nposition = [2, 2]\nradius = 0.5\n"
+ELLIPSE = '[[wall]]\nkind = "ellipse"\ncenter = [5, 2.5]\n'
 GAS = "[[gas]]\ncount = 10\nradius = 0.1\nseed = 1\n"
 
 # name: (text of the file, for each expected problem the words that must be in it)
@@ -226,6 +227,143 @@ BAD = {
     "a gas and a disk that are no tables": (
         "gas = [3]\ndisk = [3]\n" + BOX,
         [["gas[0] = 3", "must be a table"], ["disk[0] = 3", "must be a table"]],
+    ),
+    "a name of two lines": ('name = "a\\nb"\n' + BOX + DISK, [["name = 'a\\nb'", "one line without control characters"]]),
+    "rougher than rough": (
+        "tangential_restitution = 2\n" + BOX + DISK,
+        [["tangential_restitution = 2.0", "from -1 (smooth) to 1 (perfectly rough)"]],
+    ),
+    "both rougher than rough": (
+        "tangential_restitution = {pair = 2, wall = -2}\n" + BOX + DISK,
+        [["tangential_restitution.pair = 2.0", "from -1"], ["tangential_restitution.wall = -2.0", "from -1"]],
+    ),
+    "spins without roughness": (
+        BOX + "".join(f"[[disk]]\nposition = [{k}, 2]\nradius = 0.25\nspin = 1\n" for k in range(1, 6)),
+        [*([f"disk[{k}].spin = 1.0", "say tangential_restitution = 0.5"] for k in range(3)), ["and 2 more disks", "(spin)"]],
+    ),
+    "disks that cannot turn": (
+        "tangential_restitution = 0.5\n"
+        + BOX
+        + DISK
+        + "spin = 1e-80\nmoment = 2\n[[disk]]\nposition = [4, 4]\nradius = 0\n"
+        + "[[disk]]\nposition = [6, 4]\nradius = 0.25\nmass = 0\n",
+        [
+            ["disk[0].spin = 1e-80", "must be 0, or 1e-75 to 1e+75"],
+            ["disk[0].moment = 2.0", "at most 1"],
+            ["disk[1].radius = 0.0", "a point has no surface", "leave out tangential_restitution"],
+            ["disk[2].mass = 0.0", "a tracer has no moment"],
+        ],
+    ),
+    "shares of species that there are not": (
+        'restitution = {pairs = {"a-b" = 0.5, "a-c" = 2}}\n' + BOX + DISK + 'species = "a"\n',
+        [
+            ["restitution.pairs.a-c = 2.0", "from 0 to 1"],
+            ["restitution.pairs.a-b", "no disk is of the species b (there are a)"],
+            ["restitution.pairs.a-c", "no disk is of the species c"],
+        ],
+    ),
+    "shares of pairs that are none": (
+        'restitution = {pairs = {"a" = 0.5, "a-b" = 0.5, "b-a" = 0.2}}\n' + BOX + DISK,
+        [["restitution.pairs.a:", 'as in "a-b"'], ["restitution.pairs.b-a", "have a share already"]],
+    ),
+    "shares that are no table": ("restitution = {pairs = 3}\n" + BOX + DISK, [["restitution.pairs = 3", "a table of numbers"]]),
+    "a speed below 0 at which disks yield": (
+        "restitution = {yield_speed = -1}\n" + BOX + DISK,
+        [["restitution.yield_speed = -1.0", "a finite speed above 0"]],
+    ),
+    "points that fall in an ellipse": (
+        "gravity = [0, -1]\n" + BOX + "[[disk]]\nposition = [5, 2]\nradius = 0\n" + ELLIPSE + "semi_axes = [2, 1]\n",
+        [["wall[0]: gravity = [0.0, -1.0]", "cannot meet this ellipse; leave gravity out"]],
+    ),
+    "a disk in an ellipse": (
+        BOX + DISK.replace("2, 2", "5, 2.5") + ELLIPSE + "semi_axes = [2, 1]\n",
+        [["wall[0]: disk[0] has radius 0.5", "only points (radius 0) meet this ellipse"]],
+    ),
+    "an ellipse that is none": (
+        BOX
+        + "[[disk]]\nposition = [2, 2]\nradius = 0\n"
+        + ELLIPSE
+        + "semi_axes = [0, 1]\ndirection = [0, 0]\n"
+        + ELLIPSE
+        + "semi_axes = [1e-9, 1]\n",
+        [
+            ["wall[0].semi_axes = [0.0, 1.0]", "two lengths above 0"],
+            ["wall[0].direction = [0.0, 0.0]", "such as [1, 0]"],
+            ["wall[1].semi_axes = [1e-09, 1.0]", "at least 1e-06 of the larger"],
+        ],
+    ),
+    "a name that a line of the log cannot hold": (
+        BOX + DISK + '[[wall]]\nkind = "segment"\nstart = [7, 1]\nend = [7, 2]\nname = "a,b"\n',
+        [["wall[0].name = 'a,b'", "nor hold a comma"]],
+    ),
+    "points of a polygon that are the same": (
+        BOX + DISK + '[[wall]]\nkind = "polygon"\npoints = [[5, 1], [6, 1], [6, 1], [6, 2], [5, 1]]\n',
+        [
+            ["wall[0].points[1] and the next point are the same, (6.0, 1.0)"],
+            ["wall[0].points[4]", "(a polygon closes by itself)"],
+        ],
+    ),
+    "an arc that is flat but for the last digits": (
+        BOX + DISK + '[[wall]]\nkind = "arc"\nstart = [5, 1]\nthrough = [6, 1.0000000000000002]\nend = [7, 1]\n',
+        [["wall[0]", "on a line, but for the last digits", "use a segment"]],
+    ),
+    "points that are no list": (
+        BOX + DISK + '[[wall]]\nkind = "polygon"\npoints = 3\n[[wall]]\nkind = "polyline"\npoints = [3]\n',
+        [["wall[0].points = 3", "a list of points [x, y]"], ["wall[1].points = [3]", "a list of points [x, y]"]],
+    ),
+    "a gas that cannot be": (
+        BOX + "[[gas]]\ncount = 3\nseed = 1\nmass = -1\npacking_fraction = 2\ntemperature = -1\nregion = [3, 3, 1, 1]\n",
+        [
+            ["gas[0].packing_fraction = 2.0", "at most 0.9068997"],
+            ["gas[0].mass = -1.0", "at least 0"],
+            ["gas[0].temperature = -1.0", "finite and at least 0"],
+            ["gas[0].region = [3.0, 3.0, 1.0, 1.0]", "x0 < x1 and y0 < y1"],
+        ],
+    ),
+    "radii that are no list": (
+        BOX + "[[gas]]\ncount = 3\nseed = 1\nradius = {values = 0.1}\n",
+        [["gas[0].radius = {values = 0.1}", "a list of radii"]],
+    ),
+    "gases of more than memory holds together": (
+        BOX + "[[gas]]\ncount = 30_000_000\nseed = 1\nradius = 0\nmass = 0\n" * 2,
+        [["gas: 60000000 disks in all", "at most 50000000"]],
+    ),
+    "points that are to grow": (
+        BOX + '[[gas]]\ncount = 30\nseed = 1\nradius = 0\narrangement = "compressed"\n',
+        [['gas[0].arrangement = "compressed"', "a radius of 0 cannot grow", 'use "random"']],
+    ),
+    "a disk where others are to grow": (
+        BOX + '[[gas]]\ncount = 12\nseed = 1\nradius = 0.5\narrangement = "compressed"\n' + DISK,
+        [['gas[0].arrangement = "compressed"', "must be free of walls and of other disks"]],
+    ),
+    "disks wider than their region": (
+        BOX + '[[gas]]\ncount = 2\nradius = 3\narrangement = "hexagonal"\n',
+        [["gas[0]: a disk of radius 3 is wider than the region [0, 10] x [0, 5]"]],
+    ),
+    "too heavy a fall": (
+        'gravity = [0, -1e100]\n[domain]\nkind = "box"\nsize = [1e90, 1e90]\n' + DISK,
+        [["gravity: 1e+100 times the largest length, 1e+90", "at most 1e+150"]],
+    ),
+    "sides that are none": (
+        BOX + "walls = {middle = {shaking = 1}, bottom = {mass = 2}}\n" + DISK,
+        [["domain.walls.middle", "has the walls left, right, bottom, top"], ["domain.walls.bottom.mass", "unknown key"]],
+    ),
+    "a side that is no table": (BOX + "walls = {bottom = 2}\n" + DISK, [["domain.walls = {bottom = 2}", "tables of sides"]]),
+    "sides of a period": (
+        BOX.replace("box", "periodic") + "walls = {bottom = {restitution = 2}}\n" + DISK,
+        [["domain.walls.bottom", "has no walls"]],
+    ),
+    "a side that gives back more": (
+        BOX + "walls = {bottom = {restitution = 2}}\n" + DISK,
+        [["domain.walls.bottom.restitution = 2.0", "from 0 to 1"]],
+    ),
+    "a species with a hyphen": (
+        BOX + DISK + 'species = "a-b"\n',
+        [["disk[0].species = 'a-b'", "without control characters and hyphens"]],
+    ),
+    "a file of disks whose path is a number": (
+        BOX + DISK + "[[disks_file]]\npath = 3\n",
+        [["disks_file[0].path = 3", "a text in quotation marks"]],
     ),
     "not TOML": ("until = \n", [["not valid TOML", "line 1"]]),
 }

@@ -2,15 +2,17 @@
 
 import json
 import re
+import tomllib
 from itertools import pairwise
 
 import pytest
 
 from eventsim.errors import SceneError
 from eventsim.scene.files import load_scene
-from eventsim.scene.remedies import EXAMPLES
+from eventsim.scene.remedies import EXAMPLES, written
 from eventsim.scene.schema import DISK, DISKS_FILE, DOMAIN, GAS, RESTITUTION, WALL
 from eventsim.scene.schema import SCENE as SCENE_KEYS
+from eventsim.scene.slips import problem_of
 from eventsim.scene.walls import WALLS
 
 SCENE = """\
@@ -270,6 +272,43 @@ def test_a_value_of_the_right_form_is_not_proposed_again(tmp_path):
     text = told_of(tmp_path, "[[disk]]\nposition = [0.5, inf]\nradius = 0.01\n")
     assert "position = [0.5, inf]" in text
     assert "write:" not in text
+    text = told_of(tmp_path, "[[disk]]\nposition = [0.5, 1e200]\nradius = 0.01\n")
+    assert "disk[1].position = [0.5, 1e+200]" in text
+    assert "write:" not in text
+
+
+def test_a_value_is_written_as_it_is_read():
+    value = {"a": [True, 0.5, float("inf"), 3], "b": 'say "x"\n', "c": {"d": "C:\\x"}, "e": "ü"}
+    assert tomllib.loads(f"value = {written(value)}")["value"] == value
+
+
+def test_a_restitution_above_1_and_a_table_with_a_capital_are_told(tmp_path):
+    (tmp_path / "scene.toml").write_text("restitution = 1.5\n" + OPEN + ONE)
+    (problem,) = told(tmp_path / "scene.toml")
+    assert "more than 1 would make energy" in problem
+    assert problem.endswith("write:  restitution = 1.0")
+    (tmp_path / "scene.toml").write_text(OPEN.replace("[domain]", "[Domain]") + ONE)
+    first, second = told(tmp_path / "scene.toml")
+    assert "names are written small\n    write:  [domain]" in first
+    assert "domain is missing" in second
+
+
+def test_very_long_files_are_told_their_mistake_without_a_proposal(tmp_path, monkeypatch):
+    """Nothing is read again then with a line mended."""
+    for module in ("slips", "json_slips", "quoting"):
+        monkeypatch.setattr(f"eventsim.scene.{module}.LONGEST", 10)
+    (tmp_path / "scene.toml").write_text(OPEN + ONE.replace("0.05", "0,05"))
+    assert "a line holds one key and one value, and nothing more (at line 5" in told(tmp_path / "scene.toml")[0]
+    (tmp_path / "scene.json").write_text(JSON.replace("0.1}", "0.1,}", 1))
+    (problem,) = told(tmp_path / "scene.json")
+    assert "(at line 4, column" in problem
+    assert "write:" not in problem
+    (tmp_path / "scene.toml").write_text(OPEN + ONE.replace("0.05", "-1"))
+    assert told(tmp_path / "scene.toml")[0].endswith("(0 is a point, no other below 1e-150)")
+
+
+def test_what_a_reader_of_toml_says_without_a_place_is_repeated():
+    assert problem_of("until = 3", tomllib.TOMLDecodeError("is odd")) == "is odd"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
@@ -508,6 +547,18 @@ FURTHER = [
     (ONE + SEGMENT + "points = [[4, 4], [5, 5]]\n", "has a start and an end", "start = [4, 4] end = [5, 5]"),
     (ONE + SEGMENT + "points = [[4, 4], [5, 5], [6, 5]]\n", "goes a polyline", 'kind = "polyline"'),
     ("[gravity]\nx = 0\ny = -9.81\n" + ONE, "write it above the first table", "gravity = [0, -9.81] [domain]"),
+    (ONE.replace("0.05", "[0.05]"), "must be a number", "radius = 0.05"),
+    (ONE.replace("0.05", '"1/20"'), "must be a number", "radius = 0.05"),
+    (ONE.replace("0.05", '"5 * 0.01"'), "must be a number", "radius = 0.05"),
+    (ONE.replace("[0.3, 0.8]", "0.3, 0.8]"), "what is opened is closed", "position = [0.3, 0.8]"),
+    (ONE.replace("[0.3, 0.8]", "(0,3; 0,8)"), "lists stand in square brackets; a number has", "position = [0.3, 0.8]"),
+    (ONE + SOME + "radius = {uniform = [0.1, 0.2]\n", "what is opened is closed", "radius = {uniform = [0.1, 0.2]}"),
+    (ONE + SOME.replace("5", '"5.0"', 1) + "radius = 0.1\n", "must be a whole number", "count = 5"),
+    (ONE + SOME.replace("5", "5,5", 1) + "radius = 0.1\n", "a line holds one key and one value", "count = 20"),
+    (ONE.replace("[0.3, 0.8]", "0,3 0,8"), "a line holds one key and one value", "position = [0.3, 0.8]"),
+    ("disk = [3]\n" + ONE, "domain.disk: unknown key (known here: kind)", None),
+    (ONE + "[[disks_file]]\nfile = 'C:\\data\\x.csv'\n", "the key is path", r'path = "C:\\data\\x.csv"'),
+    (ONE + '[[wall]]\nkind = "polygon"\nvertices = [[0, 0], [true, 1]]\n', "key is points", "points = [[0, 0], [true, 1]]"),
     ("", "a scene needs at least one disk", "[[disk]] position = [0.3, 0.8] radius = 0.05"),
 ]
 
@@ -530,6 +581,7 @@ def test_a_slip_is_one_problem_with_what_is_right(tmp_path, added, said, right):
     ("wrong", "said"),
     [
         (JSON.replace('"', "'"), "double quotation marks"),
+        (JSON.replace('"', "'").replace("2.0,\n", "2.0, // seconds\n"), "quotation marks; JSON has no comments"),
         (JSON.replace("}]\n", "},]\n"), "nothing follows a last comma"),
         (JSON.replace("0.1},", "0.1,},"), "nothing follows a last comma"),
         (JSON.replace("2.0,\n", "2.0, // seconds\n"), "JSON has no comments"),
@@ -574,6 +626,13 @@ def test_a_file_of_the_other_format_is_told_its_name(tmp_path):
     assert "this is JSON: let the file's name end in .json" in told(tmp_path / "scene.toml")[0]
     (tmp_path / "scene.json").write_text("# mine\n" + SCENE)
     assert "this is TOML: let the file's name end in .toml" in told(tmp_path / "scene.json")[0]
+
+
+def test_json_that_no_rule_mends_is_told_without_a_proposal(tmp_path):
+    (tmp_path / "scene.json").write_text(JSON.replace('"until"', "until until"))
+    (problem,) = told(tmp_path / "scene.json")
+    assert "a key in double quotation marks is wanted here (at line 1, column 2)" in problem
+    assert "write:" not in problem
 
 
 def test_line_ends_of_old_macs_are_read(tmp_path):
@@ -624,12 +683,12 @@ def test_of_a_speed_and_its_angle_one_line_is_proposed(tmp_path):
 @pytest.mark.parametrize("arrangement", ["random", "square", "hexagonal", "compressed"])
 def test_more_disks_than_any_arrangement_holds_are_told_their_bounds(tmp_path, arrangement):
     path = tmp_path / "dense.toml"
-    gas = f'[[gas]]\ncount = 400\nradius = 0.05\nseed = 1\narrangement = "{arrangement}"\n'
+    gas = f'[[gas]]\ncount = 300\nradius = 0.05\nseed = 1\narrangement = "{arrangement}"\n'
     path.write_text(f'[domain]\nkind = "box"\nsize = [2.0, 1.0]\n{gas}', encoding="utf-8")
     with pytest.raises(SceneError) as caught:
         load_scene(path)
     told = str(caught.value)
-    on_lattice, words = arrangement in ("square", "hexagonal"), "at most 230 disks of radius 0.05 fit, or 400 of radius 0.03799"
+    on_lattice, words = arrangement in ("square", "hexagonal"), "at most 230 disks of radius 0.05 fit, or 300 of radius 0.04386"
     assert ("no arrangement holds more than 230" if on_lattice else words) in told  # pi / sqrt 12 of the area, no more
     assert "denser" not in told
     assert "use" not in told
@@ -648,6 +707,7 @@ def test_the_densest_packing_itself_is_held(tmp_path):
     [
         ("disk.1.mass=1", "there is disk.0 alone; this would begin another one, which lacks position and radius"),
         ("disk.4.mass=1", "there is no disk.4: there is disk.0 alone (disk.1 would add one)"),
+        ("wall.1.name=x", "there is wall.0 alone; this would begin another one, which lacks kind"),
         ("gas.1.seed=1", "there is gas.0 alone; this would begin another one, which lacks count"),
     ],
 )

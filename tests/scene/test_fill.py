@@ -138,6 +138,7 @@ def test_twenty_thousand_disks_are_placed_and_validated(arrangement):
 
 def spread(sizes, arrangement="random", domain="box", count=300, **keys):
     table = {"count": count, "radius": sizes, "seed": 3, "arrangement": arrangement, **keys}
+    table = {key: value for key, value in table.items() if value is not None}
     return scene_from_dict({"domain": {"kind": domain, "size": [2.0, 1.0]}, "gas": [table]}).disks
 
 
@@ -155,6 +156,29 @@ def test_radii_follow_their_law(domain):
     assert (values == 0.02).mean() == pytest.approx(0.25, abs=4 * math.sqrt(0.25 * 0.75 / 300))
     # not sorted: that the largest are placed first does not show
     assert not np.all(np.diff(uniform) <= 0.0)
+
+
+@pytest.mark.parametrize(("domain", "share"), [({"kind": "open"}, 0.5), ({"kind": "periodic", "size": [3.0, 12**0.5]}, 0.8)])
+def test_equal_disks_grow_from_random_places_or_beyond_disorder_from_their_lattice(domain, share):
+    region = [0, 0, 3, 12**0.5]
+    gas = {"count": 12, "packing_fraction": share, "arrangement": "compressed", "region": region, "seed": 1}
+    disks = scene_from_dict({"domain": domain, "gas": [gas]}).disks
+    assert math.pi * (disks.radius**2).sum() == pytest.approx(share * 3 * 12**0.5)
+
+
+def test_disks_of_a_law_too_dense_to_be_dropped_are_refused():
+    with pytest.raises(SceneError, match=r"gas\[0\].*packing fraction 0\.[78]"):
+        spread({"uniform": [0.1, 0.11]}, count=48)
+
+
+def test_so_many_disks_too_dense_to_be_dropped_are_refused_at_once():
+    with pytest.raises(SceneError, match=r"packing fraction 0\.6"):
+        spread(None, count=2000, packing_fraction=0.6)
+
+
+def test_a_single_disk_of_a_thermal_gas_moves():
+    gas = {"count": 1, "radius": 0.1, "temperature": 1.0, "seed": 1}
+    assert scene_from_dict({"domain": {"kind": "box", "size": [1.0, 1.0]}, "gas": [gas]}).disks.velocity.any()
 
 
 def test_sizes_come_dense_too():

@@ -241,6 +241,8 @@ def test_a_log_holds_the_text_of_a_law_and_never_runs_it(laws, tmp_path, suffix)
     assert log.scene == scene
     assert (log.scene.law.source, log.scene.law.function) == (TEXT, None)
     assert len(log) == 1
+    with pytest.raises(es.SceneError, match=r"the law laws.py:soft is not run from a file that only holds its text"):
+        log.scene.law(1.0, 4.0, 0.0, 1.0)
     with pytest.raises(es.EventsimError, match=r"the law laws.py:soft is not run from a file that only holds its text"):
         es.simulate(log.scene, engine="reference")
 

@@ -24,7 +24,9 @@ from eventsim.scene import (
     feature_names,
     wall_names,
 )
-from eventsim.scene.scene import touching_by_rounding
+from eventsim.scene.disks import named_species
+from eventsim.scene.roughness import TangentialRestitution, as_tangential
+from eventsim.scene.scene import difference, touching_by_rounding
 
 ONE = Disks([[1, 1]], radius=0.5)
 
@@ -50,6 +52,9 @@ def test_disks_are_read_only_copies_with_defaults():
         ({"position": [[1, 2]], "velocity": [1, 2], "radius": 1}, "velocity has the shape"),
         ({"position": [[1, 2]], "radius": [1, 2]}, "radius has the shape"),
         ({"position": [["a", 2]], "radius": 1}, "every entry must be a number"),
+        ({"position": [[1, 2]], "radius": 10**400}, "radius: an entry is too large for a number"),
+        ({"position": [[1, 2]], "radius": 1, "species": [3]}, "species: every entry must be a text"),
+        ({"position": [[1, 2]], "radius": 1, "species": ["a", "b"]}, r"has the shape \(2,\): must be \(1,\) or a single text"),
     ],
 )
 def test_disks_of_wrong_shape_are_refused(arguments, words):
@@ -94,11 +99,68 @@ def test_restitution_may_be_a_number_a_mapping_or_itself(given):
         ({"contact_duration": -1.0}, "at least 0"),
         ({"start_time": math.inf}, "finite"),
         ({"until": "soon"}, "must be a number"),
+        ({"disks": 3}, r"disks = 3: must be Disks\(position, velocity, radius, mass\)"),
+        ({"name": 3}, "name = 3: must be a text"),
+        ({"restitution": Restitution(pairs=[("a", "b", 2.0)])}, "restitution.pairs.a-b = 2.0: must be from 0 to 1"),
     ],
 )
 def test_a_part_of_the_wrong_kind_is_refused_in_a_sentence(parts, words):
     with pytest.raises(SceneError, match=words):
         Scene(**({"disks": ONE, "domain": Open()} | parts))
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Circle(centre=(0, 0), radius=1), "no keyword 'centre' \\(did you mean 'center'\\?\\); it takes center, "),
+        (lambda: Circle((0, 0)), "Circle lacks radius; it takes center, radius"),
+        (lambda: Circle(3, 1), "wall.center = 3: must be two numbers, x and y"),
+        (lambda: Box((4, 3), walls=3), 'domain.walls = 3: must be a table of sides, as {"bottom": {"restitution": 0.5}}'),
+        (lambda: Box((4, 3), walls={"top": 3}), "domain.walls.top = 3: must be a table with restitution, shaking"),
+        (lambda: Restitution(pairs=3), 'restitution.pairs = 3: must be a table of pairs of species, as {"a-b" = 0.5}'),
+        (lambda: TangentialRestitution("much"), "tangential_restitution.pair = 'much': must be a number"),
+        (lambda: as_tangential({"pear": 1}), r"tangential_restitution.pear: unknown key \(known: pair, wall\)"),
+    ],
+)
+def test_a_part_that_cannot_be_made_says_what_it_takes(make, words):
+    with pytest.raises(SceneError, match=words):
+        make()
+
+
+def test_too_many_values_are_an_error_of_the_call():
+    with pytest.raises(TypeError, match="positional arguments"):
+        Circle((0, 0), 1, "ring", 3, 4, 5, 6, 7)
+
+
+def test_a_scene_says_in_short_what_it_has():
+    walls, shares = [Segment((3, 0), (3, 1))], {"pair": 0.5}
+    scene = Scene(ONE, Box((4, 3)), walls, gravity=(0, -1), restitution=shares, name="ramp", law=lambda approach: 0.5)
+    assert repr(scene).startswith("Scene(name: ramp, 1 disk, domain: box 4 x 3, walls: 1, gravity: (0.0, -1.0), restitution: ")
+    assert repr(scene).endswith("<lambda>)")
+    assert repr(Scene(ONE, Open())) == "Scene(1 disk, domain: open)"
+    assert Scene(ONE, Open(), name="plane")._repr_html_().count("<td>plane</td>") == 1
+
+
+def test_the_first_difference_of_two_scenes_is_told():
+    scene = Scene(ONE, Box((4, 3)), until=1.0)
+    two = Disks([[1, 1], [3, 2]], radius=0.5)
+    assert difference(scene, dataclasses.replace(scene, name="other")) == "none"
+    assert difference(scene, dataclasses.replace(scene, name="other", until=2.0)) == "its until is 1.0, not 2.0"
+    assert difference(scene, dataclasses.replace(scene, disks=two)) == "it has 1 disks, not 2"
+    moved = Disks([[1, 1.5]], radius=0.5)
+    assert difference(scene, dataclasses.replace(scene, disks=moved)) == "its disks begin elsewhere, or are others"
+
+
+def test_disks_are_equal_to_disks_alone():
+    assert ONE != 3
+    assert Disks([[1, 1]], radius=0.5) == ONE
+
+
+def test_species_without_names_are_numbered_in_the_order_of_the_scene():
+    disks = Disks([[1, 1], [2, 1], [3, 1], [4, 1], [5, 1]], radius=[0.5, 0.25, 0.5, 0.25, 0.125], species=["", "b", "", "b", "b"])
+    names, number = named_species(disks)
+    assert names == ("0", "b")
+    assert number.tolist() == [0, 1, 0, 1, 1]
 
 
 def test_walls_are_named_by_their_place_and_edges_by_their_chain():
@@ -139,6 +201,13 @@ def test_an_overlap_of_a_few_ulp_counts_as_touching_and_is_told(domain):
         Scene(Disks([[1e6, 0.5], [1e6 + 1 - 2e-9, 0.5]], radius=0.5), domain)
 
 
+def test_the_search_for_overlaps_ends_when_there_are_enough(monkeypatch):
+    monkeypatch.setattr("eventsim.scene.overlaps.ENOUGH", 10)
+    monkeypatch.setattr("eventsim.scene.validate.ENOUGH", 10)
+    with pytest.raises(SceneError, match=r"and at least \d+ more pairs of disks that overlap"):
+        Scene(Disks(np.full((40, 2), 1.0), radius=0.5), Open())
+
+
 def test_touching_exactly_is_no_overlap():
     scene = Scene(Disks([[0.5, 0.5], [1.5, 0.5]], radius=0.5), Box((2, 1)), [Segment((0, 1), (2, 1), name="lid")])
     assert touching_by_rounding(scene) == []
@@ -175,6 +244,11 @@ def test_only_the_drawn_part_of_a_circle_is_an_arc(center, clear):
 def test_a_container_must_fit_into_the_period():
     with pytest.raises(SceneError, match="reach beyond the period in x"):
         Scene(ONE, Channel((2, 4)), [Circle((1, 2), 1.5)])
+
+
+def test_a_circle_in_the_middle_of_a_period_has_no_images():
+    scene = Scene(ONE, Periodic((4, 3)), [Circle((1.5, 1.5), 1.5)])
+    assert scene.walls[0].bounds() == ((0, 0), (3, 3))
 
 
 def test_a_wall_must_not_stretch_over_too_many_periods():
