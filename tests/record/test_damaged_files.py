@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from eventsim.errors import LogError, LogWarning
@@ -85,6 +88,7 @@ def test_a_log_cut_at_the_end_of_a_line_is_refused(tmp_path: Path) -> None:
         ("pair", "pear", "line .*kind 'pear' is unknown"),
         ("pair,0,3", "pair,0,9", "column b names no disk"),
         ("pair,0,3", "pair,0.5,3", "line "),
+        ("pair,0,3", "pair,0", "line .*values were expected"),
         ("pair,0,3", "pair,0,99999999999", "line .*too large"),
         ("\n0,", "\n1,", "row 0: events are not numbered"),
         ("event,time", "event,tim", "columns are not those"),
@@ -100,6 +104,53 @@ def test_a_damaged_log_is_refused_with_the_place(tmp_path: Path, old: str, new: 
     (tmp_path / "log.csv").write_text(text.replace(old, new, 1))
     with pytest.raises(LogError, match=words):
         load_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda line: "[" + line + "]", "one object was expected"),
+        (lambda line: line + ", " + line, "one object was expected"),
+        (lambda line: re.sub(r'"a": \d', '"a": "x"', line), "a whole number was expected"),
+        (lambda line: line.replace('"a": ', '"b": '), "the key 'a' is missing"),
+    ],
+)
+def test_a_line_that_is_no_row_is_refused_with_its_number(tmp_path: Path, change: Callable[[str], str], words: str) -> None:
+    path = tmp_path / "log.jsonl"
+    random_log(20).save(path)
+    lines = path.read_text().splitlines()
+    lines[5] = change(lines[5])
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(LogError, match=rf"log.jsonl: line 6: not a row of an event log \({words}"):
+        load_log(path)
+
+
+def test_tables_that_are_no_logs_are_refused_with_what_they_lack(tmp_path: Path) -> None:
+    log = random_log(20)
+    log.save(tmp_path / "log.npz")
+    with np.load(tmp_path / "log.npz") as arrays:
+        kept = dict(arrays)
+    np.savez(tmp_path / "short.npz", **{**kept, "a": kept["a"][:-1]})
+    with pytest.raises(LogError, match=r"short.npz: not an event log: its columns differ in length"):
+        load_log(tmp_path / "short.npz")
+    del kept["eventsim"]
+    np.savez(tmp_path / "other.npz", **kept)
+    with pytest.raises(LogError, match=r"other.npz: not an event log: there is no array named eventsim"):
+        load_log(tmp_path / "other.npz")
+    parquet = pytest.importorskip("eventsim.record.files.parquet")
+    parquet.write_plain_table(tmp_path / "other.parquet", {"a": [1, 2, 3], "b": [1, "x", None]}, {"made": "by hand"})
+    assert parquet.pq.read_table(tmp_path / "other.parquet").to_pydict() == {"a": [1, 2, 3], "b": ["1", "x", None]}
+    with pytest.raises(LogError, match=r"other.parquet: not an event log: its metadata have no key eventsim"):
+        load_log(tmp_path / "other.parquet")
+
+
+def test_what_others_wrote_is_not_replaced_by_a_log(tmp_path: Path) -> None:
+    (tmp_path / "mine.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(LogError, match=r"mine.csv: holds no event log that a new one may replace; name another file"):
+        open_sink(tmp_path / "mine.csv", provenance())
+    assert (tmp_path / "mine.csv").read_text() == "a,b\n1,2\n"
+    with pytest.raises(LogError, match=r"ramp.toml is a scene; eventsim run .*ramp.toml --log .*ramp.csv writes its log"):
+        load_log(tmp_path / "ramp.toml")
 
 
 @pytest.mark.parametrize("name", ["log", "log.txt", "log.csv.gz"])

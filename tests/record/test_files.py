@@ -85,6 +85,23 @@ def test_a_compact_log_keeps_what_cannot_be_computed(tmp_path: Path, suffix: str
     assert load_log(tmp_path / f"again{suffix}").provenance == again.provenance
 
 
+@pytest.mark.parametrize("suffix", LOGS)
+def test_an_infinite_impulse_comes_back(tmp_path: Path, suffix: str) -> None:
+    rows = random_rows(6)
+    rows["impulse"] = [np.inf, -np.inf, 1.0, np.nan, 0.0, np.inf]
+    EventLog(provenance(), rows).save(tmp_path / f"log{suffix}")
+    assert load_log(tmp_path / f"log{suffix}").rows.tobytes() == rows.tobytes()
+
+
+def test_a_long_parquet_log_has_groups_of_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("eventsim.record.files.parquet.GROUP", 64)
+    log = random_log(200)
+    log.save(tmp_path / "log.parquet")
+    groups = pyarrow.parquet.ParquetFile(tmp_path / "log.parquet").metadata
+    assert [groups.row_group(k).num_rows for k in range(groups.num_row_groups)] == [64, 64, 64, 8]
+    assert load_log(tmp_path / "log.parquet").rows.tobytes() == log.rows.tobytes()
+
+
 def test_a_csv_log_is_a_table_for_pandas(tmp_path: Path) -> None:
     log = random_log(50)
     log.save(tmp_path / "log.csv")

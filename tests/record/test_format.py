@@ -111,6 +111,17 @@ def test_a_log_that_grows_vouches_for_its_scene(tmp_path: Path, suffix: str) -> 
         es.load_log(part)
 
 
+@pytest.mark.parametrize("suffix", LOGS)
+def test_a_log_vouches_for_the_species_of_its_disks(tmp_path: Path, suffix: str) -> None:
+    path, scene = tmp_path / f"log{suffix}", table()
+    named = replace(scene, disks=replace(scene.disks, species=["a", "b", "a"]))
+    es.simulate(named, until=6.0, engine="reference", log=path)
+    assert es.load_log(path).scene == named
+    rewritten(path, lambda data: data["scene"]["disk"][1].update(species="c"))
+    with pytest.raises(LogError, match="its scene is not the one of its run"):
+        es.load_log(path)
+
+
 @pytest.mark.parametrize("name", COLUMNS)
 def test_every_column_that_a_file_has_is_vouched_for(name: str) -> None:
     one, other = random_rows(5), random_rows(5)

@@ -11,7 +11,7 @@ import pytest
 
 from eventsim.errors import LogError, LogWarning
 from eventsim.record import Ending
-from eventsim.record.files import Mark, continued_sink, open_log, open_sink
+from eventsim.record.files import Mark, claim, continued_sink, open_log, open_sink
 from eventsim.record.files.journal import ROOM
 from eventsim.run import load_log
 from eventsim.suffixes import LOGS
@@ -164,6 +164,70 @@ def test_what_is_not_the_log_of_a_run_is_not_continued(tmp_path: Path, suffix: s
     with pytest.raises(LogError, match=r"holds 4 .*holds 20 rows of 21"):
         continued_sink(path, log.provenance, False, Mark(21, ()))
     assert load_log(path).rows.tobytes() == log.rows.tobytes()
+
+
+@pytest.mark.parametrize("suffix", LOGS)
+def test_a_run_that_had_come_to_no_row_begins_anew_where_its_log_is_gone(tmp_path: Path, suffix: str) -> None:
+    log = random_log(20)
+    sink = continued_sink(tmp_path / f"log{suffix}", log.provenance, False, Mark(0, ()))
+    sink.write(log.rows)
+    sink.close(log.provenance.ending)
+    sink.leave()  # of what is whole nothing is lost
+    assert load_log(tmp_path / f"log{suffix}").rows.tobytes() == log.rows.tobytes()
+
+
+@pytest.mark.parametrize("suffix", TEXT)
+def test_a_part_without_its_scene_is_not_continued(tmp_path: Path, suffix: str) -> None:
+    (tmp_path / f"log{suffix}.part").write_text("no scene\n" * 9)
+    with pytest.raises(LogError, match=r"log.*part: not an event log: the first line does not hold its scene"):
+        continued_sink(tmp_path / f"log{suffix}", provenance(), False, Mark(5, ()))
+
+
+def test_a_part_that_is_a_directory_gives_way_to_a_text_log(tmp_path: Path) -> None:
+    (tmp_path / "log.csv.part").mkdir()
+    log = random_log(5)
+    log.save(tmp_path / "log.csv")
+    assert load_log(tmp_path / "log.csv").rows.tobytes() == log.rows.tobytes()
+
+
+@pytest.mark.parametrize("suffix", LOGS)
+def test_what_was_written_before_a_disk_is_full_can_be_read(
+    tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    log = random_log(20)
+    sink = open_sink(tmp_path / f"log{suffix}", log.provenance)
+    sink.write(log.rows)
+    with monkeypatch.context() as patched:
+        patched.setattr("os.replace", full)
+        with pytest.raises(LogError, match=r"written \(No space left on device\); .*\.part keeps what was written before"):
+            sink.close(log.provenance.ending)
+    sink.leave()
+    assert load_log(tmp_path / f"log{suffix}.part").rows.tobytes() == log.rows.tobytes()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there an open file keeps its name")
+def test_a_claim_outlives_that_its_file_is_removed_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, lock, tries = tmp_path / "log.csv.lock", claim._lock, []
+
+    def removed(descriptor: int) -> bool:
+        if not tries:
+            path.unlink()  # whoever had the claim before ends just now
+        tries.append(descriptor)
+        return lock(descriptor)
+
+    monkeypatch.setattr(claim, "_lock", removed)
+    mine = claim.Claim(path)
+    mine.take(make=True)
+    assert len(tries) == 2
+    assert path.exists()
+    with pytest.raises(LogError, match="another run is writing this log"):
+        claim.Claim(path)
+    mine.remove()
+    mine.remove()  # there is nothing left to remove
+    assert not path.exists()
 
 
 @pytest.mark.parametrize("suffix", LOGS)

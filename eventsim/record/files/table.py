@@ -65,8 +65,6 @@ def codes_of(texts: Column, labels: Column, name: str) -> Column:
 def integers_of(values: Sequence[object] | Column, dtype: np.dtype[Any]) -> Column:
     """Return integers of the wanted width; ValueError for fractions, texts and numbers that are too large."""
     exact = np.asarray(values)
-    if len(exact) == 0:
-        return np.empty(0, dtype=dtype)
     if exact.dtype.kind not in "iu":
         raise ValueError("a whole number was expected")
     narrow = exact.astype(dtype, copy=False)

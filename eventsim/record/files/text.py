@@ -95,11 +95,11 @@ class TextSink(FileSink):
         self._file.flush()
 
     def _end_of_row(self, rows: int) -> int:
-        """Where so many rows end; LogError where there are fewer."""
+        """Where so many rows, at least one, end; LogError where there are fewer."""
         assert self._file is not None
         headed = self.header().count("\n")
         place, left = self._file.tell(), headed + rows
-        while left > 0:
+        while True:
             chunk = self._file.read(CHUNK)
             found = chunk.count(b"\n")
             if not chunk:
@@ -111,7 +111,6 @@ class TextSink(FileSink):
                 for _ in range(left):
                     at = chunk.index(b"\n", at) + 1
                 return place + at
-        return place
 
     def _append(self, rows: Rows) -> None:
         if len(rows):
