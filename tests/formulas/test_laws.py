@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 import eventsim as es
-from eventsim.formulas.laws import LAWS, Elastic, Inelastic, Own, TimeOfContact, Yielding, law_of
+from eventsim.formulas.laws import LAWS, Elastic, Inelastic, Own, TimeOfContact, Yielding, law_of, wrong_share
 from eventsim.record.events import State
 from eventsim.replay.states import write_states
 from eventsim.scene.contact_law import law_of_scene
@@ -125,6 +125,44 @@ def test_stepped_engines_and_tangent_maps_refuse_a_law_that_they_do_not_know():
         es.simulate(scene, until=1.0, engine="stepped")
     trust = es.simulate(scene, until=1.0, engine="reference", trust=True).trust
     assert "no tangent map" in trust.reason
+
+
+@pytest.mark.parametrize(
+    ("keys", "beyond", "no_tangent"),
+    [
+        ({}, None, None),
+        ({"tangential_restitution": 0.5}, "disks that spin", None),
+        ({"walls": [es.Segment((5.0, 0.0), (5.0, 1.0), shaking=0.5)]}, "walls that heat, shake or slide", None),
+        (
+            {"walls": [es.Segment((5.0, 0.0), (5.0, 1.0), temperature=0.5)], "seed": 1},
+            "walls that heat, shake or slide",
+            "walls draw velocities by chance, whatever these were before",
+        ),
+        ({"walls": [es.Segment((5.0, 0.0), (5.0, 1.0), restitution=0.5)]}, "restitution of single walls or species", None),
+    ],
+)
+def test_what_others_do_not_know_of_a_law_is_told(keys, beyond, no_tangent):
+    law = law_of_scene(es.Scene(es.Disks([[0.0, 0.0]], radius=0.5), es.Open(), **keys))
+    assert (law.beyond_steps, law.no_tangent) == (beyond, no_tangent)
+    words = law.rough_words(str)
+    assert words.startswith("; tangential restitution 0.5 between disks, 0.5 at walls") == (law.rough is not None)
+    assert ("; walls heat, by chance, at kT = 0.5" in words) == law.heats
+
+
+@pytest.mark.parametrize(
+    ("share", "why"),
+    [
+        ("half", "is no number that a contact can have"),
+        (math.nan, "is no number that a contact can have"),
+        (math.inf, "is no number that a contact can have"),
+        (-1.5, "is an impulse that pulls"),
+        (-0.5, "leaves disks approaching"),
+        (0.0, None),
+        (2, None),
+    ],
+)
+def test_what_a_law_of_ones_own_cannot_mean_is_told(share, why):
+    assert wrong_share(share) == why
 
 
 def test_a_wall_and_a_side_of_the_domain_have_shares_of_their_own():

@@ -8,8 +8,10 @@ from fractions import Fraction
 import pytest
 
 from eventsim.formulas import clock, crossing, impulse, motion
+from eventsim.formulas.image import nearest_image
 from eventsim.formulas.laws import Numbers
 from eventsim.formulas.real import NEVER, is_float, sqrt
+from eventsim.formulas.roots import Moment, quadratic_root
 from eventsim.formulas.walls import face as faces
 
 INF = math.inf
@@ -295,6 +297,41 @@ def test_a_slanted_face_is_met_at_its_distance():
 )
 def test_a_wall_gives_the_mass_times_the_change_of_velocity(mass, du, dw, expected):
     assert impulse.wall_impulse(mass, du, dw) == expected
+
+
+@pytest.mark.parametrize("power", [-800, 0, 800])
+def test_what_a_wall_gives_is_known_where_squares_are_no_floats(power):
+    size = 2.0**power
+    assert impulse.wall_impulse(2.0, 3.0 * size, -4.0 * size) == 10.0 * size
+
+
+def test_where_there_is_no_direction_there_is_no_speed_along_it():
+    assert impulse.along(3.0, 4.0, 10.0) == (6.0, 8.0)
+    assert impulse.along(0.0, 0.0, 10.0) == (0.0, 0.0)
+    assert impulse.approach_speed(3.0, 4.0, -5.0, 0.0) == 3.0
+    assert impulse.approach_speed(0.0, 0.0, -5.0, 0.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("difference", "period", "image"),
+    [(0.75, 1.0, -0.25), (-0.75, 1.0, 0.25), (0.5, 1.0, 0.5), (-0.5, 1.0, -0.5), (0.75, None, 0.75), (0.75, INF, 0.75)],
+)
+def test_the_nearest_image_is_within_half_a_period(difference, period, image):
+    assert nearest_image(difference, period) == image
+
+
+@pytest.mark.parametrize(
+    ("parabola", "side", "moment"),
+    [
+        ((1, -3, 8), -1, Moment(Fraction(3), -1, Fraction(1))),
+        ((-1, 3, -8), -1, Moment(Fraction(3), 1, Fraction(1))),
+        ((1, 0, 8), 1, None),
+        ((0, 2, -8), 1, Moment(Fraction(2))),
+        ((0, 0, 8), 1, None),
+    ],
+)
+def test_exact_roots_of_a_parabola_and_of_a_line(parabola, side, moment):
+    assert quadratic_root(*map(Fraction, parabola), side) == moment
 
 
 def test_what_a_wall_gives_an_immovable_disk_is_not_known():

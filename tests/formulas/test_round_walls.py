@@ -1,6 +1,7 @@
 """Posts, containers and arcs on numbers whose results are exact; along parabolas to some last bits."""
 
 import math
+from fractions import Fraction
 
 import pytest
 from mpmath import mp, mpf
@@ -9,6 +10,8 @@ from eventsim.formulas.contact import inner_delay
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.walls.arc import arc, arc_delay, arc_side, on_arc
 from eventsim.formulas.walls.container import Container, container_delay
+from eventsim.formulas.walls.ellipse import Ellipse
+from eventsim.formulas.walls.face import face
 from eventsim.formulas.walls.post import Post, post_delay
 
 BITS = 2.0**-45
@@ -261,3 +264,55 @@ def test_the_time_of_a_nearly_flat_arc_is_known_as_well_as_places(sagitta, heigh
             true = (-b - met * mp.sqrt(b * b - a * c)) / a
         assert outside == side
         assert abs(delay - true) < 2.0**-52
+
+
+SLOPE = face(1.0, 2.0, 5.0, 5.0)
+MANY_DIGITS = [
+    # shape, straight flight, radius, side met last -> delay, side
+    (SLOPE, (-1.5, 9.5, 1.5, -2.0), 2.5, 0, (2.0, 1)),
+    (SLOPE, (20.0, 11.0, 1.5, -2.0), 2.5, 0, (NEVER, -1)),
+    (TOP, (2.0, 10.0, 0.0, -2.0), 1.0, 0, (2.5, 1)),
+    (TOP, (2.0, -1.0, 0.0, 2.0), 1.0, 0, (2.0, -1)),
+    (Container(2.0, -1.0, 5.0), (2.0, -1.0, 0.0, 2.0), 1.0, -1, (2.0, -1)),
+    (Post(1.0, 2.0), (-8.0, -10.0, 3.0, 4.0), 5.0, 0, (2.0, 1)),
+    (Ellipse(0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 1.0, 2.0), (0.0, 0.0, 1.0, 0.0), 0.0, 0, (2.0, -1)),
+]
+
+
+@pytest.mark.parametrize(("shape", "flight", "radius", "met", "expected"), MANY_DIGITS)
+def test_shapes_are_met_alike_in_numbers_of_more_digits(shape, flight, radius, met, expected):
+    with mp.workdps(40):
+        delay, side = shape.in_numbers(mpf).delay(*map(mpf, flight), None, None, mpf(radius), met)
+        assert side == expected[1]
+        assert delay == expected[0] or abs(delay - expected[0]) < mpf(10) ** -30
+
+
+def test_a_disk_on_a_wall_in_numbers_of_more_digits_is_there():
+    for shape in (SLOPE, TOP):
+        assert shape.in_numbers(mpf).touching(1, mpf(3), mpf(8), mpf(2)) == (3, 8)
+
+
+def test_the_middle_of_a_container_and_of_an_arc_is_near_nothing():
+    assert Container(2.0, -1.0, 5.0).nearest(2.0, -1.0) == (0.0, 0.0, NEVER)
+    assert Container(2.0, -1.0, 5.0).nearest(2.0, 2.0) == (0.0, -1.0, 2.0)
+    assert TOP.nearest(2.0, -1.0) == (0.0, 0.0, NEVER)
+    assert TOP.nearest(2.0, -5.0) == (0.0, 0.0, NEVER)  # beside it
+    assert TOP.nearest(2.0, 2.0) == (0.0, -1.0, 2.0)
+    assert TOP.nearest(2.0, 5.0) == (0.0, 1.0, 1.0)
+    assert Post(1.0, 2.0).nearest(1.0, 2.0) == (0.0, 0.0, NEVER)
+    assert Post(1.0, 2.0).nearest(4.0, 6.0) == (0.6, 0.8, 5.0)
+
+
+def test_the_centre_of_an_arc_is_laid_onto_no_place_of_it():
+    assert TOP.touching(-1, 2.0, -1.0, 1.0) == (2.0, -1.0)
+    assert TOP.touching(-1, 2.0, 3.0, 5.0) == (2.0, 3.0)  # of a disk as large as the circle
+
+
+def test_exact_times_of_contacts_with_an_arc_and_a_slope():
+    one, none = Fraction(1), Fraction(0)
+    level = (none, none, none)
+    rising = TOP.moment((Fraction(2), none, none), (-one, 2 * one, none), -1, 1.0)
+    assert rising is not None
+    assert (rising.place, rising.side * math.isqrt(int(rising.square))) == (0, 2)
+    assert TOP.moment(level, (none, one, -one), -1, 1.0) is None  # along a parabola
+    assert SLOPE.moment((none, 4 * one, none), (none, 3 * one, none), 1, 1.0) is None  # along the slope
