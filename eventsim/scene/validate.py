@@ -371,8 +371,7 @@ def _at(disks: Disks, index: int) -> str:
 
 
 def _extent(domain: Domain) -> str:
-    """The region of a domain in words."""
-    if isinstance(domain, Open):
-        return "the open plane"
+    """The region of a domain that has sides, in words."""
+    assert domain.size is not None
     (x, y), (width, height) = domain.origin, domain.size
     return f"[{x}, {x + width}] x [{y}, {y + height}]"

@@ -719,6 +719,15 @@ def test_a_setting_beyond_the_last_table_says_which_there_are(tmp_path, setting,
     assert words in str(caught.value)
 
 
+def test_a_whole_disk_that_settings_add_and_that_overlaps_is_told_like_any(tmp_path):
+    path = tmp_path / "ramp.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        load_scene(path, overrides=["disk.1.position=[0.3, 0.8]", "disk.1.radius=0.01"])
+    assert "disk[0] and disk[1] overlap" in str(caught.value)
+    assert "typed: disk.1.position=[0.3, 0.8]" in str(caught.value)
+
+
 def test_a_disk_may_be_added_by_settings(tmp_path):
     path = tmp_path / "ramp.toml"
     path.write_text(SCENE, encoding="utf-8")

@@ -176,6 +176,12 @@ def test_so_many_disks_too_dense_to_be_dropped_are_refused_at_once():
         spread(None, count=2000, packing_fraction=0.6)
 
 
+def test_more_disks_than_python_compresses_ask_for_the_compiler(monkeypatch):
+    monkeypatch.setattr("eventsim.scene.compressed.has_compiler", lambda: False)
+    with pytest.raises(SceneError, match=r"301 disks need the compiler \(plain Python does up to 300\): pip install"):
+        spread(0.01, "compressed", count=301)
+
+
 def test_a_single_disk_of_a_thermal_gas_moves():
     gas = {"count": 1, "radius": 0.1, "temperature": 1.0, "seed": 1}
     assert scene_from_dict({"domain": {"kind": "box", "size": [1.0, 1.0]}, "gas": [gas]}).disks.velocity.any()

@@ -27,6 +27,8 @@ from eventsim.scene import (
 from eventsim.scene.disks import named_species
 from eventsim.scene.roughness import TangentialRestitution, as_tangential
 from eventsim.scene.scene import difference, touching_by_rounding
+from eventsim.scene.stage import stage_of
+from eventsim.scene.walls import Ellipse
 
 ONE = Disks([[1, 1]], radius=0.5)
 
@@ -149,6 +151,36 @@ def test_the_first_difference_of_two_scenes_is_told():
     assert difference(scene, dataclasses.replace(scene, disks=two)) == "it has 1 disks, not 2"
     moved = Disks([[1, 1.5]], radius=0.5)
     assert difference(scene, dataclasses.replace(scene, disks=moved)) == "its disks begin elsewhere, or are others"
+
+
+def test_one_name_is_that_of_all_disks():
+    disks = Disks([[1, 1], [3, 1]], radius=0.5, species="a")
+    assert list(disks.species) == ["a", "a"]
+
+
+def test_smooth_points_may_have_spins_that_nothing_changes():
+    points = Disks([[1, 1]], radius=0.0, spin=2.0)
+    assert Scene(points, Open(), tangential_restitution=-1).disks.spins().tolist() == [2.0]
+
+
+def test_a_side_may_be_given_as_it_is_kept():
+    box = Box((4, 3), walls={"left": {"shaking": 1.0}, "top": {"restitution": 0.5}})
+    assert Box((4, 3), walls=dict(box.walls)) == Box((4, 3), walls=box.walls) == box
+
+
+def test_an_arc_whose_bulge_is_below_the_digits_of_its_place_is_told():
+    near, far = Box((4, 3)), Box((2e9, 3), origin=(-1e9, 0))
+    arc = Arc((0, 2), (1, 2 + 1e-6), (2, 2), name="bow")
+    assert len(stage_of(Scene(ONE, near, [arc])).surfaces) > 4
+    with pytest.raises(SceneError, match=r"its points are on a line.*: up to 1e\+09 away \(leave less room"):
+        stage_of(Scene(ONE, far, [arc]))
+
+
+@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.0, 2.0), (1.0, 1.0), (1.0, 1e-3)])
+def test_the_perimeter_of_an_ellipse_is_that_of_a_polygon_of_many_corners(a, b):
+    angle = np.linspace(0.0, 2.0 * np.pi, 100_001)
+    sides = np.hypot(np.diff(a * np.cos(angle)), np.diff(b * np.sin(angle)))
+    assert Ellipse((3, 4), (a, b)).length() == pytest.approx(sides.sum(), rel=1e-7)
 
 
 def test_disks_are_equal_to_disks_alone():
