@@ -310,9 +310,7 @@ def test_the_centre_of_an_arc_is_laid_onto_no_place_of_it():
 
 def test_exact_times_of_contacts_with_an_arc_and_a_slope():
     one, none = Fraction(1), Fraction(0)
-    level = (none, none, none)
     rising = TOP.moment((Fraction(2), none, none), (-one, 2 * one, none), -1, 1.0)
     assert rising is not None
     assert (rising.place, rising.side * math.isqrt(int(rising.square))) == (0, 2)
-    assert TOP.moment(level, (none, one, -one), -1, 1.0) is None  # along a parabola
     assert SLOPE.moment((none, 4 * one, none), (none, 3 * one, none), 1, 1.0) is None  # along the slope
