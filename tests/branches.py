@@ -1,7 +1,7 @@
 """Which branches of the heart the tests take, kernels as plain Python: python -m tests.branches [PYTEST ARGUMENTS ...].
 
-Without arguments it runs the quick tests of formulas, scene, record and engines, on all cores.  Left out is what numba alone
-can run.
+Without arguments it runs the quick tests of formulas, scene, record and engines, and of the oracle and of points, on all cores.
+Left out is what numba alone can run.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from typing import Any
 ROOT = Path(__file__).parent.parent
 
 FOLDERS = ("formulas", "scene", "record", "engines")
-COMPILED = ("numba_compiler.py", "numba_memory.py")
+TESTS = (*FOLDERS, "oracle", "points")
+"""Folders of tests that run.  Measured are the first ones."""
+
+COMPILED = ("numba_compiler.py", "numba_law.py", "numba_memory.py", "numba_parts.py")
 AIM = 0.95
 WORST, WAYS = 30, 12
 """Files, and branches of each (from line to line), that are named."""
@@ -55,7 +58,7 @@ def measured(arguments: list[str]) -> dict[str, Any]:
 
 def main() -> None:
     """Print the share of branches and of lines, folder by folder, and the files that have the most to be looked at."""
-    found = measured(sys.argv[1:] or [f"tests/{name}" for name in FOLDERS])
+    found = measured(sys.argv[1:] or [f"tests/{name}" for name in TESTS])
     sums: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0, 0])
     for name, told in found.items():
         counts = [told["summary"][key] for key in ("covered_branches", "num_branches", "covered_lines", "num_statements")]
