@@ -148,6 +148,12 @@ def test_what_is_done_for_many_disks_changes_no_bit(
     assert_same(stage_of(gas), Stop(events=12_000))
 
 
+@pytest.mark.parametrize("domain", ["periodic", "box"])
+def test_the_waiting_room_of_many_disks_changes_no_bit(domain: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan, "MANY_DISKS", 0)
+    assert_same(stage_of(lattice_gas(9, 9, 1.25, np.random.default_rng(6), domain, True, 0.0)), Stop(events=MOST or 3000))
+
+
 def uneven() -> es.Scene:
     """A gas with many ties, some disks of which are 2**20 times as heavy as the others, in a box with a slanted wall."""
     gas = lattice_gas(8, 8, 1.25, np.random.default_rng(9), "box", True, 0.0)
