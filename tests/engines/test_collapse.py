@@ -9,6 +9,7 @@ import pytest
 
 import eventsim as es
 from eventsim.engines.collapse import diagnosis
+from eventsim.engines.endless import is_endless
 from eventsim.engines.reference.instants import MOST_AT_ONCE, instant_of
 from eventsim.scene.stage import stage_of
 from tests.engines.scenes import lattice_gas
@@ -110,6 +111,20 @@ def test_a_series_is_called_endless_below_the_critical_restitution_and_never_abo
     for make, critical in ((wall_and_two, CRITICAL_AT_WALL), (three, CRITICAL_OF_THREE)):
         assert es.simulate(make(critical - below), until=1e6, engine="reference").stopped == "collapse"
         assert es.simulate(make(critical + below), until=1e6, engine="reference").stopped in ("digits", "quiet")
+
+
+def test_whether_a_series_has_an_end_is_told_only_where_its_rows_tell():
+    scene = es.gallery("collapse", restitution=0.05)
+    stage, rows = stage_of(scene), es.simulate(scene, engine="reference", log=True).log.rows
+    assert is_endless(rows, stage)
+    assert is_endless(rows[:5], stage) is None  # no rounds yet
+    for mass in ([1.0, 0.0, 1.0], [math.inf] * 3):  # no inverse, and nothing that moves
+        assert is_endless(rows, dataclasses.replace(stage, mass=np.array(mass))) is None
+    still = rows.copy()
+    for name in ("vxa", "vya", "vxb", "vyb"):
+        still[name] = 1.0
+    assert is_endless(still, stage) is None  # contacts that change nothing have no normals
+    assert is_endless(rows[-6:], stage)
 
 
 def test_the_restitution_of_the_species_that_meet_tells_whether_a_series_ends():

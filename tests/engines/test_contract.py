@@ -9,7 +9,7 @@ import eventsim as es
 from eventsim import engines
 from eventsim.engines import TABLE, Engine
 from eventsim.engines.base import Motion, Session, Stop
-from eventsim.engines.options import words_of
+from eventsim.engines.options import read_option, words_of
 from eventsim.record.events import blank_rows
 from eventsim.run import ENGINES
 from eventsim.scene.stage import stage_of
@@ -133,6 +133,30 @@ def test_options_and_wishes_that_do_not_fit_are_errors_with_a_sentence(call, sen
             pytest.skip(TABLE[extra].missing)
     with pytest.raises(es.EventsimError, match=sentence):
         call()
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "text", "value"),
+    [
+        ("stepped", "dt", "0.5", 0.5),
+        ("stepped", "locate", "TRUE", True),
+        ("stepped", "locate", "false", False),
+        ("certified", "bits", "128", 128),
+        ("frames", "memory", "frame", "frame"),
+    ],
+)
+def test_an_option_is_read_from_text(name, option, text, value):
+    read = read_option(TABLE[name].options, option, text)
+    assert (type(read), read) == (type(value), value)
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "text"),
+    [("stepped", "locate", "yes"), ("stepped", "dt", "fast"), ("certified", "bits", "1.5"), ("frames", "memory", "none")],
+)
+def test_text_that_is_no_value_of_an_option_is_an_error(name, option, text):
+    with pytest.raises(ValueError, match=text):
+        read_option(TABLE[name].options, option, text)
 
 
 def test_numbers_of_numpy_are_numbers():

@@ -7,6 +7,9 @@ import pytest
 
 import eventsim as es
 from eventsim.compiler import is_interpreted
+from eventsim.engines.only_wraps import only_wraps
+from eventsim.engines.reference.loop import ReferenceSession
+from eventsim.scene.stage import stage_of
 
 MANY = 80 if is_interpreted() else 300
 BOX = es.Periodic((4.0, 3.0))
@@ -140,3 +143,31 @@ def test_time_does_not_go_back_where_nothing_is_ahead():
         assert sim.log.digest() == other.log.digest()
         digests.append(sim.log.digest())
     assert digests[0] == digests[1]
+
+
+HIGH = es.Periodic((4.0, 12.0))
+LANES = [[1.0, 0.6 * k] for k in range(20)], [[0.1 * k, 0.0] for k in range(20)]
+UPWARDS = [[v, 0.25] for v, _ in LANES[1]]
+
+
+@pytest.mark.parametrize(
+    ("velocity", "domain", "rules", "idle", "expected"),
+    [
+        (LANES[1], HIGH, {}, 81.0, True),
+        (LANES[1], HIGH, {}, 79.0, False),
+        (UPWARDS, HIGH, {}, 81.0, True),
+        (UPWARDS, HIGH, {"walls": [es.Segment((0.0, 0.3), (0.5, 0.3))]}, 1e9, False),
+        ([*UPWARDS[1:], [0.0, 1.0]], HIGH, {}, 1e9, False),
+        ([[1.0, 0.0]] * 20, HIGH, {"walls": [es.Segment((0.0, 0.3), (0.5, 0.3))]}, 9.0, True),
+        ([[1.0, 0.0]] * 20, HIGH, {"walls": [es.Segment((0.0, 0.3), (0.5, 0.3))]}, 7.0, False),
+        ([[1.0, 0.0]], HIGH, {"walls": [es.Segment((0.0, 0.3), (0.5, 0.3))], "gravity": (0.0, -1.0)}, 1e9, False),
+        ([[1.0, 0.0]], HIGH, {"gravity": (0.0, -1.0)}, 1.0, True),
+        ([[1.0, 1e-9]], es.Channel((4.0, 12.0)), {}, 1e9, False),
+        ([[1.0, 0.0]], es.Channel((4.0, 12.0)), {}, 9.0, True),
+    ],
+)
+def test_only_wraps_are_ahead_once_all_have_been_around_twice(velocity, domain, rules, idle, expected):
+    """The slowest of the lanes are 0.1 apart, and 4 around: twice in 80."""
+    place = np.add(LANES[0][: len(velocity)], [0.0, 0.25 if isinstance(domain, es.Channel) else 0.0])
+    stage = stage_of(es.Scene(es.Disks(place, velocity, 0.2), domain, **rules))
+    assert only_wraps(stage, ReferenceSession(stage).state.anchors(), idle) == expected

@@ -108,6 +108,6 @@ def wrap(m, rules, i, code, t):
         )
         y = 0.0 if step > 0 else rules.height
         store(m.disks, i * WORDS + WRAPS_Y, word(m.disks, i * WORDS + WRAPS_Y) + step)
-    keep_sides_behind(m, rules, i, code, m.sides)
+    keep_sides_behind(m, rules, i, code, m.images)
     anchor(m, i, t, x, y, vx, vy)
     forget_shapes(m, rules, i, m.supports)

@@ -128,20 +128,11 @@ def _is_cornered(m, rules, i, wall, side, x, y):
 
 @inline
 def _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
-    if other == -1 - wall or how == LEFT:
-        return False
-    if _is_one_line(m, wall, -1 - other, m.supports):
+    if other == -1 - wall or how == LEFT or are_in_line(m, wall, -1 - other):
         return False
     bx, by = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
     ax, ay = wall_normal(m, rules, -1 - other, from_side, x, y, rules.wall_x, rules.wall_y, m.features)
     return slides_into(bx, by, ax, ay, rules.gx, rules.gy)
-
-
-@inline
-def _is_one_line(m, wall, other, supports):
-    if supports is None:
-        return False
-    return are_in_line(m, wall, other)
 
 
 @inline

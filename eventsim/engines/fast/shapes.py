@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from eventsim.engines.fast.compiled import inline, part, real, word
 from eventsim.engines.fast.last_contact import side_met
 from eventsim.engines.fast.layout import CONTACT_TIME, REALS, T
@@ -11,7 +9,7 @@ from eventsim.formulas.parabola import stays_open
 from eventsim.formulas.real import NEVER
 from eventsim.formulas.walls.arc import Arc, arc_delay, arc_normal, arc_touching
 from eventsim.formulas.walls.container import Container, container_delay, container_touching
-from eventsim.formulas.walls.ellipse import Ellipse, ellipse_delay, ellipse_normal, ellipse_side, ellipse_touching
+from eventsim.formulas.walls.ellipse import Ellipse, ellipse_delay, ellipse_normal, ellipse_side
 from eventsim.formulas.walls.face import Face, face_delay, face_normal, face_touching, hangs_below, is_in_line
 from eventsim.formulas.walls.point import is_point
 from eventsim.formulas.walls.post import Post, post_delay, post_normal, post_touching
@@ -201,7 +199,7 @@ def is_clear(m, rules, k, x, y, u, w, pull, radius, delay):
 
 @part
 def laid_on_shape(m, k, side, x, y, r):
-    """The place of a disk of radius r on the k-th shape, on contact but for the last bits."""
+    """The place of a disk of radius r on the k-th shape, on contact but for the last bits: of no ellipse, where nothing falls."""
     row = m.features
     s = WIDTH * k
     kind = real(row, s)
@@ -211,11 +209,7 @@ def laid_on_shape(m, k, side, x, y, r):
         return post_touching(post_at(row, s + 2), side, x, y, r)
     if kind == CONTAINER:
         return container_touching(container_at(row, s + 2), side, x, y, r)
-    if kind == ARC:
-        return arc_touching(arc_at(row, s + 2), side, x, y, r)
-    if kind == ELLIPSE:
-        return ellipse_touching(ellipse_at(row, s + 2), side, x, y, r)
-    return math.nan, math.nan
+    return arc_touching(arc_at(row, s + 2), side, x, y, r)
 
 
 @part
@@ -230,9 +224,7 @@ def shape_normal(m, k, side, x, y):
         return arc_normal(arc_at(row, s + 2), side, x, y)
     if kind == ELLIPSE:
         return ellipse_normal(ellipse_at(row, s + 2), side, x, y)
-    if kind in (POST, CONTAINER):  # these are alike
-        return post_normal(Post(real(row, s + 2), real(row, s + 3), 0.0, 0.0, 0.0, 0.0, 0.0), side, x, y)
-    return math.nan, math.nan
+    return post_normal(Post(real(row, s + 2), real(row, s + 3), 0.0, 0.0, 0.0, 0.0, 0.0), side, x, y)  # a container is alike
 
 
 @inline

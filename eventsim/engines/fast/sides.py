@@ -212,14 +212,8 @@ def _distance(m, s, kind, x, y):
 
 
 @inline
-def keep_sides_behind(m, rules, i, code, sides):
+def keep_sides_behind(m, rules, i, code, images):
     """Keep the sides of disk i, if it is a point, when it has passed a periodic boundary: those of the images there."""
-    if sides is not None:
-        _keep_behind(m, rules, i, code, m.images)
-
-
-@inline
-def _keep_behind(m, rules, i, code, images):
     if images is not None:
         _take_over(m, rules, i, code)
 

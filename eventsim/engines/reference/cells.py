@@ -62,7 +62,8 @@ def plan(stage: Stage, side: float | None = None) -> Grid | None:
     if not all(enough) or max(columns, rows) < 3:
         return None
     columns, rows = max(columns, 1), max(rows, 1)
-    return Grid((extent[0] / columns, extent[1] / rows), columns, rows, low, giants)
+    width, height = extent[0] / columns or side, extent[1] / rows or side  # disks in a row on the plane take up no area
+    return Grid((width, height), columns, rows, low, giants)
 
 
 def _extent(stage: Stage) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -9,7 +9,7 @@ import eventsim as es
 from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Stop
 from eventsim.engines.fast import FastOptions
-from eventsim.engines.fast.plan import FIVE, Grids, Sizes, classes_of, levels_of
+from eventsim.engines.fast.plan import FIVE, Grids, Sizes, along_a_curve, classes_of, levels_of
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession
 from eventsim.record.digest import digest_of
@@ -130,3 +130,40 @@ def test_disks_that_fly_apart_on_the_open_plane_come_to_an_end(wide: bool, gravi
         assert stopped == "quiet"
         logs.append(digest_of(rows))
     assert logs[0] == logs[1]
+
+
+def test_disks_too_large_for_levels_on_a_torus_have_no_cells() -> None:
+    """Two of their images would be equally near before they are looked at again."""
+    places = [(0.4 * (k % 20 + 0.5), 0.4 * (k // 20 + 0.5)) for k in range(400)]
+    far = [(x, y) for x, y in places if min(np.hypot(x - 2.0, y - 2.0), np.hypot(x - 6.0, y - 6.0)) > 1.7]
+    radius = [1.6] * 2 + [0.05] * len(far)
+    disks = es.Disks([(2.0, 2.0), (6.0, 6.0), *far], np.random.default_rng(2).normal(size=(len(radius), 2)), radius)
+    stage = stage_of(es.Scene(disks, es.Periodic((8.0, 8.0))))
+    assert len(classes_of(stage)) == 2
+    grids = Grids(stage, "auto")
+    grids.choose(ReferenceSession(stage).motion())
+    assert grids.sizes is None
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("largest", [0.0, 0.1, 0.5])
+def test_points_in_a_row_on_the_plane_have_one_grid(largest: float, axis: int) -> None:
+    """Nothing tells how far apart they are on the average: the row has no area."""
+    place, velocity = np.zeros((31, 2)), np.zeros((31, 2))
+    place[:, axis], velocity[:, axis] = np.arange(31.0), [1.0] * 15 + [-1.0] * 16
+    stage = stage_of(es.Scene(es.Disks(place, velocity, [0.0] * 30 + [largest]), es.Open()))
+    assert classes_of(stage) == (largest,)
+    assert_same(stage, Stop(until=100.0))
+
+
+def test_disks_in_a_row_on_the_plane_meet() -> None:
+    place = [(float(k), 0.0) for k in range(30)]
+    stage = stage_of(es.Scene(es.Disks(place, [(1.0, 0.0)] + [(0.0, 0.0)] * 29, 0.25), es.Open()))
+    assert_same(stage, Stop(until=100.0))
+    assert len(rows_of(ReferenceSession(stage), Stop(until=100.0))[0]) == 29
+
+
+def test_disks_in_a_column_are_in_its_order_in_memory() -> None:
+    y = np.random.default_rng(1).permutation(300).astype(float)
+    along = y[along_a_curve(np.full(300, 2.5), y)]
+    assert (np.diff(along) > 0.0).all() or (np.diff(along) < 0.0).all()
