@@ -93,7 +93,8 @@ class Frame:
 
     moment: all disks, exactly at that time, and what gravity does to them. events: rows of the log so far. contacts: (N,)
     contacts of each disk so far. glow: (N,) 1 at a contact, fading to 0. energy: as from `energy_of`. recent: the rows since the
-    previous frame; None where they are more than `MOST_RECENT`.  angle: (N,) by which disks have turned; None without spin.
+    previous frame; None at the first one, and where they are more than `MOST_RECENT`.
+    angle: (N,) by which disks have turned; None without spin.
     """
 
     moment: Moment
@@ -116,7 +117,7 @@ def frames_at(passage: Passage, times: Floats, glow_time: float) -> Iterator[Fra
     news = News(log)
     contacts, latest = np.zeros(n, dtype=np.int64), np.full(n, -np.inf)
     turns = None if passage.stage.spin is None else Turns(passage.stage, passage.stage.spin)
-    for moment in passage.moments(times.tolist()):
+    for place, moment in enumerate(passage.moments(times.tolist())):
         time, recent, count = moment.state.time, [blank_rows(0)], 0
         for rows, clock in news.until(time):
             met, pairs = contacts_of(rows), rows["b"] >= 0
@@ -129,7 +130,7 @@ def frames_at(passage: Passage, times: Floats, glow_time: float) -> Iterator[Fra
             count += len(rows)
             recent = [*recent, rows] if count <= MOST_RECENT else []
         glow = np.maximum(1.0 - (time - latest) / glow_time, 0.0)
-        since = joined(recent) if recent else None
+        since = joined(recent) if recent and place else None
         angle = None if turns is None else turns.at(time)
         yield Frame(moment, news.count, contacts.copy(), glow, energy_of(log, moment.state), since, angle)
 

@@ -99,7 +99,7 @@ class Picture:
         self._axes.axis("off")
         self._draw_background(shown)
         self._disks = self._disk_artist()
-        self._trails = Trails(passage, trail_frames) if look.trails else None
+        self._trails = Trails(passage, trail_frames, self.layout.scale) if look.trails else None
         self._trail = self._path_artist(self._palette.trail)
         self._spokes = self._path_artist("black")
         self._spokes.set_path_effects(

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.path import Path
 
 from eventsim.record.events import Floats, Rows
-from eventsim.replay.flight_table import flights_between, flights_from
+from eventsim.replay.flight_table import FlightTable, flights_between, flights_from
 from eventsim.replay.motion import Motion
 from eventsim.replay.passage import Moment
 from eventsim.show.frames import MOST_RECENT, Frame
@@ -18,8 +18,11 @@ from eventsim.show.images import wrapped_pieces
 HEAD = 0.3
 """Length of an arrow's head, a share of the arrow."""
 
-PARABOLA_PIECES = 2
-"""Straight pieces in which the way from one frame to the next is drawn under gravity."""
+SAG = 0.25
+"""Pixels by which a straight piece of a trail may miss the parabola."""
+
+FEWEST = 2
+"""Pieces in which a way that needs so many is drawn even in a crowd that has room for less."""
 
 BANDS, STRONGEST = 12, 0.85
 """Shades in which a trail fades, and the opacity of the newest."""
@@ -47,17 +50,17 @@ def spokes(centre: Floats, angle: Floats, radius: Floats) -> Path:
 class Trails:
     """Where the disks have been in the last frames: through the places of all contacts, so corners are sharp."""
 
-    def __init__(self, motion: Motion, frames: int) -> None:
-        """frames: how many of them a trail reaches back."""
+    def __init__(self, motion: Motion, frames: int, scale: float) -> None:
+        """frames: how many of them a trail reaches back. scale: pixels per length of the scene."""
         self._scene, self._stage = motion.log.scene, motion.stage
         self._before: Moment | None = None
-        self._longest = max(frames, 1)
+        self._longest, self._scale = max(frames, 1), scale
         self._pieces: deque[Floats] = deque(maxlen=self._longest)
 
     def follow(self, frame: Frame) -> Iterator[tuple[Path, float]]:
         """Add the way since the previous frame; yield the paths to draw, from the faintest on, each with its alpha.
 
-        A frame with too many rows since the previous one begins a new trail.
+        A first frame, and one with too many rows since the previous one, begins a new trail.
         """
         if frame.recent is None:
             self._pieces.clear()
@@ -77,5 +80,12 @@ class Trails:
     def _pieces_between(self, before: Moment, rows: Rows, end: float) -> Floats:
         """Return the ways of all disks from one frame to the next as straight pieces (P, 2, 2), inside the domain."""
         table = flights_between(self._stage, flights_from(before.state, before.pull), rows, end)
-        _, ends, disk = table.pieces(PARABOLA_PIECES)
+        _, ends, disk = table.pieces(self._parts(table))
         return wrapped_pieces(ends, disk, self._scene.domain.period, self._scene.domain.origin)[0]
+
+    def _parts(self, table: FlightTable) -> int:
+        """Return into how many pieces flights are cut, that they look like parabolas and there is room for a whole trail."""
+        sag = np.hypot(*table.pull.T) * table.duration**2 / 8.0 * self._scale
+        needed = np.ceil(np.sqrt(sag.max(initial=0.0) / SAG))
+        room = MOST_RECENT // (self._longest * max(len(table.disk), 1))
+        return int(max(min(needed, max(room, FEWEST)), 1))

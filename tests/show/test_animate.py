@@ -323,12 +323,43 @@ def test_a_bar_of_masses_tells_disks_that_have_no_place_on_it():
     assert [label for label, _ in key.apart] == ["mass inf"]
 
 
+@pytest.mark.parametrize("suffix", [".gif", ".png"])
+@pytest.mark.parametrize("begin", [None, 1.0])
+def test_a_trail_is_the_parabola_behind_a_disk_and_has_nothing_of_later_times(tmp_path, monkeypatch, suffix, begin):
+    """The frames from which a gif takes its colours left their trails in the film."""
+    scene = es.Scene(es.Disks([[0.5, 2.5]], [[1.0, 0.0]], 0.1), es.Box((4.0, 3.0)), gravity=(0.0, -1.0))
+    log = es.simulate(scene, until=2.0, log=True).log
+    drawn, scales = [], []
+    draw, follow = Picture.draw, strokes.Trails.follow
+
+    def noting_scale(self, frame):
+        scales.append(self.layout.scale)
+        return draw(self, frame)
+
+    def noting(self, frame):
+        paths = list(follow(self, frame))
+        drawn.append((frame.state.time, np.concatenate([np.empty((0, 2)), *(path.vertices for path, _ in paths)])))
+        return iter(paths)
+
+    monkeypatch.setattr(Picture, "draw", noting_scale)
+    monkeypatch.setattr(strokes.Trails, "follow", noting)
+    animate(log, tmp_path / f"a{suffix}", Film(fps=5, duration=2.0, begin=begin, moments=3), Look(trails=True))
+    first = [place for place, (time, _) in enumerate(drawn) if time == (begin or 0.0)][-1] if suffix == ".gif" else 0
+    assert not len(drawn[first][1])
+    for time, points in drawn[first + 1 :]:
+        assert len(points)
+        assert points[:, 0].max() == pytest.approx(0.5 + time)
+        middle = points.reshape(-1, 2, 2).mean(axis=1)
+        missed = np.abs(middle[:, 1] - (2.5 - 0.5 * (middle[:, 0] - 0.5) ** 2))
+        assert missed.max() * scales[0] < 0.3
+
+
 def test_a_trail_of_more_ways_than_can_be_seen_reaches_back_less_far(broken, monkeypatch):
     """Those of a log of 1e7 rows took half a gigabyte."""
 
     def longest():
         passage = Passage(broken)
-        trails = strokes.Trails(passage, 12)
+        trails = strokes.Trails(passage, 12, 200.0)
         frames = frames_at(passage, np.linspace(*passage.span, 40), 1.0)
         return max(sum(len(path.vertices) // 2 for path, _ in trails.follow(frame)) for frame in frames)
 
