@@ -85,7 +85,7 @@ class Trails:
 
     def _parts(self, table: FlightTable) -> int:
         """Return into how many pieces flights are cut, that they look like parabolas and there is room for a whole trail."""
-        sag = np.hypot(*table.pull.T) * table.duration**2 / 8.0 * self._scale
-        needed = np.ceil(np.sqrt(sag.max(initial=0.0) / SAG))
+        pieces = table.duration * np.sqrt(np.hypot(*table.pull.T) * self._scale / (8.0 * SAG))  # one sags by g t^2 / 8
+        needed = np.ceil(pieces.max(initial=0.0))
         room = MOST_RECENT // (self._longest * max(len(table.disk), 1))
         return int(max(min(needed, max(room, FEWEST)), 1))
