@@ -34,19 +34,16 @@ from eventsim.formulas.motion import position, velocity
 @inline
 def pulls(m, rules, i):
     """The acceleration of disk i, (x, y); None without gravity."""
-    return (
-        _pull(m, i, rules.gx, rules.classes, SUPPORT_X, m.supports),
-        _pull(m, i, rules.gy, rules.classes, SUPPORT_Y, m.supports),
-    )
+    if rules.gx is None:
+        return None, None
+    return _pull(m, rules, i, rules.gx, SUPPORT_X), _pull(m, rules, i, rules.gy, SUPPORT_Y)
 
 
 @inline
-def _pull(m, i, g, classes, at, supports):
-    if g is None:
-        return None
-    if supports is not None:
+def _pull(m, rules, i, g, at):
+    if m.supports is not None:
         return _pull_or_slope(m, i, g, at)
-    if classes is None:
+    if rules.classes is None:
         return g
     return 0.0 if word(m.disks, i * WORDS + FLAGS) & IMMOVABLE else g
 
@@ -98,16 +95,17 @@ def wrap(m, rules, i, code, t):
     vx, vy = speed(m, rules, i, t)
     if code >= WRAP_LEFT:  # the codes of x come first
         step = 1 if code == WRAP_RIGHT else -1
-        keep_sides(m, rules, i, t, pulls(m, rules, i), rules.width if step > 0 else 0.0, y, vx, vy, NOWHERE, 0, m.sides)
+        if m.sides is not None:
+            keep_sides(m, rules, i, t, pulls(m, rules, i), rules.width if step > 0 else 0.0, y, vx, vy, NOWHERE, 0)
         x = 0.0 if step > 0 else rules.width
         store(m.disks, i * WORDS + WRAPS_X, word(m.disks, i * WORDS + WRAPS_X) + step)
     else:
         step = -1 if code == WRAP_DOWN else 1
-        keep_sides(
-            m, rules, i, t, pulls(m, rules, i), x, rules.height if step > 0 else 0.0, vx, vy, NOWHERE, 0, m.sides
-        )
+        if m.sides is not None:
+            keep_sides(m, rules, i, t, pulls(m, rules, i), x, rules.height if step > 0 else 0.0, vx, vy, NOWHERE, 0)
         y = 0.0 if step > 0 else rules.height
         store(m.disks, i * WORDS + WRAPS_Y, word(m.disks, i * WORDS + WRAPS_Y) + step)
-    keep_sides_behind(m, rules, i, code, m.images)
+    if m.images is not None:
+        keep_sides_behind(m, rules, i, code)
     anchor(m, i, t, x, y, vx, vy)
-    forget_shapes(m, rules, i, m.supports)
+    forget_shapes(m, rules, i)

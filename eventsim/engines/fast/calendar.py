@@ -78,18 +78,18 @@ def _waiting(grid, k):
 
 
 @inline
-def push_later(m, grid, i, day, room, deadline, look_ahead):
+def push_later(m, grid, i, day, room, deadline):
     """Put disk i into the calendar; (room, deadline) afterwards.
 
     Where memory is far, a disk first spends some events in a waiting room, while the memory of its bucket comes: else the
     processor would stand still until it is there, for most of the time of a run.  It is on a list there as in a bucket, so
     `take` need not know.  room: how many have waited; deadline: the day by which all must be in the calendar.
     """
-    if look_ahead is None:
+    if grid.look_ahead is None:
         push(m, grid, i, day)
         return room, deadline
     due = day_of(grid, real(m.disks, i * REALS + DUE), day)
-    if due < day + 2 * look_ahead:  # near at hand, in every sense
+    if due < day + 2 * grid.look_ahead:  # near at hand, in every sense
         push(m, grid, i, day)
         return room, deadline
     place = _waiting(grid, room)
@@ -110,9 +110,9 @@ def _end_waiting(m, grid, place, day):
 
 
 @inline
-def empty_room(m, grid, day, look_ahead):
+def empty_room(m, grid, day):
     """Put all disks that wait into the calendar."""
-    if look_ahead is None:
+    if grid.look_ahead is None:
         return
     for k in range(WAITING):
         _end_waiting(m, grid, _waiting(grid, k), day)
@@ -148,14 +148,14 @@ def first(m, grid, day, limit, deadline, screen):
             return -2, day, 0, deadline
         store(m.disks, bucket(grid, day), grid.n)
         day += 1
-        fetch_coming(m, grid, day, grid.look_ahead)
+        fetch_coming(m, grid, day)
         i = head
         while i != grid.n:  # due on a later day
             follower = word(m.disks, i * WORDS + NEXT)
             push(m, grid, i, day)
             i = follower
         if day >= deadline:
-            empty_room(m, grid, day, grid.look_ahead)
+            empty_room(m, grid, day)
             deadline = NO_DAY
 
 
@@ -214,26 +214,23 @@ def is_tied(m, grid, i, day, screen):
                 shares = code == i or (j >= 0 and (k == j or code == j))
                 if flagged or (not mutual and (shares or due == time)):  # a partner may know of a tie that disk i does not see
                     return True
-            elif _may_hide_another(j, code, flagged, grid.posts) and may_tie(due, time, screen):
+            elif (
+                NOTHING < code < 0  # behind a wrap or crossing a contact may follow at once, which posts do not foresee
+                and (flagged or (grid.posts is not None and j >= 0))
+                and may_tie(due, time, screen)
+            ):
                 return True
             k = word(m.disks, k * WORDS + NEXT)
     return False
 
 
 @inline
-def _may_hide_another(j, code, flagged, posts):
-    """Whether behind a wrap or crossing a contact may follow at once: it is flagged then; but posts do not foresee it, with j."""
-    hides = flagged if posts is None else flagged or j >= 0
-    return hides and NOTHING < code < 0
-
-
-@inline
-def earliest_floor(grid, now, screen, posts):
+def earliest_floor(grid, now, screen):
     """The time before which no contact of a flight that goes on is still to come.
 
     Where posts foresee no contacts, a post that begins another flight may bring one forward by the last bits of its time.
     """
-    return now if posts is None else 2.0 * now - latest_tie(now, screen)
+    return now if grid.posts is None else 2.0 * now - latest_tie(now, screen)
 
 
 @inline
@@ -247,7 +244,7 @@ def fetch_record(m, i):
 def fetch_around(m, grid, i, disks):
     """Ask for the slots of the cells around disk i; or for the first line of each disk in them."""
     home = home_of(m, grid, i)
-    depth, width = depth_of(home, home.deep), home.columns + 2
+    depth, width = depth_of(home), home.columns + 2
     start = slot_of(home, word(m.disks, i * WORDS + COLUMN) - 1, word(m.disks, i * WORDS + ROW) - 1)
     for _ in range(3):
         if disks:
@@ -259,10 +256,11 @@ def fetch_around(m, grid, i, disks):
 
 
 @inline
-def fetch_coming(m, grid, day, look_ahead):
+def fetch_coming(m, grid, day):
     """Ask for what the events of coming days need, in four stages; each reads what the one before it asked for."""
-    if look_ahead is None:
+    if grid.look_ahead is None:
         return
+    look_ahead = grid.look_ahead
     fetch_record(m, word(m.disks, bucket(grid, day + look_ahead)))
     i = word(m.disks, bucket(grid, day + look_ahead * 3 // 4))
     if i != grid.n:

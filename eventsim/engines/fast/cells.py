@@ -32,22 +32,16 @@ from eventsim.formulas.real import NEVER, sqrt
 
 
 @inline
-def depth_of(grid, deep):
+def depth_of(grid):
     """The number of slots of a cell: a constant where it is the usual one."""
-    if deep is None:
-        return USUAL_DEPTH
-    return grid.depth
+    return USUAL_DEPTH if grid.deep is None else grid.depth
 
 
 @inline
 def slot_of(grid, column, row):
     """The first slot of a cell; columns and rows count from 1."""
-    return _behind(grid.first, depth_of(grid, grid.deep) * (column + (grid.columns + 2) * row))
-
-
-@inline
-def _behind(first, slot):
-    return slot if first is None else first + slot
+    slot = depth_of(grid) * (column + (grid.columns + 2) * row)
+    return slot if grid.first is None else grid.first + slot
 
 
 @inline
@@ -58,29 +52,18 @@ def enter(m, grid, rules, i, column, row):
     edge = column == 1 or row == 1 or column == grid.columns or row == grid.rows
     flags = word(m.disks, i * WORDS + FLAGS) & ~EDGE
     store(m.disks, i * WORDS + FLAGS, flags | EDGE if edge else flags)
-    if _is_sought(grid, i, grid.posts):
-        return _occupy(m, grid, rules, i, column, row, edge, m.slots)
-    return True
-
-
-@inline
-def _is_sought(grid, i, posts):
-    """Whether others look for disk i in its cell; where nothing but posts can be met, only these are in the slots."""
-    return True if posts is None else i < posts
-
-
-@inline
-def _occupy(m, grid, rules, i, column, row, edge, slots):
-    if slots is None:
+    if m.slots is None:
         return True
-    depth = depth_of(grid, grid.deep)
+    if grid.posts is not None and i >= grid.posts:  # where nothing but posts can be met, only these are in the slots
+        return True
+    depth = depth_of(grid)
     start = slot_of(grid, column, row)
     k = 0
-    while k < depth and word(slots, start + k) != grid.n:
+    while k < depth and word(m.slots, start + k) != grid.n:
         k += 1
     if k == depth:
         return False
-    store(slots, start + k, i)
+    store(m.slots, start + k, i)
     if edge:
         _copy_to_ghosts(m, grid, column, row, rules.length_x is not None, rules.length_y is not None)
     return True
@@ -89,10 +72,10 @@ def _occupy(m, grid, rules, i, column, row, edge, slots):
 @inline
 def leave(m, grid, rules, i):
     """Take disk i out of its cell."""
-    if not _is_sought(grid, i, grid.posts):
+    if grid.posts is not None and i >= grid.posts:
         return
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
-    depth = depth_of(grid, grid.deep)
+    depth = depth_of(grid)
     start = slot_of(grid, column, row)
     for k in range(depth):
         disk = word(m.slots, start + k)
@@ -109,7 +92,7 @@ def _copy_to_ghosts(m, grid, column, row, along_x, along_y):
         ghost_column = grid.columns + 1 if column == 1 else (0 if column == grid.columns else -1)
     if along_y and grid.rows > 1:
         ghost_row = grid.rows + 1 if row == 1 else (0 if row == grid.rows else -1)
-    depth = depth_of(grid, grid.deep)
+    depth = depth_of(grid)
     start = slot_of(grid, column, row)
     for k in range(depth):
         disk = word(m.slots, start + k)
@@ -140,12 +123,7 @@ def level_of(m, i):
 @inline
 def home_of(m, grid, i):
     """The grid that disk i is in."""
-    return _home(m, grid, i, grid.levels)
-
-
-@inline
-def _home(m, grid, i, levels):
-    if levels is None:
+    if grid.levels is None:
         return grid
     return grid_of(m, grid, level_of(m, i))
 
@@ -278,7 +256,7 @@ def _along_row(m, grid, rules, cells, row, begin, end, i, skip, count):
 @inline
 def _list(m, cells, slot, number, i, skip, count, lanes):
     """Append the disks of cells side by side, but not i and `skip`; the new count."""
-    slots = number * depth_of(cells, cells.deep)
+    slots = number * depth_of(cells)
     if lanes is None:
         for k in range(slot, slot + slots):
             j = word(m.slots, k)

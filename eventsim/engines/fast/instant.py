@@ -45,8 +45,9 @@ def contacts_between(arrays, grid, rules, counts, first, latest, found, times):
         i = word(m.disks, bucket(grid, day))
         while i != grid.n:
             if first <= real(m.disks, i * REALS + DUE) <= latest:
-                count = _pairs_between(m, grid, rules, i, span, found, times, count, m.slots, grid.levels)
-                count = _shapes_between(m, grid, rules, i, span, found, times, count, rules.features)
+                count = _pairs_between(m, grid, rules, i, span, found, times, count)
+                if rules.features is not None:
+                    count = _shapes_between(m, grid, rules, i, span, found, times, count)
                 count = _walls_between(m, grid, rules, i, span, found, times, count)
             i = word(m.disks, i * WORDS + NEXT)
     return count
@@ -79,15 +80,15 @@ def _add(span, found, times, count, time, i, partner, kx, ky):
 
 
 @inline
-def _pairs_between(m, grid, rules, i, span, found, times, count, slots, levels):
-    if slots is None:
+def _pairs_between(m, grid, rules, i, span, found, times, count):
+    if m.slots is None:
         return _pairs_of_everyone(m, grid, rules, i, span, found, times, count)
     x, y = place(m, rules, i, span[0])
-    if levels is not None:
+    if grid.levels is not None:
         for k in range(gather_near(m, grid, rules, i, x, y, -1)):
             count = _pair_between(m, rules, i, word(m.near, k), span, x, y, found, times, count)
         return count
-    start, depth = corner_slot(m, grid, i), depth_of(grid, grid.deep)
+    start, depth = corner_slot(m, grid, i), depth_of(grid)
     for _ in range(3):
         for k in range(3 * depth):
             j = word(m.slots, start + k)
@@ -107,7 +108,7 @@ def _pair_between(m, rules, i, j, span, x, y, found, times, count):
 def _pairs_of_everyone(m, grid, rules, i, span, found, times, count):
     span_x = 0 if rules.length_x is None else 1
     span_y = 0 if rules.length_y is None else 1
-    for j in range(number_sought(grid, grid.posts)):
+    for j in range(number_sought(grid)):
         for kx in range(-span_x, span_x + 1):
             for ky in range(-span_y, span_y + 1):
                 if j != i:
@@ -116,13 +117,11 @@ def _pairs_of_everyone(m, grid, rules, i, span, found, times, count):
 
 
 @inline
-def _shapes_between(m, grid, rules, i, span, found, times, count, features):
-    if features is None:
-        return count
-    begin, end = shapes_near(m, home_of(m, grid, i), i, features, m.near_walls)
+def _shapes_between(m, grid, rules, i, span, found, times, count):
+    begin, end = shapes_near(m, home_of(m, grid, i), rules, i)
     for item in range(begin, end):
-        k = shape_near(item, m.near_walls)
-        time, side, how = shape_time(m, rules, i, k, m.supports)
+        k = shape_near(m, item)
+        time, side, how = shape_time(m, rules, i, k)
         count = _add(span, found, times, count, time, i, -1 - (rules.first_feature + k), side, how)
     return count
 
@@ -136,25 +135,25 @@ def _walls_between(m, grid, rules, i, span, found, times, count):
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
     home = home_of(m, grid, i)
     across = m, rules, i, span, found, times
-    count = _walls_across(*across, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count, m.supports)
-    return _walls_across(*across, y, w, t, r, gy, rules.height, row, home.rows, rules.wall_y, count, m.supports)
+    count = _walls_across(*across, x, u, t, r, gx, rules.width, column, home.columns, rules.wall_x, count)
+    return _walls_across(*across, y, w, t, r, gy, rules.height, row, home.rows, rules.wall_y, count)
 
 
 @inline
-def _walls_across(m, rules, i, span, found, times, x, v, t, r, g, length, k, last, wall, count, supports):
+def _walls_across(m, rules, i, span, found, times, x, v, t, r, g, length, k, last, wall, count):
     if wall is None:
         return count
     if k == 1:
-        time, how = _wall_time(m, rules, i, wall, 1.0, 0.0, r, x, v, t, g, supports)
+        time, how = _wall_time(m, rules, i, wall, 1.0, 0.0, r, x, v, t, g)
         count = _add(span, found, times, count, time, i, -1 - wall, 1, how)
     if k == last:
-        time, how = _wall_time(m, rules, i, wall + 1, -1.0, length, r, x, v, t, g, supports)
+        time, how = _wall_time(m, rules, i, wall + 1, -1.0, length, r, x, v, t, g)
         count = _add(span, found, times, count, time, i, -2 - wall, -1, how)
     return count
 
 
 @inline
-def _wall_time(m, rules, i, place, side, border, r, x, v, t, g, supports):
-    if supports is None:
+def _wall_time(m, rules, i, place, side, border, r, x, v, t, g):
+    if m.supports is None:
         return t + crossing_delay(x, v, g, border + side * r, side), STRUCK
     return border_contact(m, rules, i, place, side, border + side * r, x, v, g)

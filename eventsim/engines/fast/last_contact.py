@@ -15,12 +15,12 @@ def remember(m, i, partner, kx, ky):
 
 
 @inline
-def forget_shapes(m, rules, i, supports):
+def forget_shapes(m, rules, i):
     """Let disk i forget the shapes that it met last: on the other side of the domain it can meet them again.
 
     A wall of the domain, or one that it rests on, goes on there.
     """
-    if supports is not None and word(m.disks, i * WORDS + FLAGS) & RESTING:
+    if m.supports is not None and word(m.disks, i * WORDS + FLAGS) & RESTING:
         return
     met = word(m.disks, i * WORDS + MET)
     if met == SEVERAL:
@@ -104,13 +104,8 @@ def partner_just_met(m, rules, i, kx, ky):
     met = word(m.disks, j * WORDS + MET)
     if met == SEVERAL:
         return j if just_met(m, i, j, kx, ky) else -1
-    same = (met == i) & _same_image(m, i, j, kx, ky, rules.length_x, rules.length_y)
+    same = met == i
+    if rules.length_x is not None or rules.length_y is not None:
+        same &= word(m.disks, i * WORDS + MET_KX) == unwrapped_x(m, i, j, kx)
+        same &= word(m.disks, i * WORDS + MET_KY) == unwrapped_y(m, i, j, ky)
     return j if same else -1
-
-
-@inline
-def _same_image(m, i, j, kx, ky, length_x, length_y):
-    if length_x is None and length_y is None:
-        return True
-    same_x = word(m.disks, i * WORDS + MET_KX) == unwrapped_x(m, i, j, kx)
-    return same_x & (word(m.disks, i * WORDS + MET_KY) == unwrapped_y(m, i, j, ky))

@@ -18,7 +18,7 @@ from eventsim.engines.fast.calendar import (
     unsettled,
 )
 from eventsim.engines.fast.cells import enter, home_of, leave, level_of, place_in
-from eventsim.engines.fast.compiled import either, inline, kernel, pointer, real, store, word
+from eventsim.engines.fast.compiled import inline, kernel, pointer, real, store, word
 from eventsim.engines.fast.layout import (
     AT_ONCE,
     COLUMN,
@@ -101,9 +101,11 @@ def pointers(a):
 
 
 @inline
-def move(m, grid, rules, i, code, slots):
+def move(m, grid, rules, i, code):
     """Move disk i, which is at the edge of its cell, into the next one; False if that is full."""
-    if slots is None or _only_looks(code, grid.levels):
+    if m.slots is None:
+        return True
+    if grid.levels is not None and code == LOOK:
         return True
     home = home_of(m, grid, i)
     column, row = word(m.disks, i * WORDS + COLUMN), word(m.disks, i * WORDS + ROW)
@@ -125,11 +127,6 @@ def move(m, grid, rules, i, code, slots):
     else:
         row = home.rows
     return enter(m, home, rules, i, column, row)
-
-
-@inline
-def _only_looks(code, levels):
-    return False if levels is None else code == LOOK
 
 
 @kernel
@@ -171,19 +168,19 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             if is_stale(m, i):
                 stale += 1
                 take(m, i)
-                floor = earliest_floor(grid, now, rules.tie_screen, grid.posts)
+                floor = earliest_floor(grid, now, rules.tie_screen)
             elif (
                 word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
-                or pair_may_be_sunk(m, rules, i, code, now, rules.sinks)
-                or is_unlawful(m, rules, i, code, now, rules.own)
-                or may_be_astray(m, i, clock[0], m.sides)
-                or may_be_astray(m, code, clock[0], m.sides)
+                or (rules.sinks is not None and pair_may_be_sunk(m, rules, i, code, now))
+                or (rules.own is not None and is_unlawful(m, rules, i, code, now))
+                or (arrays.sides is not None and (may_be_astray(m, i, clock[0]) or may_be_astray(m, code, clock[0])))
             ):
                 status = STATUS_TIE
                 break
             else:
                 take(m, i)
-                _take_partner(m, code, grid.posts)
+                if grid.posts is None:
+                    take(m, code)
                 overlap = resolve_pair(m, rules, sums, i, code, now, clock, events, first_slot + events, grid.posts)
                 deepest = overlap if overlap > deepest else deepest
                 events += 1
@@ -191,9 +188,9 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
         elif code <= WALL:
             if (
                 word(m.disks, i * WORDS + PARTNER_COUNT) & COUNTS
-                or wall_may_be_sunk(m, rules, i, code, now, rules.gx, rules.sinks)
-                or is_unlawful(m, rules, i, code, now, rules.own)
-                or may_be_astray(m, i, clock[0], m.sides)
+                or (rules.sinks is not None and wall_may_be_sunk(m, rules, i, code, now))
+                or (rules.own is not None and is_unlawful(m, rules, i, code, now))
+                or (arrays.sides is not None and may_be_astray(m, i, clock[0]))
             ):
                 status = STATUS_TIE
                 break
@@ -203,25 +200,27 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
             events += 1
         else:
             take(m, i)
-            floor = earliest_floor(grid, now, rules.tie_screen, grid.posts)
+            floor = earliest_floor(grid, now, rules.tie_screen)
             if code <= WRAP_RIGHT:
                 wraps += 1
                 wrap(m, rules, i, code, now)
-            if not move(m, grid, rules, i, code, m.slots):
+            if not move(m, grid, rules, i, code):
                 counts[DISK] = i
                 status = STATUS_FULL
                 break
         if partner < 0:
             predict(m, grid, rules, i, now, floor)
-        else:
-            foresee = either(grid.posts, _predict_mover, _predict_both)
-            room, deadline = foresee(m, grid, rules, i, partner, now, day, room, deadline)
-        room, deadline = push_later(m, grid, i, day, room, deadline, grid.look_ahead)
+        elif grid.posts is None:
+            predict_both(m, grid, rules, i, partner, now)
+            room, deadline = push_later(m, grid, partner, day, room, deadline)
+        else:  # a post stays in the calendar, with nothing ahead
+            predict(m, grid, rules, i, now, now)
+        room, deadline = push_later(m, grid, i, day, room, deadline)
         if word(m.disks, i * WORDS + AT_ONCE) >= rules.at_once_limit:
             counts[DISK] = i
             status = STATUS_STUCK
             break
-    empty_room(m, grid, day, grid.look_ahead)
+    empty_room(m, grid, day)
     counts[DAY], sums[NOW], sums[DEEPEST] = day, now, deepest
     counts[EVENTS] = events
     counts[PAIRS] += events - begun - walls
@@ -233,26 +232,6 @@ def run(arrays, grid, rules, counts, sums, limit, target, budget):
     counts[STEPS] += steps
     counts[CROSSINGS] += steps - (events - begun) - stale - wraps
     return status
-
-
-@inline
-def _take_partner(m, i, posts):
-    if posts is None:
-        take(m, i)
-
-
-@inline
-def _predict_both(m, grid, rules, i, j, now, day, room, deadline):
-    """Predict the disks of a contact and put the second one into the calendar."""
-    predict_both(m, grid, rules, i, j, now)
-    return push_later(m, grid, j, day, room, deadline, grid.look_ahead)
-
-
-@inline
-def _predict_mover(m, grid, rules, i, post, now, day, room, deadline):
-    """Predict a disk that has met a post, which stays in the calendar, with nothing ahead."""
-    predict(m, grid, rules, i, now, now)
-    return room, deadline
 
 
 @kernel
@@ -275,33 +254,23 @@ def predict_some(arrays, grid, rules, counts, begin, end, now, floor):
     m = pointers(arrays)
     for i in range(begin, end):
         take(m, i)
-        if _foresees(i, grid.posts):
+        if grid.posts is None or i >= grid.posts:
             predict(m, grid, rules, i, now, floor)
         else:
             predict_post(m, i)
         push(m, grid, i, counts[DAY])
 
 
-@inline
-def _foresees(i, posts):
-    return True if posts is None else i >= posts
-
-
 @kernel
 def schedule(arrays, grid, counts, now):
     """Put every disk into an emptied calendar."""
     m = pointers(arrays)
-    day = _first_day(m, grid, now)
+    for place_ in range(bucket(grid, 0), bucket(grid, 0) + grid.days + WAITING):
+        store(m.disks, place_, grid.n)
+    day = int(now * grid.days_per_time)
     counts[DAY] = day
     for i in range(grid.n):
         push(m, grid, i, day)
-
-
-@inline
-def _first_day(m, grid, now):
-    for bucket_place in range(bucket(grid, 0), bucket(grid, 0) + grid.days + WAITING):
-        store(m.disks, bucket_place, grid.n)
-    return int(now * grid.days_per_time)
 
 
 @kernel
@@ -311,6 +280,7 @@ def turn_over(arrays, grid, rules, end, shift):
     for i in range(grid.n):
         x, y = place(m, rules, i, end)
         vx, vy = speed(m, rules, i, end)
-        keep_sides(m, rules, i, end, pulls(m, rules, i), x, y, vx, vy, NOWHERE, 0, m.sides)
+        if arrays.sides is not None:
+            keep_sides(m, rules, i, end, pulls(m, rules, i), x, y, vx, vy, NOWHERE, 0)
         anchor(m, i, end - shift, x, y, vx, vy)
         store(m.disks, i * REALS + CONTACT_TIME, real(m.disks, i * REALS + CONTACT_TIME) - shift)

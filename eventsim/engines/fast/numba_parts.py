@@ -10,12 +10,15 @@ from collections.abc import Callable, Iterator
 from types import CodeType
 from typing import Any
 
+from numba.core import ir
 from numba.core import typed_passes as typed
 from numba.core import untyped_passes as untyped
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
-from numba.core.compiler_machinery import PassManager
+from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
+from numba.core.ir_utils import get_definition, guard
 from numba.core.typed_passes import NoPythonBackend
+from numba.core.types import NamedTuple, NoneType  # type: ignore[attr-defined]  # it collects them when it is imported
 
 
 class _NoEngine:
@@ -110,11 +113,48 @@ class _Passes(PassManager):
         pss.run_pass(internal_state)
 
 
+@register_pass(mutates_CFG=False, analysis_only=False)
+class WithoutAbsent(FunctionPass):
+    """Make constants of the fields of arguments that are None, so that branches that ask for them are not even typed.
+
+    numba itself does so for arguments that are None themselves.
+    """
+
+    _name = "without_absent"
+
+    def __init__(self) -> None:
+        FunctionPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        """Whether there are such fields."""
+        found = False
+        for block in state.func_ir.blocks.values():
+            for statement in block.body:
+                if isinstance(statement, ir.Assign) and _is_absent(state, statement.value):
+                    definitions = state.func_ir._definitions[statement.target.name]
+                    nothing = ir.Const(None, statement.loc)
+                    definitions[:] = [nothing if one is statement.value else one for one in definitions]
+                    statement.value, found = nothing, True
+        return found
+
+
+def _is_absent(state: Any, value: Any) -> bool:
+    """Whether an expression is a field of an argument, and None."""
+    if not (isinstance(value, ir.Expr) and value.op == "getattr"):
+        return False
+    whole = guard(get_definition, state.func_ir, value.value)
+    kind = state.args[whole.index] if isinstance(whole, ir.Arg) else None
+    if not isinstance(kind, NamedTuple):
+        return False
+    return isinstance(kind.types[kind.fields.index(value.attr)], NoneType)
+
+
 PLAIN = (
     untyped.TranslateByteCode,
     untyped.FixupArgs,
     untyped.IRProcessing,
     untyped.RewriteSemanticConstants,
+    WithoutAbsent,
     untyped.DeadBranchPrune,
     untyped.GenericRewrites,
     untyped.ReconstructSSA,

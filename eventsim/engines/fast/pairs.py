@@ -87,22 +87,15 @@ def pair_time(m, rules, i, j, kx, ky):
     dx, dy = dx - shift_x, dy - shift_y
     du = velocity(ui, lag, ax) - velocity(uj, other_lag, bx)
     dw = velocity(wi, lag, ay) - velocity(wj, other_lag, by)
-    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, _or(rules.classes, m.supports))
+    return begin + _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by)
 
 
 @inline
-def _or(classes, supports):
-    """None where all disks of the scene fall alike."""
-    if classes is None and supports is None:
-        return None
-    return 1
-
-
-@inline
-def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, unlike):
+def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by):
     ri, rj = real(m.disks, i * REALS + RADIUS), real(m.disks, j * REALS + RADIUS)
-    if ax is not None and unlike is not None and (ax != bx or ay != by):
-        touches = _touch(m, i, j, kx, ky, rules.still)
+    all_fall_alike = rules.classes is None and m.supports is None
+    if ax is not None and not all_fall_alike and (ax != bx or ay != by):
+        touches = rules.still is not None and _touch(m, i, j, kx, ky)
         return circle_delays(dx, dy, du, dw, ax - bx, ay - by, ri + rj, 1.0, ANY_OVERLAP, touches)[0]
     delay = screened_pair_delay(dx, dy, du, dw, ri + rj)
     if delay == delay:
@@ -113,10 +106,8 @@ def _pair_delay(m, rules, i, j, kx, ky, dx, dy, du, dw, ax, ay, bx, by, unlike):
 
 
 @inline
-def _touch(m, i, j, kx, ky, still):
+def _touch(m, i, j, kx, ky):
     """Whether the flights of both disks began at their contact with each other; told where disks settle."""
-    if still is None:
-        return False
     begun = real(m.disks, i * REALS + T)
     alike = begun == real(m.disks, j * REALS + T) and begun == real(m.disks, i * REALS + CONTACT_TIME)
     return alike and begun == real(m.disks, j * REALS + CONTACT_TIME) and just_met(m, i, j, kx, ky)
@@ -130,19 +121,11 @@ def _careful_delay(m, rules, i, j, kx, ky):
 
 
 @inline
-def can_meet(m, i, j, classes):
-    """Two immovable disks, or two tracers, do not meet."""
-    if classes is None:
-        return True
-    return word(m.disks, i * WORDS + FLAGS) & word(m.disks, j * WORDS + FLAGS) & CLASSES == 0
-
-
-@inline
-def flies_alike(m, rules, i, j, gx, classes, supports):
+def flies_alike(m, rules, i, j):
     """Whether the relative flight of two disks is straight."""
-    if gx is None or (classes is None and supports is None):
+    if rules.gx is None or (rules.classes is None and m.supports is None):
         return True
-    if supports is not None:
+    if m.supports is not None:
         ax, ay = pulls(m, rules, i)
         bx, by = pulls(m, rules, j)
         return not (ax != bx or ay != by)
@@ -152,9 +135,9 @@ def flies_alike(m, rules, i, j, gx, classes, supports):
 @inline
 def pair_is_due(m, rules, i, j, kx, ky):
     """The contact time of a pair, NEVER if it has just met or never meets."""
-    if not can_meet(m, i, j, rules.classes):
-        return NEVER
+    if rules.classes is not None and word(m.disks, i * WORDS + FLAGS) & word(m.disks, j * WORDS + FLAGS) & CLASSES != 0:
+        return NEVER  # two immovable disks, or two tracers
     time = pair_time(m, rules, i, j, kx, ky)
-    if time < NEVER and flies_alike(m, rules, i, j, rules.gx, rules.classes, m.supports) and just_met(m, i, j, kx, ky):
+    if time < NEVER and flies_alike(m, rules, i, j) and just_met(m, i, j, kx, ky):
         return NEVER
     return time

@@ -31,6 +31,7 @@ from eventsim.engines.fast.layout import (
     USUAL_DEPTH,
     VX,
     VY,
+    WALL,
     WORDS,
     T,
     X,
@@ -83,7 +84,7 @@ def _side_by_side(m, grid, rules, i, j, now):
     x, y, time, code, shared = _alone(m, grid, rules, i, now, now)
     other_x, other_y, other_time, other_code, other_shared = _alone(m, grid, rules, j, now, now)
     edge, other_edge = word(m.disks, i * WORDS + FLAGS) & EDGE, word(m.disks, j * WORDS + FLAGS) & EDGE
-    begin = _room_of_list(grid)
+    begin = 9 * depth_of(grid) + REGISTER  # room for a list, with the register that is written behind its end
     end = _gather_around(m, grid, rules, i, now, x, y, edge, 0)
     other_end = _gather_around(m, grid, rules, j, now, other_x, other_y, other_edge, begin)
     edge |= other_edge
@@ -105,39 +106,27 @@ def _alone(m, grid, rules, i, now, floor):
     if word(m.disks, i * WORDS + FLAGS) & EDGE:
         time, code, shared = border_events(m, home, rules, i, now, floor, x, y, u, w)
     else:
-        time, code = crossing(m, home, rules, i, now, x, y, u, w, rules.gx)
+        time, code = crossing(m, home, rules, i, now, x, y, u, w)
         shared = 0
-    time, code, shared = _look(m, grid, rules, i, now, u, w, time, code, shared, grid.levels)
+    if grid.levels is not None:
+        look = now + look_delay(m, grid, rules, i, u, w)
+        time, code, shared = earlier(time, code, shared, look, LOOK, rules.tie_screen)
     return x, y, time, code, shared
 
 
 @inline
 def _schedule(m, grid, rules, i, now, floor, x, y, time, code, shared):
     """Schedule the given event of disk i, or a contact with a wall shape that is before it."""
-    time, code, shared = earliest_at_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared, rules.features)
-    shared = _or_for_rules(m, rules, i, code, time, shared, m.supports, rules.still)
+    if rules.features is not None:
+        time, code, shared = earliest_at_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared)
+    if rules.still is not None and code <= WALL and may_be_spent(m, rules, i, time):
+        shared = 1  # rests are left to the reference engine's rules, as if another contact shared their time
+    if m.supports is not None and is_for_rules(m, rules, i, code, time):
+        shared = 1
     count = word(m.disks, (code if code >= 0 else grid.n) * WORDS + COUNT)  # of the sentinel: 0
     store(m.disks, i * REALS + DUE, time)
     store(m.disks, i * WORDS + PARTNER, code)
     store(m.disks, i * WORDS + PARTNER_COUNT, count + COUNTS * shared)
-
-
-@inline
-def _or_for_rules(m, rules, i, code, time, shared, supports, still):
-    """Whether an event is to be left to the reference engine's rules: because of rest, as if another one shared its time."""
-    if may_be_spent(m, rules, i, code, time, still):
-        return 1
-    if supports is None:
-        return shared
-    return 1 if is_for_rules(m, rules, i, code, time) else shared
-
-
-@inline
-def _look(m, grid, rules, i, now, u, w, time, code, shared, levels):
-    """The time to look for smaller disks again, if that is before the given event."""
-    if levels is None:
-        return time, code, shared
-    return earlier(time, code, shared, now + look_delay(m, grid, rules, i, u, w), LOOK, rules.tie_screen)
 
 
 @inline
@@ -154,27 +143,25 @@ def contacts_of_everyone(m, grid, rules, i, now, floor, x, y, time, code, shared
     """The same where there are no cells: all disks, in all images."""
     span_x = 0 if rules.length_x is None else 1
     span_y = 0 if rules.length_y is None else 1
-    for j in range(number_sought(grid, grid.posts)):
+    for j in range(number_sought(grid)):
         if j == i:
             continue
         for kx in range(-span_x, span_x + 1):
             for ky in range(-span_y, span_y + 1):
-                if _is_in_reach(m, rules, i, j, kx, ky, grid.posts):
+                if grid.posts is None or _is_in_reach(m, rules, i, j, kx, ky):
                     time, code, shared = _or_with(m, rules, i, j, kx, ky, floor, time, code, shared)
     return time, code, shared
 
 
 @inline
-def number_sought(grid, posts):
+def number_sought(grid):
     """The disks in the first so many places can be met."""
-    return grid.n if posts is None else posts
+    return grid.n if grid.posts is None else grid.posts
 
 
 @inline
-def _is_in_reach(m, rules, i, j, kx, ky, posts):
-    """Whether an image of disk j may be met before disk i leaves the domain; told where it is a post."""
-    if posts is None:
-        return True
+def _is_in_reach(m, rules, i, j, kx, ky):
+    """Whether an image of disk j, a post, may be met before disk i leaves the domain."""
     f, g = i * REALS, j * REALS
     reach = real(m.disks, f + RADIUS) + real(m.disks, g + RADIUS)
     beyond_x = _beyond(real(m.disks, g + X), kx, rules.length_x, reach)
@@ -211,7 +198,7 @@ def _or_with_nearest(m, rules, i, j, now, floor, x, y, edge, time, code, shared)
 @part
 def _contacts_one_by_one(m, grid, rules, i, now, floor, x, y, time, code, shared):
     """The earliest contact with another disk in the nine cells around, if that is before the given event."""
-    depth = depth_of(grid, grid.deep)
+    depth = depth_of(grid)
     start, width = corner_slot(m, grid, i), depth * (grid.columns + 2)
     edge = word(m.disks, i * WORDS + FLAGS) & EDGE
     for _ in range(3):
@@ -242,16 +229,10 @@ def _contacts_in_lanes(m, grid, rules, i, now, floor, x, y, time, code, shared):
 def _gather_around(m, grid, rules, i, now, x, y, edge, begin):
     """List in `near`, from `begin` on, the disks in the nine cells around disk i, less the one that it has just met; the end."""
     skip = _partner_to_skip(m, rules, i, now, x, y, edge)
-    start, width = corner_slot(m, grid, i), depth_of(grid, grid.deep) * (grid.columns + 2)
-    end = _gather(m, grid, start, begin, i, skip, grid.deep)
-    end = _gather(m, grid, start + width, end, i, skip, grid.deep)
-    return _gather(m, grid, start + 2 * width, end, i, skip, grid.deep)
-
-
-@inline
-def _room_of_list(grid):
-    """How much room such a list takes, with the register that is written behind its end."""
-    return 9 * depth_of(grid, grid.deep) + REGISTER
+    start, width = corner_slot(m, grid, i), depth_of(grid) * (grid.columns + 2)
+    end = _gather(m, grid, start, begin, i, skip)
+    end = _gather(m, grid, start + width, end, i, skip)
+    return _gather(m, grid, start + 2 * width, end, i, skip)
 
 
 @inline
@@ -293,7 +274,8 @@ def _eight(m, rules, i, now, floor, x, y, edge, first):
     f = i * REALS
     x0, y0, u, w = real(m.disks, f + X), real(m.disks, f + Y), real(m.disks, f + VX), real(m.disks, f + VY)
     t, r = real(m.disks, f + T), real(m.disks, f + RADIUS)
-    length_x, length_y = _or_never(rules.length_x), _or_never(rules.length_y)
+    length_x = NEVER if rules.length_x is None else rules.length_x
+    length_y = NEVER if rules.length_y is None else rules.length_y
     flight = x0, y0, u, w, t, r, now, floor, x, y, length_x, length_y, rules.tie_screen
     if (rules.length_x is not None or rules.length_y is not None) and edge:
         return contact_of_eight(m.disks, m.near, first, *flight, 1.0, rules.gx, rules.gy)
@@ -349,15 +331,10 @@ def _contacts_of_list(m, rules, i, now, floor, x, y, edge, begin, end, time, cod
 
 
 @inline
-def _gather(m, grid, start, count, i, skip, deep):
+def _gather(m, grid, start, count, i, skip):
     """Append the disks of three cells side by side to the list of neighbours; the new count."""
-    if deep is None:
+    if grid.deep is None:
         return gather_disks(m.slots, start, 3 * USUAL_DEPTH, m.near, count, grid.n, i, skip)
     for k in range(0, 3 * grid.depth, 16):
         count = gather_disks(m.slots, start + k, 3 * grid.depth - k, m.near, count, grid.n, i, skip)
     return count
-
-
-@inline
-def _or_never(length):
-    return NEVER if length is None else length

@@ -23,7 +23,6 @@ from eventsim.engines.fast.layout import (
     RESTING,
     SERIES,
     SEVERAL,
-    SHARE,
     SUPPORT,
     SUPPORT_FACE,
     SUPPORT_HIGH,
@@ -80,15 +79,9 @@ def support_face(m, place):
 
 
 @inline
-def share_at_wall(m, rules, place, shares):
-    """The usual restitution at a wall."""
-    return rules.wall_restitution if shares is None else real(shares, OWN_OF_WALL * place + SHARE)
-
-
-@inline
-def _share_of_series(m, rules, place, shares):
-    """The same of bounces that follow each other ever faster."""
-    return rules.series_restitution if shares is None else real(shares, OWN_OF_WALL * place + SERIES)
+def _share_of_series(m, rules, place):
+    """The usual restitution of bounces that follow each other ever faster."""
+    return rules.series_restitution if m.shares is None else real(m.shares, OWN_OF_WALL * place + SERIES)
 
 
 @inline
@@ -102,16 +95,9 @@ WIDER = 2.0
 """How much more energy than the rule of corners the screen lets pass."""
 
 
-@inline
-def is_cornered(m, rules, i, wall, side, x, y, still):
-    """Whether disk i, at rest on a wall at (x, y), would be pressed onto another one that it met last."""
-    if still is None:
-        return False
-    return _is_cornered(m, rules, i, wall, side, x, y)
-
-
 @part
 def _is_cornered(m, rules, i, wall, side, x, y):
+    """Whether disk i, at rest on a wall at (x, y), would be pressed onto another one that it met last."""
     w = i * WORDS
     met = word(m.disks, w + MET)
     if NOBODY < met < 0:
@@ -130,21 +116,14 @@ def _is_cornered(m, rules, i, wall, side, x, y):
 def _makes_corner(m, rules, i, wall, side, x, y, other, from_side, how):
     if other == -1 - wall or how == LEFT or are_in_line(m, wall, -1 - other):
         return False
-    bx, by = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
-    ax, ay = wall_normal(m, rules, -1 - other, from_side, x, y, rules.wall_x, rules.wall_y, m.features)
+    bx, by = wall_normal(m, rules, wall, side, x, y)
+    ax, ay = wall_normal(m, rules, -1 - other, from_side, x, y)
     return slides_into(bx, by, ax, ay, rules.gx, rules.gy)
 
 
-@inline
-def may_be_spent(m, rules, i, code, time, still):
-    """Whether disk i, which meets a wall, may be at the end of its bounces in a corner: the reference engine's rules decide."""
-    if still is None:
-        return False
-    return code <= WALL and _may_be_spent(m, rules, i, time)
-
-
 @part
-def _may_be_spent(m, rules, i, time):
+def may_be_spent(m, rules, i, time):
+    """Whether disk i, which meets a wall, may be at the end of its bounces in a corner: the reference engine's rules decide."""
     x, y = place(m, rules, i, time)
     u, w = speed(m, rules, i, time)
     size = abs(x) + abs(y) + real(m.disks, i * REALS + RADIUS)
@@ -184,7 +163,7 @@ def _since_met(m, i, place):
 def border_contact(m, rules, i, place, side, target, x, v, g):
     """(time, how) of the next event of disk i at a wall of the domain, which keeps its coordinate x at `target`."""
     delay, how = _border_delay(m, rules, i, place, side, target, x, v, g)
-    if how == STRUCK and slides_past(m, rules, i, place, side, delay, rules.still):
+    if how == STRUCK and slides_past(m, rules, i, place, side, delay):
         return NEVER, STRUCK
     return real(m.disks, i * REALS + T) + delay, how
 
@@ -197,19 +176,18 @@ def _border_delay(m, rules, i, place, side, target, x, v, g):
         return NEVER, STRUCK
     both = abs(real(m.disks, f + X)) + abs(real(m.disks, f + Y))
     size = border_size(x, both, target, real(m.disks, f + CONTACT_TIME) == -math.inf)
-    restitution, since = _share_of_series(m, rules, place, m.shares), _since_met(m, i, place)
+    restitution, since = _share_of_series(m, rules, place), _since_met(m, i, place)
     delay, how = free_border_contact(side, target, x, v, g, size, restitution, real(m.disks, f + T), since)
-    if how == SUPPORTED and is_cornered(
-        m, rules, i, place, side, real(m.disks, f + X), real(m.disks, f + Y), rules.still
-    ):
+    x0, y0 = real(m.disks, f + X), real(m.disks, f + Y)
+    if rules.still is not None and how == SUPPORTED and _is_cornered(m, rules, i, place, side, x0, y0):
         return crossing_delay(x, v, g, target, side), STRUCK
     return delay, how
 
 
 @inline
-def slides_past(m, rules, i, wall, side, delay, still):
+def slides_past(m, rules, i, wall, side, delay):
     """Whether disk i is about to rest on the wall that it met last, and to slide there, but not into this one."""
-    if still is None:
+    if rules.still is None:
         return False
     met = word(m.disks, i * WORDS + MET)
     if not NOBODY < met < 0 or met == -1 - wall or not delay < NEVER:
@@ -224,8 +202,8 @@ def _slides_past(m, rules, i, wall, side, delay, last):
         return False
     x, y = place(m, rules, i, real(m.disks, f + T) + delay)
     side_there = word(m.disks, w + MET_KX)
-    ax, ay = wall_normal(m, rules, last, side_there, x, y, rules.wall_x, rules.wall_y, m.features)
-    bx, by = wall_normal(m, rules, wall, side, x, y, rules.wall_x, rules.wall_y, m.features)
+    ax, ay = wall_normal(m, rules, last, side_there, x, y)
+    bx, by = wall_normal(m, rules, wall, side, x, y)
     gx, gy = pulls(m, rules, i)
     if not passes_sliding(ax, ay, bx, by, real(m.disks, f + VX), real(m.disks, f + VY), gx, gy):
         return False
@@ -281,14 +259,14 @@ def shape_rest(m, rules, i, k):
     low, high = real(m.supports, SUPPORT * place + SUPPORT_LOW), real(m.supports, SUPPORT * place + SUPPORT_HIGH)
     face = support_face(m, place)
     before = side_met(m, i, place)
-    close = beside(m, rules, i, k, m.sides)
+    close = beside(m, rules, i, k)
     side = flight_side(face, before, close, x, y, vx, vy, r)
-    restitution, since = _share_of_series(m, rules, place, m.shares), _since_met(m, i, place)
+    restitution, since = _share_of_series(m, rules, place), _since_met(m, i, place)
     if before != 0 and side != before:  # it has come round an end since
         since = NOT_LAST
     delay = rest_on_face_delay(face, side, low, high, x, y, vx, vy, ax, ay, r, restitution, t, since)
     if delay < NEVER:
-        if is_cornered(m, rules, i, place, side, x, y, rules.still):
+        if rules.still is not None and _is_cornered(m, rules, i, place, side, x, y):
             return NEVER, 0, STRUCK
         return delay, side, SUPPORTED
     return NEVER if since < 0.0 else hop_on_face_delay(face, side, x, y, vx, vy, ax, ay, since, r, close), side, STRUCK

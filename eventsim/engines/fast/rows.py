@@ -15,42 +15,40 @@ NO_FLIGHT = (math.nan, math.nan, math.nan, math.nan)
 
 
 @inline
-def write_pair(m, number, slot, a, b, flight_a, flight_b, impulse, t, clock, rows):
+def write_pair(m, number, slot, a, b, flight_a, flight_b, impulse, t, clock):
     """Write row `number` of the log, the contact of disks a and b, if rows are kept.
 
     flight_a, flight_b: place and velocity after it.  clock: the epoch, and as a sum of two numbers where it begins on the scene's
     clock.  The smaller label comes first; which disk has it is as good as random, so it is chosen without a branch.
     """
-    if rows is None:
+    if m.rows is None:
         return
     label_a, label_b = word(m.disks, a * WORDS + LABEL), word(m.disks, b * WORDS + LABEL)
     swapped = label_b < label_a
     first, second = _chosen(swapped, flight_b, flight_a), _chosen(swapped, flight_a, flight_b)
     labels = min(label_a, label_b), max(label_a, label_b)
-    _write(rows, SIZE * slot, number, PAIR_KIND, labels, -1, first, second, impulse, t, clock)
+    _write(m.rows, SIZE * slot, number, PAIR_KIND, labels, -1, first, second, impulse, t, clock)
 
 
 @inline
-def write_wall(m, number, slot, a, wall, flight, impulse, t, clock, rows):
+def write_wall(m, number, slot, a, wall, flight, impulse, t, clock):
     """Write row `number` of the log, the contact of disk a with a wall, if rows are kept; see `write_pair`."""
-    if rows is None:
+    if m.rows is None:
         return
     labels = word(m.disks, a * WORDS + LABEL), -1
-    _write(rows, SIZE * slot, number, WALL_KIND, labels, wall, flight, NO_FLIGHT, impulse, t, clock)
+    _write(m.rows, SIZE * slot, number, WALL_KIND, labels, wall, flight, NO_FLIGHT, impulse, t, clock)
 
 
 @inline
-def write_spins(m, slot, a, b, spin_rows):
+def write_spins(m, slot, a, b):
     """Write the spins of a pair, the smaller label first, or of a disk at a wall (b < 0), beside the row in a slot."""
-    if spin_rows is None:
-        return
     if b < 0:
-        store(spin_rows, 2 * slot, real(m.spin, 2 * a))
-        store(spin_rows, 2 * slot + 1, math.nan)
+        store(m.spin_rows, 2 * slot, real(m.spin, 2 * a))
+        store(m.spin_rows, 2 * slot + 1, math.nan)
         return
     swapped = word(m.disks, b * WORDS + LABEL) < word(m.disks, a * WORDS + LABEL)
-    store(spin_rows, 2 * slot + (1 if swapped else 0), real(m.spin, 2 * a))
-    store(spin_rows, 2 * slot + (0 if swapped else 1), real(m.spin, 2 * b))
+    store(m.spin_rows, 2 * slot + (1 if swapped else 0), real(m.spin, 2 * a))
+    store(m.spin_rows, 2 * slot + (0 if swapped else 1), real(m.spin, 2 * b))
 
 
 @inline

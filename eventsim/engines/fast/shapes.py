@@ -126,29 +126,27 @@ def side_of_closed(m, s, x, y, vx, vy):
 
 
 @inline
-def beside(m, rules, i, k, sides):
+def beside(m, rules, i, k):
     """What disk i, if it is a point close to the k-th shape, remembers of its side; None where no disk is a point."""
-    if sides is None:
+    if m.sides is None:
         return None
-    return word(sides, i * rules.features + k)
+    return word(m.sides, i * rules.features + k)
 
 
 @part
 def shape_delay(m, rules, i, k, place, x, y, vx, vy, gx, gy, radius):
     """(delay, side) of the next contact with the k-th shape; `place` is its place among all walls."""
-    touches = _touches(m, i, place, rules.still)
+    touches = rules.still is not None and _touches(m, i, place)
     faces, posts, containers, arcs, ellipses = rules.shapes
-    close = beside(m, rules, i, k, m.sides)
+    close = beside(m, rules, i, k)
     return _delay(
         m, i, k, place, x, y, vx, vy, gx, gy, radius, faces, posts, containers, arcs, ellipses, touches, close
     )
 
 
 @inline
-def _touches(m, i, place, still):
+def _touches(m, i, place):
     """Whether the flight of disk i begins on contact with a wall: told where disks settle."""
-    if still is None:
-        return False
     since = real(m.disks, i * REALS + T) - real(m.disks, i * REALS + CONTACT_TIME)
     return since == 0.0 and side_met(m, i, place) != 0
 
@@ -228,13 +226,13 @@ def shape_normal(m, k, side, x, y):
 
 
 @inline
-def wall_normal(m, rules, wall, side, x, y, wall_x, wall_y, features):
+def wall_normal(m, rules, wall, side, x, y):
     """The normal, of any length, of a wall of the domain or a shape, by its place among all walls."""
-    if wall_x is not None and wall_x <= wall < wall_x + 2:
+    if rules.wall_x is not None and rules.wall_x <= wall < rules.wall_x + 2:
         return float(side), 0.0
-    if wall_y is not None and wall_y <= wall < wall_y + 2:
+    if rules.wall_y is not None and rules.wall_y <= wall < rules.wall_y + 2:
         return 0.0, float(side)
-    if features is None:
+    if m.features is None:
         return 0.0, 0.0
     return shape_normal(m, wall - rules.first_feature, side, x, y)
 
@@ -261,9 +259,9 @@ def is_passed(m, k, line, side):
 
 
 @inline
-def is_exact_hit(m, k, radius, sides):
+def is_exact_hit(m, k, radius):
     """Whether the k-th shape is a post and a disk of this radius a point to it."""
-    if sides is None:
+    if m.sides is None:
         return False
     s = WIDTH * k
     return real(m.features, s) == POST and is_point(radius, real(m.features, s + POST_SIZE))

@@ -52,18 +52,12 @@ KEPT = 8
 """More than twice the largest number that is remembered of a side."""
 
 
-@inline
-def keep_sides(m, rules, i, t, pull, x, y, u, w, wall, side, sides):
+@part
+def keep_sides(m, rules, i, t, pull, x, y, u, w, wall, side):
     """Before the flight of disk i ends at (x, y), to go on with (u, w): keep on which sides of walls it is, if it is a point.
 
     pull: its acceleration.  wall: the place of the one that it meets there, from that side; or NOWHERE.
     """
-    if sides is not None:
-        _keep(m, rules, i, t, pull, x, y, u, w, wall, side)
-
-
-@part
-def _keep(m, rules, i, t, pull, x, y, u, w, wall, side):
     f = i * REALS
     lag = t - real(m.disks, f + T)
     gx, gy = pull
@@ -211,15 +205,9 @@ def _distance(m, s, kind, x, y):
     return arc_distance(arc_at(m.features, s + 2), x, y)
 
 
-@inline
-def keep_sides_behind(m, rules, i, code, images):
-    """Keep the sides of disk i, if it is a point, when it has passed a periodic boundary: those of the images there."""
-    if images is not None:
-        _take_over(m, rules, i, code)
-
-
 @part
-def _take_over(m, rules, i, code):
+def keep_sides_behind(m, rules, i, code):
+    """Keep the sides of disk i, if it is a point, when it has passed a periodic boundary: those of the images there."""
     begin, row = i * rules.features, 1 if code == WRAP_LEFT else 0
     if code != WRAP_RIGHT and code != WRAP_LEFT:
         row = 3 if code == WRAP_DOWN else 2

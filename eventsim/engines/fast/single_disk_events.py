@@ -48,11 +48,11 @@ def slack(side, g):
 
 
 @inline
-def crossing(m, grid, rules, i, now, x, y, u, w, gx):
+def crossing(m, grid, rules, i, now, x, y, u, w):
     """The next passage into another cell, far from the border of the grid."""
     low_x = grid.low_x + (word(m.disks, i * WORDS + COLUMN) - 1) * grid.side_x
     low_y = grid.low_y + (word(m.disks, i * WORDS + ROW) - 1) * grid.side_y
-    if gx is None:
+    if rules.gx is None:
         delay_x = (low_x + (grid.side_x if u > 0.0 else 0.0) - x) / u
         delay_y = (low_y + (grid.side_y if w > 0.0 else 0.0) - y) / w
         delay_x = delay_x if u != 0.0 else NEVER
@@ -115,14 +115,14 @@ def _towards(m, rules, i, now, floor, to_cell, to_wrap, size, side, anchor, v0, 
         new = now + crossing_delay(x, v, g, edge - side * slack(size, rules.gx), side)
         return earlier(time, code, shared, new, code_there, rules.tie_screen)
     border, length, wall, wrap_code, second = to_wrap
-    new, what = _border_event(m, rules, i, anchor, v0, g, border, side, length, wall, wrap_code, second, m.supports)
+    new, what = _border_event(m, rules, i, anchor, v0, g, border, side, length, wall, wrap_code, second)
     if not new < floor:
         time, code, shared = earlier(time, code, shared, new, what, rules.tie_screen)
     return time, code, shared
 
 
 @inline
-def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, second, supports):
+def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, second):
     """(time, code) of the wrap through a border of the domain, or of the contact with the hard wall there."""
     f = i * REALS
     t = real(m.disks, f + T)
@@ -130,7 +130,7 @@ def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, s
         if wall is None:
             return NEVER, NOTHING
         r = real(m.disks, f + RADIUS)
-        if supports is not None:
+        if m.supports is not None:
             time, _ = border_contact(m, rules, i, wall + second, side, border + side * r, x, v, g)
             return time, WALL - 2 * (wall + second) - second
         return t + crossing_delay(x, v, g, border + side * r, side), WALL - 2 * (wall + second) - second
@@ -138,17 +138,15 @@ def _border_event(m, rules, i, x, v, g, border, side, length, wall, wrap_code, s
 
 
 @inline
-def earliest_at_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared, features):
+def earliest_at_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared):
     """The earliest contact with a wall shape, if that is before the given event; (x, y): where the disk is now."""
-    if features is None:
-        return time, code, shared
     u, w = speed(m, rules, i, now)
-    begin, end = shapes_near(m, home_of(m, grid, i), i, features, m.near_walls)
+    begin, end = shapes_near(m, home_of(m, grid, i), rules, i)
     for item in range(begin, end):
-        k = shape_near(item, m.near_walls)
-        if _is_clear_until(m, rules, i, k, now, x, y, u, w, time, rules.gx):
+        k = shape_near(m, item)
+        if rules.gx is not None and _is_clear_until(m, rules, i, k, now, x, y, u, w, time):
             continue
-        new, side, _ = shape_time(m, rules, i, k, m.supports)
+        new, side, _ = shape_time(m, rules, i, k)
         if new >= floor:
             wall = WALL - 2 * (rules.first_feature + k) - (1 if side < 0 else 0)
             time, code, shared = earlier(time, code, shared, new, wall, rules.tie_screen)
@@ -156,34 +154,32 @@ def earliest_at_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared, 
 
 
 @inline
-def _is_clear_until(m, rules, i, k, now, x, y, u, w, time, gx):
+def _is_clear_until(m, rules, i, k, now, x, y, u, w, time):
     """Whether a falling disk surely does not meet the k-th shape before a time, nor with it."""
-    if gx is None:
-        return False
     delay = latest_tie(time, rules.tie_screen) - now
     return is_clear(m, rules, k, x, y, u, w, pulls(m, rules, i), real(m.disks, i * REALS + RADIUS), delay)
 
 
 @inline
-def shapes_near(m, grid, i, features, near):
+def shapes_near(m, grid, rules, i):
     """Where the list of the shapes that disk i can meet in its cell begins and ends."""
-    if near is None:
-        return 0, features
+    if m.near_walls is None:
+        return 0, rules.features
     cell = word(m.disks, i * WORDS + COLUMN) - 1 + grid.columns * (word(m.disks, i * WORDS + ROW) - 1)
-    return word(near, cell), word(near, cell + 1)
+    return word(m.near_walls, cell), word(m.near_walls, cell + 1)
 
 
 @inline
-def shape_near(item, near):
+def shape_near(m, item):
     """The shape at a place of such a list."""
-    return item if near is None else word(near, item)
+    return item if m.near_walls is None else word(m.near_walls, item)
 
 
 @part
-def shape_time(m, rules, i, k, supports):
+def shape_time(m, rules, i, k):
     """(time, side, how) of the next event of disk i at the k-th wall shape."""
     f = i * REALS
-    if supports is not None:
+    if m.supports is not None:
         delay, side, how = shape_rest(m, rules, i, k)
         if how != STRUCK or delay < NEVER:
             return real(m.disks, f + T) + delay, side, how
@@ -202,6 +198,6 @@ def shape_time(m, rules, i, k, supports):
         gy,
         real(m.disks, f + RADIUS),
     )
-    if supports is not None and slides_past(m, rules, i, rules.first_feature + k, side, delay, rules.still):
+    if m.supports is not None and slides_past(m, rules, i, rules.first_feature + k, side, delay):
         return NEVER, side, STRUCK
     return real(m.disks, f + T) + delay, side, STRUCK
