@@ -43,7 +43,7 @@ def cut_walls() -> None:
     """No wall shapes, and no contacts with hard walls."""
     from eventsim.engines.fast import loop, predict
 
-    def without_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared, features):  # type: ignore[no-untyped-def]
+    def without_shapes(m, grid, rules, i, now, floor, x, y, time, code, shared):  # type: ignore[no-untyped-def]
         return time, code, shared
 
     cut(predict, earliest_at_shapes=without_shapes)
@@ -64,33 +64,33 @@ def cut_restitution() -> None:
     """Every contact is elastic: a constant."""
     from eventsim.engines.fast import resolve
 
-    cut(resolve, _restitution=lambda m, a, b, t, restitution, duration: 1.0)
+    cut(resolve, _restitution_of_pair=lambda m, rules, a, b, t, dx, dy: 1.0)
 
 
 def cut_masses() -> None:
     """All masses are one and finite."""
     from eventsim.engines.fast import resolve
 
-    cut(resolve, _shares=lambda a, b, mass: (0.5, 0.5), _reduced=lambda a, b, mass, common: 0.5)
-    cut(resolve, _is_finite=lambda i, mass: True, _book_pair=lambda sums, a, b, jx, jy, mass: None)
+    cut(resolve, _shares=lambda m, a, b: (0.5, 0.5), _reduced=lambda m, rules, a, b: 0.5)
 
 
 def cut_radii() -> None:
     """One grid, four slots in a cell."""
     from eventsim.engines.fast import calendar, cells, loop, predict
+    from eventsim.engines.fast.layout import USUAL_DEPTH
 
     for module in (calendar, loop, predict):
         cut(module, home_of=lambda m, grid, i: grid)
-    cut(predict, _look=lambda m, grid, rules, i, now, u, w, time, code, shared, levels: (time, code, shared))
-    cut(cells, _behind=lambda first, slot: slot)
+    for module in (calendar, cells, predict):
+        cut(module, slot_of=lambda grid, column, row: USUAL_DEPTH * (column + (grid.columns + 2) * row))
 
 
 def cut_log() -> None:
     """No rows."""
     from eventsim.engines.fast import resolve
 
-    cut(resolve, write_pair=lambda m, number, slot, a, b, flight_a, flight_b, impulse, t, clock, rows: None)
-    cut(resolve, write_wall=lambda m, number, slot, a, wall, flight, impulse, t, clock, rows: None)
+    cut(resolve, write_pair=lambda m, number, slot, a, b, flight_a, flight_b, impulse, t, clock: None)
+    cut(resolve, write_wall=lambda m, number, slot, a, wall, flight, impulse, t, clock: None)
 
 
 CUTS: dict[str, Callable[[], None]] = {
