@@ -111,7 +111,7 @@ class AutoSession(Session):
 
     def _opened_fast(self, began: float, saved: Snapshot | None = None) -> Session:
         """A session of the fast engine; all since `began` went into loading and compiling it."""
-        self._changing, others = True, None
+        self._changing, others, session = True, None, None
         try:
             from eventsim.engines.fast.session import FastSession
 
@@ -123,7 +123,7 @@ class AutoSession(Session):
             self._changing = False
             if others is not None:
                 others.end()
-        self._loading += perf_counter() - began - session.compile_s
+            self._loading += perf_counter() - began - (0.0 if session is None else session.compile_s)
         return session
 
     @property

@@ -6,10 +6,12 @@ import sys
 from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from eventsim.compiler import kept_in, kernel_folder
 from eventsim.measure import sums
 from eventsim.record.events import Floats
 
@@ -62,7 +64,7 @@ PLAIN = Kernels(
 @cache
 def _compiled() -> Kernels:
     """Counting references would take most of the time."""
-    from numba import njit
+    from numba import config, njit
     from numba.extending import register_jitable
 
     for part in (
@@ -100,7 +102,8 @@ def _compiled() -> Kernels:
     _fetch_disks()
     whole = (sums.take, sums.finish, sums.hold_all)
     try:
-        return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False, cache=True)(part) for part in whole))
+        with kept_in(config, kernel_folder("measure", Path(sums.__file__), Path(__file__))):
+            return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False, cache=True)(part) for part in whole))
     except RuntimeError:  # no folder to keep them in
         return Kernels(*(njit(error_model="numpy", nogil=True, _nrt=False)(part) for part in whole))
 

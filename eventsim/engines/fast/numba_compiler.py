@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import gc
-import hashlib
 import math
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -24,6 +22,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 from numba.extending import overload, register_jitable
 
+from eventsim.compiler import kept_in, kernel_folder
 from eventsim.engines.fast.numba_parts import CallerCompiler as CallerCompiler
 from eventsim.engines.fast.numba_parts import KernelCompiler, PartCompiler
 from eventsim.errors import LogError
@@ -50,29 +49,7 @@ from eventsim.record import events
 from eventsim.record.files.claim import Claim
 from eventsim.scene.walls import SHAPES
 
-SOURCES = Path(__file__).parent, Path(motion.__file__).parent, Path(events.__file__)
-"""The folders and the file that a compiled kernel is made from: numba itself would not notice an edit in another file."""
-
-
-def cache_folder() -> Path:
-    """Where compiled kernels are kept: in the user's cache, by a hash of the sources."""
-    if "EVENTSIM_CACHE_DIR" in os.environ:
-        base = Path(os.environ["EVENTSIM_CACHE_DIR"])
-    elif sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA", Path.home())) / "eventsim"
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches" / "eventsim"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "eventsim"
-    return base / f"fast-{_hash_of_sources()}"
-
-
-def _hash_of_sources() -> str:
-    digest = hashlib.sha256()
-    for source in SOURCES:
-        for path in sorted(source.rglob("*.py")) or [source]:
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+_FOLDER = kernel_folder("fast", Path(__file__).parent, Path(motion.__file__).parent, Path(events.__file__))
 
 
 def is_warm(kind: str) -> bool:
@@ -136,7 +113,7 @@ class _Watcher(event.Listener):
         if self._depth == 0:
             self._began = perf_counter()
             if not _Watcher.told and sys.stderr.isatty():
-                print("compiling the fast engine (once) ...", file=sys.stderr)
+                print("compiling the fast engine (once for scenes of this kind) ...", file=sys.stderr)
             _Watcher.told = True
             _Watcher.at_work += 1
             self._collects = gc.isenabled()
@@ -194,14 +171,11 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def _kept(compiler: Callable[..., Any], function: Callable[..., Any], *signature: Any) -> Any:
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(_FOLDER)  # read when the function is decorated; the caller's own setting is left alone
     try:
-        kept = compiler(*signature, error_model="numpy", cache=True, pipeline_class=KernelCompiler)(function)
+        with kept_in(config, _FOLDER):
+            kept = compiler(*signature, error_model="numpy", cache=True, pipeline_class=KernelCompiler)(function)
     except RuntimeError:  # no folder to write to
         return compiler(*signature, error_model="numpy", pipeline_class=KernelCompiler)(function)
-    finally:
-        config.CACHE_DIR = before
     name_apart(kept)
     return kept
 
@@ -219,7 +193,6 @@ def name_apart(kept: Any) -> None:
         files._data_name_pattern = files._data_name_pattern.replace("{number:d}", "{number:d}." + _THIS_PROCESS)
 
 
-_FOLDER = cache_folder()
 _THIS_PROCESS = uuid4().hex[:8]
 
 _careful = types.ExternalFunction("eventsim_careful_pair_delay", types.float64(*[types.float64] * 15))
