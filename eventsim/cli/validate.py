@@ -66,7 +66,8 @@ def command(
     \b
     Your own engine: --trajectory FILE has where it moved the disks of SCENE, at any times. Its contacts are read from
     the paths, or told by --contacts. Matched pair by pair with those of the event-driven run, in order, with the least
-    total difference of times; its first wrong event is named, with disks and time. --dt: time between frames (XYZ, column frame).
+    total difference of times; its first wrong event is named, with disks and time. Overlaps deeper than two steps of it explain
+    are wrong at any time. --dt: time between frames (XYZ, column frame).
 
     
     Columns of --trajectory (CSV, NPZ, Parquet), disks in the order of the scene, counted from 0, or from 1:

@@ -8,6 +8,6 @@
     gravity       the acceleration of free flights
     sizes         at which distance disks turn
     jumps         energy and momentum that no contact gives
-    displaced     all disks elsewhere at once
+    displaced     all disks elsewhere at once               overlaps       deeper than steps explain
     words         the verdict in sentences                  stepping       an engine that is a function
 """

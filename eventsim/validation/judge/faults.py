@@ -38,7 +38,7 @@ class Fault:
     """Something that cannot be: when, of which kind, and a sentence.
 
     kind: missed, leak, doubled, false, turn, masses, restitution, double impulse, friction, gravity, radius, drift, energy,
-    momentum, jump.  disks: whose; none: of all.  clear: whether it is larger than what can happen between two samples.
+    momentum, overlap, jump.  disks: whose; none: of all.  clear: whether it is larger than what can happen between two samples.
     """
 
     time: float

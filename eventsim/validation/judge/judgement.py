@@ -32,6 +32,7 @@ from eventsim.validation.judge.faults import Fault, Witness
 from eventsim.validation.judge.flights import Flights, Turn, energy_on_the_way, flights_of
 from eventsim.validation.judge.gravity import wrong_gravity
 from eventsim.validation.judge.jumps import jumps
+from eventsim.validation.judge.overlaps import overlaps
 from eventsim.validation.judge.previous import Previous
 from eventsim.validation.judge.sizes import wrong_sizes
 from eventsim.validation.judge.surroundings import Surroundings
@@ -220,6 +221,8 @@ def judge(
     faults = [fault for fault in seen_here if fault is not None]
     groups = [group for group in read.groups if any(turn.last > 0 for turn in group)]
     faults += jumps(groups, flights, around, mass, faults)
+    if sizes is None:
+        faults += overlaps(flights, around, mass, resolution, faults, blind)
     for jump, (begin, end) in displacements(flights, resolution):
         faults = [jump, *(fault for fault in faults if not begin <= fault.time <= end)]
     return Judgement(
