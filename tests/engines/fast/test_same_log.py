@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import eventsim as es
 from eventsim.compiler import is_interpreted
 from eventsim.engines.base import Session, Stop
-from eventsim.engines.fast import FastOptions, plan
+from eventsim.engines.fast import FastOptions, machine, plan
 from eventsim.engines.fast.plan import Sizes
 from eventsim.engines.fast.session import FastSession
 from eventsim.engines.reference.loop import ReferenceSession
@@ -260,3 +260,8 @@ def test_disks_that_slide_into_ends_of_walls_meet_them(seed: int) -> None:
     disks = es.Disks([start + 0.6 * along + 0.25 * across], [rng.uniform(0.0, 1.0) * along], 0.25)
     box = es.Box((10.0, 12.0))
     assert_same(stage_of(es.Scene(disks, box, walls, gravity=(0.0, -1.0), restitution=0.5)), Stop(30.0, 80))
+
+
+def test_a_full_buffer_of_rows_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "ROOM", 8)
+    assert_same(stage_of(lattice_gas(5, 4, 1.2, np.random.default_rng(4), "box", False, 0.0)), Stop(None, 100))

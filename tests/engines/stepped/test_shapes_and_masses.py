@@ -95,3 +95,51 @@ def test_disks_that_overlap_without_a_relative_velocity_never_touched():
     session.disks.x[1] = 1.4
     assert time_of_pair(session.disks, session.ground, 0, 1) == math.inf
     assert residuals_of(session) is not None
+
+
+@pytest.mark.parametrize(
+    ("engine", "options", "words"),
+    [
+        ("penalty", {"stiffness": 0.0}, "stiffness = 0.0"),
+        ("pymunk", {"iterations": 0}, "iterations = 0"),
+        ("pymunk", {"slop": -1.0}, "slop = -1.0"),
+        ("stepped", {"dt": 0.0}, "dt = 0.0"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(engine, options, words):
+    needs(engine)
+    with pytest.raises(es.EventsimError, match=words):
+        es.simulate(es.gallery("two-disks"), until=1.0, engine=engine, **options)
+
+
+def test_springs_have_no_answer_for_a_disk_without_mass():
+    scene = es.Scene(es.Disks([(1.0, 1.0), (2.0, 1.0)], [(1.0, 0.0), (0.0, 0.0)], 0.25, [0.0, 1.0]), es.Open())
+    with pytest.raises(es.EventsimError, match="a disk of mass 0"):
+        es.simulate(scene, until=1.0, engine="penalty")
+
+
+@pytest.mark.parametrize("engine", STEPPED)
+def test_a_run_stops_after_so_many_events_and_goes_on(engine):
+    needs(engine)
+    scene = es.gallery("two-disks")
+    run = es.simulate(scene, until=11.0, events=1, engine=engine, dt=0.002, log=True)
+    assert (run.stopped, run.counters.events, len(run.log)) == ("events", 1, 1)
+
+
+@pytest.mark.parametrize("engine", STEPPED)
+def test_what_only_steps_moves_as_what_is_watched(engine):
+    needs(engine)
+    stage = stage_of(es.gallery("two-disks"))
+    watched, bare = (ENGINES[engine].open(stage, False, ENGINES[engine].options(dt=0.002)) for _ in range(2))
+    bare.only_step()
+    for session in (watched, bare):
+        session.advance(Stop(until=11.0), 10**6)
+    assert watched.motion().x.tolist() == bare.motion().x.tolist()
+
+
+def test_pymunk_without_walls_has_nothing_from_outside():
+    needs("pymunk")
+    scene = es.Scene(es.Disks([(0.0, 0.0), (1.0, 0.1)], [(1.0, 0.0), (-1.0, 0.0)], 0.25), es.Open())
+    run = es.simulate(scene, until=2.0, engine="pymunk", dt=0.002)
+    assert run.counters.pair_contacts >= 1
+    assert run.counters.outer_momentum == [0.0, 0.0]
