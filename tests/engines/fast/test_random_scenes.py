@@ -13,7 +13,7 @@ from tests.oracle.judge import observe
 pytest.importorskip("numba")
 pytestmark = pytest.mark.kernels
 
-FEW, SHORT = 12, 60
+FEW, SHORT = 6, 60
 """Scenes of a family, and events of a scene."""
 
 FEWER = {"P3-lone": 1}
