@@ -90,3 +90,36 @@ def test_a_run_that_goes_on_from_a_checkpoint_counts_only_its_own_events(warm):
     second.advance(Stop(events=1100), 64)
     done = second.counters.events - 1000
     assert second._share_left(Stop(events=1100)) == (100 - done) / done
+
+
+def test_a_law_that_cannot_be_compiled_keeps_the_reference_engine(warm, monkeypatch, capsys):
+    def mine(restitution, approach):
+        return 0.9 * restitution
+
+    def refused(law):
+        raise es.EventsimError("the law cannot be compiled")
+
+    monkeypatch.setattr("eventsim.engines.fast.rules.law_in_kernels", refused)
+    disks = es.Disks([(1.0, 1.0), (3.0, 1.0)], [(1.0, 0.0), (0.0, 0.0)], 0.5)
+    stage = stage_of(es.Scene(disks, es.Box((4.0, 2.0)), law=mine))
+    for name in ("PATIENCE", "SAMPLE", "WARM", "SURE"):
+        monkeypatch.setattr(auto, name, 0.0)
+    for is_warm in (True, False):  # the fast engine would have been the first one, or the second
+        warm.append(is_warm)
+        session = AutoSession(stage)
+        session.advance(Stop(events=100), 5)
+        session.advance(Stop(events=100), 5)
+        assert session.at_work == "reference"
+        assert "the law cannot be compiled: so does this run" in capsys.readouterr().err
+
+
+def test_kernels_are_not_compiled_for_what_is_nearly_done(warm, monkeypatch):
+    for name in ("PATIENCE", "SAMPLE", "WARM"):
+        monkeypatch.setattr(auto, name, 0.0)
+    monkeypatch.setattr(auto, "COLD", math.inf)
+    session = AutoSession(GAS)
+    for _ in range(3):
+        session.advance(Stop(until=1e3), 5)
+    assert session.at_work == "reference"
+    assert session._share_left(Stop(until=1e3)) > 1.0
+    assert session._share_left(Stop()) == 0.0

@@ -167,3 +167,17 @@ def test_disks_in_a_column_are_in_its_order_in_memory() -> None:
     y = np.random.default_rng(1).permutation(300).astype(float)
     along = y[along_a_curve(np.full(300, 2.5), y)]
     assert (np.diff(along) > 0.0).all() or (np.diff(along) < 0.0).all()
+
+
+def test_a_tie_among_disks_of_several_classes_has_one_log() -> None:
+    tiny = [(0.5 + 0.5 * (k % 20), 9.0 + 0.5 * (k // 20)) for k in range(60)]
+    position, radius = [(3.0, 4.0), (6.0, 4.0), (9.0, 4.0), *tiny], [1.0, 1.0, 1.0] + [0.01] * 60
+    velocity = [(1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)] + [(0.0, 0.0)] * 60
+    scene = es.Scene(es.Disks(position, velocity, radius), es.Box((12.0, 12.0)))
+    sizes = [FastSession(stage_of(scene)), ReferenceSession(stage_of(scene))]
+    rows = []
+    for session in sizes:
+        session.advance(Stop(events=6), 10**6)
+        rows.append(session.take_rows())
+    assert rows[0].tobytes() == rows[1].tobytes()
+    assert rows[0]["joint"].tolist()[:2] == [0, 0]

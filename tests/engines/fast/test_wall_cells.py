@@ -78,3 +78,18 @@ def test_with_few_walls_all_are_looked_at() -> None:
     stage = stage_of(es.Scene(scene.disks, scene.domain, walls=scene.walls[:3]))
     assert len(stage.features) < MANY_SHAPES
     assert listed(stage) is None
+
+
+def test_no_place_is_nearer_to_a_wall_than_is_told() -> None:
+    from eventsim.engines.fast.wall_cells import _bounds, _distances
+
+    walls = [es.Segment((1.0, 1.0), (3.0, 2.0)), es.Arc((1.0, 0.0), (2.0, 1.0), (3.0, 0.0)), es.Ellipse((2.0, 1.0), (1.0, 0.5))]
+    points = np.random.default_rng(3).uniform(-1.0, 5.0, (50, 2))
+    for wall in walls:
+        for shape, _ in wall.pieces(lambda point: point):
+            told = _distances(shape, points[:, 0], points[:, 1])
+            true = np.array([shape.nearest(x, y)[2] for x, y in points.tolist()])
+            assert np.all(told <= np.where(np.isfinite(true), true, np.inf) + 1e-12)
+            (low_x, low_y), (high_x, high_y) = _bounds(shape)
+            assert low_x <= high_x
+            assert low_y <= high_y

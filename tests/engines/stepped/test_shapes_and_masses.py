@@ -8,6 +8,7 @@ import pytest
 import eventsim as es
 from eventsim.engines import ENGINES, STEPPED
 from eventsim.engines.base import Stop
+from eventsim.engines.stepped.penalty import damping_ratio
 from eventsim.engines.stepped.stepped import time_of_pair
 from eventsim.runner.residuals import residuals_of
 from eventsim.scene.stage import stage_of
@@ -143,3 +144,18 @@ def test_pymunk_without_walls_has_nothing_from_outside():
     run = es.simulate(scene, until=2.0, engine="pymunk", dt=0.002)
     assert run.counters.pair_contacts >= 1
     assert run.counters.outer_momentum == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("engine", STEPPED)
+def test_a_piece_of_wall_in_the_box_is_met(engine):
+    needs(engine)
+    scene = es.Scene(es.Disks([(1.0, 2.0)], [(1.0, 0.0)], 0.25), es.Box((4.0, 4.0)), [es.Segment((3.0, 1.0), (3.0, 3.0))])
+    run = es.simulate(scene, until=2.5, engine=engine, dt=0.002, log=True)
+    assert run.counters.wall_contacts >= 1
+    assert run.log.wall_name[0] == es.simulate(scene, until=2.5, log=True).log.wall_name[0]
+    assert run.state.velocity[0, 0] < 0.0
+
+
+def test_a_spring_without_restitution_is_damped_to_the_limit():
+    assert (damping_ratio(0.0), damping_ratio(1.0)) == (1.0, 0.0)
+    assert 0.0 < damping_ratio(0.5) < 1.0
